@@ -66,6 +66,24 @@ void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curv
   }
 }
 
+// Returns the smallest range that contains the clip's frames, as all_frames() does, with other keys. It is asked for in
+// every drawn frame, so of each track only the first and last key are looked at.
+FrameRange range_of(const Clip& clip, const Keys& keys) {
+  Clip without = {.motion = clip.motion, .start = clip.start, .first = clip.first, .last = clip.last};
+  without.range_start = clip.range_start;
+  without.range_end = clip.range_end;
+  without.markers = clip.markers;
+  FrameRange range = all_frames(without);
+  const auto take = [&](const auto& track) {
+    if (track.empty()) return;
+    range.low = std::min(range.low, track.begin()->first);
+    range.high = std::max(range.high, track.rbegin()->first);
+  };
+  for (const auto& [bone, track] : keys.bones) take(track);
+  take(keys.root);
+  return range;
+}
+
 bool same_motion(const Clip& a, const Clip& b) {
   return a.motion == b.motion && a.start == b.start && a.first == b.first && a.last == b.last && a.map == b.map &&
          a.retarget == b.retarget;
@@ -73,9 +91,7 @@ bool same_motion(const Clip& a, const Clip& b) {
 
 // Begins anew if the clip's motion, the rig or the range of frames has changed.
 void meet_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
-  Clip seen = *on_rig.clip();
-  seen.keys = graph_keys(editor);
-  FrameRange range = all_frames(seen);
+  FrameRange range = range_of(*on_rig.clip(), graph_keys(editor));
   range.high = std::min(range.high, range.low + kMostFrames - 1);
   const bool same = curves.clip && curves.rig == on_rig.armature() && same_motion(*curves.clip, *on_rig.clip());
   if (same && curves.range.low == range.low && curves.range.high == range.high) return;

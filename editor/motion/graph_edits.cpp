@@ -2,7 +2,7 @@
 #include "editor/motion/graph_edits.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <cmath>
 
 #include "core/motion/euler_channels.h"
 #include "core/motion/key_curve.h"
@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kFurthest = 10'000'000;  // largest absolute value of a frame number
+constexpr double kFurthest = 1e7;  // largest absolute value of a frame number
 
 using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;  // and which channels of each frame's key
 
@@ -46,10 +46,10 @@ KeyShape freed(const GraphCurves& curves, const GraphTrack& track, int frame, Ke
 }
 
 void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track, int frame, const glm::bvec3& channels,
-                  double value) {
+                  const GraphMap& value) {
   glm::dvec3 values = graph_values(curves, track, frame);
   for (int axis = 0; axis < 3; ++axis)
-    if (channels[axis]) values[axis] += value;
+    if (channels[axis]) values[axis] = value.at(values[axis]);
   if (track.is_shift) {
     keys.root[frame] = values;
     return;
@@ -69,29 +69,38 @@ std::optional<std::pair<glm::dvec3, int>> way_on(const std::map<int, Value>& key
 
 }  // namespace
 
-Keys with_keys_moved(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& moved, int frames,
-                     double value) {
+Keys with_keys_changed(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed,
+                       const GraphMap& time, const GraphMap& value) {
   Keys next = keys;
-  for (const auto& [track, channels_at] : by_track(moved)) {
+  for (const auto& [track, channels_at] : by_track(changed)) {
     std::map<int, int> frame_of;
     for (const auto& [frame, channels] : channels_at) {
-      if (value != 0) change_value(curves, next, track, frame, channels, value);
-      frame_of[frame] = static_cast<int>(std::clamp(std::int64_t{frame} + frames, -kFurthest, kFurthest));
+      if (value != GraphMap{}) change_value(curves, next, track, frame, channels, value);
+      frame_of[frame] = mapped_frame(time, frame);
+      if (time.scale == 1) continue;
+      KeyShape shape = shape_of(next, track, frame);
+      shape.in /= time.scale;
+      shape.out /= time.scale;
+      put_shape(next, track, frame, shape);
     }
-    if (frames == 0) continue;
+    if (time == GraphMap{}) continue;
     if (track.is_shift) move_root_keys(next, frame_of);
     else move_bone_keys(next, track.bone, frame_of);
   }
   return next;
 }
 
-std::set<GraphKey> moved_by(const std::set<GraphKey>& keys, int frames) {
-  std::set<GraphKey> moved;
+int mapped_frame(const GraphMap& time, int frame) {
+  return static_cast<int>(std::lround(std::clamp(time.at(frame), -kFurthest, kFurthest)));
+}
+
+std::set<GraphKey> mapped_keys(const GraphMap& time, const std::set<GraphKey>& keys) {
+  std::set<GraphKey> after;
   for (GraphKey key : keys) {
-    key.frame = static_cast<int>(std::clamp(std::int64_t{key.frame} + frames, -kFurthest, kFurthest));
-    moved.insert(key);
+    key.frame = mapped_frame(time, key.frame);
+    after.insert(key);
   }
-  return moved;
+  return after;
 }
 
 Keys with_keys_deleted(const Keys& keys, const std::set<GraphKey>& deleted) {

@@ -7,12 +7,21 @@
 
 namespace limber::editor {
 
-// Moves keys in time and in value. Only the channels among the keys change their value; in time all channels of a
-// bone's key go together.
-//   value  degrees, or mm for a shift
-Keys with_keys_moved(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& moved, int frames,
-                     double value);
-std::set<GraphKey> moved_by(const std::set<GraphKey>& keys, int frames);
+// A change of frames or of values: x becomes scale * x + shift.
+struct GraphMap {
+  double scale = 1, shift = 0;
+
+  double at(double x) const { return scale * x + shift; }
+  bool operator==(const GraphMap&) const = default;
+};
+// Moves or scales keys in time and in value. Only the channels among the keys change their value; in time all channels
+// of a bone's key go together. Tangents that are set by hand keep their shape in time.
+//   time   of frames; its scale is positive
+//   value  of degrees, or mm for a shift
+Keys with_keys_changed(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed,
+                       const GraphMap& time, const GraphMap& value);
+int mapped_frame(const GraphMap& time, int frame);
+std::set<GraphKey> mapped_keys(const GraphMap& time, const std::set<GraphKey>& keys);
 Keys with_keys_deleted(const Keys& keys, const std::set<GraphKey>& deleted);
 
 // Sets how the keys' tracks go on from the keys.

@@ -141,8 +141,11 @@ std::vector<Operator> graph_operators() {
       {"graph.view_selected", "Show selected keys in the graph", "", "Motion", "Fit the selected keys into the graph.",
        fit_to_chosen, needs_graph_keys},
       {"graph.move", "Move keys in the graph", icon::kMove, "Motion",
-       "Move the selected keys in time and value with the pointer, or by a typed number.", begin_moving_graph_keys,
-       needs_graph_keys},
+       "Move the selected keys in time and value with the pointer, or by a typed number.",
+       [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Move); }, needs_graph_keys},
+      {"graph.scale", "Scale keys in the graph", icon::kScale, "Motion",
+       "Scale the selected keys in time about the play head, and in value about their middle.",
+       [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Scale); }, needs_graph_keys},
       {"graph.delete", "Delete keys in the graph", icon::kTrash, "Motion",
        "Delete the selected keys. A bone's key is deleted with all of its three channels.",
        [](Editor& e) {

@@ -222,6 +222,7 @@ void draw_graph(Editor& editor, const Rect& rect) {
 
   const GraphTracks found = graph_tracks(editor);
   if (editor.document().armature) update_curves(editor);
+  else graph.curves = {};
   if (const std::string name = shown_name(editor, found); graph.fitted != name && graph.curves.complete()) {
     fit_graph_values(editor);
     graph.fitted = name;

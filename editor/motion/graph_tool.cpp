@@ -60,9 +60,9 @@ struct Moving {
         curves(graph_of(editor).curves),
         chosen(chosen_graph_keys(editor)) {}
 
-  void show(Editor& editor, int frames, double value) const {
-    preview(editor, with_keys_moved(curves, keys, chosen, frames, value));
-    graph_of(editor).chosen = moved_by(chosen, frames);
+  void show(Editor& editor, const GraphMap& time, const GraphMap& value) const {
+    preview(editor, with_keys_changed(curves, keys, chosen, time, value));
+    graph_of(editor).chosen = mapped_keys(time, chosen);
   }
   void cancel(Editor& editor) const {
     drop_preview(editor);
@@ -77,9 +77,23 @@ double value_of_pixels(const Graph& graph, float pixels) {
   return -pixels / std::max(1.0f, graph.plot.height()) * (graph.high - graph.low);
 }
 
-class MovingGraphKeys final : public Modal {
+constexpr const char* kChanges[] = {"Move keys in the graph", "Scale keys in the graph"};
+
+class ChangingGraphKeys final : public Modal {
  public:
-  explicit MovingGraphKeys(Editor& editor) : moving_(editor) {}
+  ChangingGraphKeys(Editor& editor, GraphChange change)
+      : moving_(editor),
+        scales_(change == GraphChange::Scale),
+        pivot_frame_(shown_frame(editor)) {
+    double low = INFINITY, high = -INFINITY;
+    for (const GraphKey& key : moving_.chosen) {
+      const double value = graph_values(moving_.curves, key.channel.track, key.frame)[key.channel.axis];
+      low = std::min(low, value), high = std::max(high, value);
+    }
+    pivot_value_ = (low + high) / 2;
+    reach_ =
+        editor.input.pointer - glm::vec2(x_of(*editor.timeline, pivot_frame_), graph_y(graph_of(editor), pivot_value_));
+  }
 
   bool moved(Editor& editor, const glm::vec2& pixels) override {
     way_ += pixels * (editor.input.down(Key::Shift) ? 0.1f : 1.0f);
@@ -103,40 +117,56 @@ class MovingGraphKeys final : public Modal {
   }
   void cancel(Editor& editor) override { moving_.cancel(editor); }
   std::vector<KeyHint> hints(const Editor&) const override {
-    char frames[32], value[32];
-    std::snprintf(frames, sizeof frames, "%+d frames", frames_);
-    std::snprintf(value, sizeof value, "%+.3g", value_);
-    std::string words = "Move ";
-    if (number_.typed()) words += number_.text() + (lock_ == Lock::Value ? "" : " frames");
-    else words += lock_ == Lock::Time ? frames : lock_ == Lock::Value ? value : frames + std::string(", ") + value;
-    return {{{}, words},
-            {{"X"}, "Time only"},
-            {{"Y"}, "Value only"},
-            {{"0-9"}, "Type a number"},
-            {{"Enter"}, "Confirm"},
-            {{"Esc"}, "Cancel"}};
+    return {{{}, words()},          {{"X"}, "Time only"}, {{"Y"}, "Value only"}, {{"0-9"}, "Type a number"},
+            {{"Enter"}, "Confirm"}, {{"Esc"}, "Cancel"}};
   }
 
  private:
   enum class Lock { None, Time, Value };
 
-  bool show(Editor& editor) {
-    const Graph& graph = graph_of(editor);
-    frames_ = static_cast<int>(std::lround(std::clamp(frames_of_pixels(*editor.timeline, way_.x), -1e7, 1e7)));
-    value_ = value_of_pixels(graph, way_.y);
-    if (lock_ == Lock::Value) frames_ = 0;
-    if (lock_ == Lock::Time) value_ = 0;
+  std::string words() const {
+    char time[32], value[32];
+    std::snprintf(time, sizeof time, scales_ ? "time %.2f" : "%+.0f frames", scales_ ? time_.scale : time_.shift);
+    std::snprintf(value, sizeof value, scales_ ? "value %.2f" : "%+.3g", scales_ ? value_.scale : value_.shift);
+    const std::string what = scales_ ? "Scale " : "Move ";
+    if (number_.typed()) return what + number_.text() + (scales_ || lock_ == Lock::Value ? "" : " frames");
+    return what + (lock_ == Lock::Time    ? std::string(time)
+                   : lock_ == Lock::Value ? std::string(value)
+                                          : std::string(time) + ", " + value);
+  }
+
+  // Returns the maps that scale about the play head and the middle of the keys' values.
+  void scale() {
+    const auto ratio = [](float reach, float way) { return std::abs(reach) < 1 ? 1.0 : (reach + way) / double{reach}; };
+    const float far = glm::length(reach_);
+    const double both = far < 1 ? 1 : glm::length(reach_ + way_) / far;
+    double by = lock_ == Lock::Time ? ratio(reach_.x, way_.x) : lock_ == Lock::Value ? ratio(reach_.y, way_.y) : both;
+    if (number_.typed()) by = number_.value();
+    const double in_time = std::clamp(by, 0.01, 100.0), in_value = std::clamp(by, -100.0, 100.0);
+    time_ = lock_ == Lock::Value ? GraphMap{} : GraphMap{in_time, pivot_frame_ * (1 - in_time)};
+    value_ = lock_ == Lock::Time ? GraphMap{} : GraphMap{in_value, pivot_value_ * (1 - in_value)};
+  }
+
+  void move(const Editor& editor) {
+    double frames = frames_of_pixels(*editor.timeline, way_.x);
+    double value = value_of_pixels(*editor.timeline->graph, way_.y);
     if (number_.typed()) {
       // A number without a lock is a number of frames, as in the timeline.
-      const double typed = std::clamp(number_.value(), -1e7, 1e7);
-      frames_ = lock_ == Lock::Value ? 0 : static_cast<int>(std::lround(typed));
-      value_ = lock_ == Lock::Value ? typed : 0;
+      frames = number_.value();
+      value = lock_ == Lock::Value ? number_.value() : 0;
     }
-    moving_.show(editor, frames_, value_);
+    time_ = {1, lock_ == Lock::Value ? 0 : std::round(std::clamp(frames, -1e7, 1e7))};
+    value_ = {1, lock_ == Lock::Time ? 0 : value};
+  }
+
+  bool show(Editor& editor) {
+    if (scales_) scale();
+    else move(editor);
+    moving_.show(editor, time_, value_);
     return true;
   }
   bool confirm(Editor& editor) {
-    commit_preview(editor, "Move keys in the graph");
+    commit_preview(editor, kChanges[scales_]);
     return false;
   }
   bool drop(Editor& editor) {
@@ -145,10 +175,12 @@ class MovingGraphKeys final : public Modal {
   }
 
   Moving moving_;
-  glm::vec2 way_{0};
+  bool scales_;
+  int pivot_frame_;
+  double pivot_value_ = 0;
+  glm::vec2 reach_{0}, way_{0};  // from the pivot to the pointer at the beginning; the pointer's way since, pixels
   Lock lock_ = Lock::None;
-  int frames_ = 0;
-  double value_ = 0;
+  GraphMap time_, value_;
   TypedNumber number_;
 };
 
@@ -201,10 +233,9 @@ void drag_key(Editor& editor, const GraphKey& key) {
   const auto moved = [begun, from = editor.input.pointer](Editor& e, const glm::vec2&) {
     const glm::vec2 way = e.input.pointer - from;
     if (!graph_of(e).preview && glm::length(way) < e.look.px(kStart)) return;
-    begun->show(e, static_cast<int>(std::lround(frames_of_pixels(*e.timeline, way.x))),
-                value_of_pixels(graph_of(e), way.y));
+    begun->show(e, {1, std::round(frames_of_pixels(*e.timeline, way.x))}, {1, value_of_pixels(graph_of(e), way.y)});
   };
-  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_preview(e, "Move keys in the graph"); },
+  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_preview(e, kChanges[0]); },
                      [begun](Editor& e) { begun->cancel(e); }};
 }
 
@@ -278,10 +309,10 @@ void press_graph(Editor& editor) {
   draw_box(editor);
 }
 
-void begin_moving_graph_keys(Editor& editor) {
+void begin_changing_graph_keys(Editor& editor, GraphChange change) {
   stop_playing(editor);
   settle_frame(editor);
-  editor.modal = std::make_shared<MovingGraphKeys>(editor);
+  editor.modal = std::make_shared<ChangingGraphKeys>(editor, change);
   editor.modal_wrap = {};
 }
 

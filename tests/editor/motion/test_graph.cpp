@@ -152,6 +152,8 @@ std::vector<Proof> proofs_of_curves() {
        },
        Shows::Nothing, "", in_graph({30, 50})},
       {"graph.move", "key G\n key 5\n key Return", frames_are({10, 35, 50}), Shows::Nothing, "", in_graph({30})},
+      {"graph.scale", "key S\n key X\n key 2\n key Return", frames_are({20, 30, 100}), Shows::Nothing, "",
+       in_graph({10, 50})},
       {"graph.delete", "key X", frames_are({10, 50}), Shows::Nothing, "", in_graph({30})},
       {"graph.interpolation_menu", "key T",
        [](Stage& s, const Seen&) { return s.editor().shown_popup == "Interpolation"; }, Shows::Nothing, "",
@@ -391,6 +393,30 @@ TEST_CASE("graph: Escape during a drag leaves keys, selection and the shown pose
   CHECK(bend_of(shown_pose(*test.editor)) == doctest::Approx(bend));
   CHECK(test.editor->history.position() == steps);
   CHECK(!graph_of(*test.editor).preview);
+}
+
+TEST_CASE("graph: S scales values about their middle, and time about the play head with the slopes of handles") {
+  GraphEditor test;
+  graph_of(*test.editor).chosen = {{{kFore, 0}, 10}, {{kFore, 0}, 30}, {{kFore, 0}, 50}};
+  run(*test.editor, "graph.bezier");
+  run(*test.editor, "graph.handles_automatic");
+  run(*test.editor, "graph.handles_free");
+  test.player.settle();
+  const ClipOnRig before(test.editor->document().clips[0], test.editor->document().armature);
+  test.play("move graph\n key S\n key X\n key 3\n key Return\n wait-idle");
+  CHECK(test.fact("edit") == "Scale keys in the graph");
+  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{30, 90, 150});
+  const ClipOnRig after(test.editor->document().clips[0], test.editor->document().armature);
+  for (int frame = 0; frame <= 60; ++frame)
+    CHECK(std::abs(glm::dot(after.at(3 * frame).rotation[1], before.at(frame).rotation[1])) > 1 - 1e-12);
+  test.play("key Ctrl+Z\n wait-idle");
+  graph_of(*test.editor).chosen = {{{kFore, 0}, 10}, {{kFore, 0}, 30}, {{kFore, 0}, 50}};
+  test.play("move graph\n key S\n key Y\n key 2\n key Return\n wait-idle");
+  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{10, 30, 50});
+  CHECK(angles(*test.editor, 10).x == doctest::Approx(-20));
+  CHECK(angles(*test.editor, 30).x == doctest::Approx(60));
+  CHECK(angles(*test.editor, 30).y == doctest::Approx(10));
+  CHECK(angles(*test.editor, 50).x == doctest::Approx(20));
 }
 
 }  // namespace limber::test
