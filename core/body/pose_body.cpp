@@ -74,6 +74,7 @@ Method method_of(const PosingSettings& settings, const PosingEvents& events) {
   if (method->blend) return *method->blend;
   Fem fem;
   fem.contact = settings.has_contact();
+  fem.estimates_error = settings.estimates_error;
   fem.objects = settings.objects;
   fem.gravity = settings.gravity;
   if (settings.quality == "draft") fem.quality = FemQuality::Draft;

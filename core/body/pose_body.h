@@ -22,6 +22,7 @@ struct PosingSettings {
   std::string method = deformation_methods().front().word;  // a word of deformation_methods()
   bool contact = false;                                     // fem: skin touches skin instead of passing through
   std::string quality, mesher;     // fem: draft, normal or fine; lattice or tetgen. "": normal, lattice
+  bool estimates_error = false;    // fem: a second solve with larger tets tells how large the error is
   std::vector<FemObject> objects;  // fem: rigid objects that press on the body
   glm::dvec3 gravity{0};           // fem: m/s2
   std::string glide = "joint";     // a word of glide_poses.h

@@ -137,6 +137,9 @@ void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& optio
           "fem: 8 tets across the thinnest limb that bends (draft), 12 (normal), or 24 around joints (fine); in an "
           "adult's elbow 12, 8 and 4 mm")
       ->check(CLI::IsMember({"draft", "normal", "fine"}));
+  command.add_flag("--error-estimate", options->error_estimate,
+                   "fem: solve again with tets of 1.5 times the edge, and say how far flesh is from where ever smaller "
+                   "tets would have it; takes some 40 % longer");
   command
       .add_option("--mesher", options->mesher,
                   "fem: who fills the body's surface with tets: lattice (default) or tetgen")
@@ -159,6 +162,7 @@ void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& optio
 std::string given_fem_option(const FemOptions& options) {
   if (options.contact) return "--contact";
   if (!options.quality.empty()) return "--quality";
+  if (options.error_estimate) return "--error-estimate";
   if (!options.mesher.empty()) return "--mesher";
   if (!options.obstacles.empty()) return "--obstacle";
   if (!options.gravity.empty()) return "--gravity";

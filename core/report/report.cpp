@@ -2,9 +2,6 @@
 #include "core/report/report.h"
 
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
@@ -130,6 +127,8 @@ Json object_of(const ObjectReport& object) {
   return row;
 }
 
+Json vector_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
+
 Json solve_of(const SolveReport& solve) {
   Json row{{"converged", solve.converged}, {"reached", solve.reached}};
   if (!solve.blocked_by.empty()) row["blocked_by"] = solve.blocked_by;
@@ -147,6 +146,13 @@ Json solve_of(const SolveReport& solve) {
                        {"tolerance_mm", used.tolerance_mm},
                        {"joint_mm", used.joint_mm}};
   if (used.contact_mm) row["parameters"]["contact_mm"] = *used.contact_mm;
+  if (solve.error && !solve.error->unknown.empty()) row["error_estimate"] = {{"unknown", solve.error->unknown}};
+  else if (solve.error)
+    row["error_estimate"] = {{"rms_mm", solve.error->rms_mm},
+                             {"most_mm", solve.error->most_mm},
+                             {"largest_mm", solve.error->largest_mm},
+                             {"place", vector_of(solve.error->place)},
+                             {"coarse_tet_mm", solve.error->coarse_tet_mm}};
   return row;
 }
 
@@ -160,8 +166,6 @@ Json mass_exact_of(const Report& report, const MassExactReport& exact) {
                               {"voxels_after", tissue.after}});
   return row;
 }
-
-Json vector_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
 Json joint_of(const TurnedJoint& joint) {
   Json row{{"bone", joint.bone},
@@ -265,70 +269,22 @@ void add_body(const Report& report, Json& json) {
 
 Json seconds_of(const StageSeconds& seconds) {
   Json row = Json::object();
-  auto add = [&](const char* stage, const std::optional<double>& value) {
-    if (value) row[stage] = *value;
-  };
-  add("read", seconds.read);
-  add("weights", seconds.weights);
-  add("glide", seconds.glide);
-  add("deform", seconds.deform);
-  add("mesh", seconds.mesh);
-  add("solve", seconds.solve);
-  add("rasterize", seconds.rasterize);
-  add("report", seconds.report);
-  add("write", seconds.write);
-  add("total", seconds.total);
+  for (const auto& [stage, value] : stages_of(seconds)) row[stage] = value;
   return row;
 }
-
-// Returns one line of a table, formatted as by printf, of any length.
-[[gnu::format(printf, 1, 2)]] std::string line(const char* format, ...) {
-  std::va_list values, again;
-  va_start(values, format);
-  va_copy(again, values);
-  std::string text(static_cast<size_t>(std::vsnprintf(nullptr, 0, format, values)) + 1, '\0');
-  std::vsnprintf(text.data(), text.size(), format, again);
-  va_end(again);
-  va_end(values);
-  text.back() = '\n';
-  return text;
-}
-
-std::string components_of(const TissueChange& tissue) {
-  const std::string before = std::to_string(tissue.components_before);
-  if (tissue.components_before == tissue.components_after) return before;
-  return before + " -> " + std::to_string(tissue.components_after);
-}
-
-void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshReport& mesh) {
-  out << line("%8s  %-28s %36s", "label", "stretch of what bends", "least, most: median (5 % to 95 %)");
-  for (const TissueChange& tissue : metrics.tissues)
-    if (const auto found = mesh.stretch.find(tissue.label); found != mesh.stretch.end()) {
-      const auto& [least, most] = found->second;
-      out << line("%8.0f  %-28.28s   %5.2f (%.2f to %.2f), %5.2f (%.2f to %.2f)", tissue.file_value,
-                  tissue.name.c_str(), least[1], least[0], least[2], most[1], most[0], most[2]);
-    }
-}
-
-void print_glide(std::ostream& out, const std::vector<GlidedJoint>& joints) {
-  if (joints.empty()) return;
-  out << line("%-24s %-24s %9s %9s %9s %9s", "joint that glides", "against", "shift mm", "of most", "deep mm", "after");
-  for (const GlidedJoint& joint : joints)
-    out << line("%-24.24s %-24.24s %9.1f %9.1f %9.1f %9.1f %s", joint.bone.c_str(), joint.against.c_str(),
-                glm::length(joint.shift), joint.most_mm, joint.depth_before, joint.depth_after,
-                joint.free ? "free" : "NOT FREE");
-}
-
-void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
-  out << line("%8s  %-28s %12s %12s %10s %12s", "label", "tissue", "voxels", "after", "change %", "components");
-  for (const TissueChange& tissue : metrics.tissues)
-    out << line("%8.0f  %-28.28s %12lld %12lld %+10.2f %12s", tissue.file_value, tissue.name.c_str(),
-                static_cast<long long>(tissue.voxels_before), static_cast<long long>(tissue.voxels_after),
-                tissue.volume_change_percent, components_of(tissue).c_str());
-  out << line("%8s  %-28s %12lld %12lld %+10.2f", "", "all tissue", static_cast<long long>(metrics.voxels_before),
-              static_cast<long long>(metrics.voxels_after), metrics.volume_change_percent);
-}
 }  // namespace
+
+std::vector<std::pair<std::string, double>> stages_of(const StageSeconds& seconds) {
+  const std::pair<const char*, const std::optional<double>*> all[] = {
+      {"read", &seconds.read},           {"weights", &seconds.weights}, {"glide", &seconds.glide},
+      {"deform", &seconds.deform},       {"mesh", &seconds.mesh},       {"solve", &seconds.solve},
+      {"rasterize", &seconds.rasterize}, {"report", &seconds.report},   {"write", &seconds.write},
+      {"total", &seconds.total}};
+  std::vector<std::pair<std::string, double>> stages;
+  for (const auto& [stage, value] : all)
+    if (*value) stages.emplace_back(stage, **value);
+  return stages;
+}
 
 std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose) {
   std::vector<TurnedJoint> joints;
@@ -425,73 +381,5 @@ double method_seconds(const std::string& report) {
 }
 
 void write_report(const Report& report, const Path& path) { write_file_atomically(path, to_json(report)); }
-
-void print_report(std::ostream& out, const Report& report) {
-  if (!report.method.empty()) out << "method " << report.method << "\n";
-  if (report.metrics) {
-    print_tissues(out, *report.metrics);
-    if (report.metrics->has_skin)
-      out << line("\nskin covers %.1f %% of the surface before and %.1f %% after",
-                  100 * report.metrics->skin_share_before, 100 * report.metrics->skin_share_after);
-    out << line("trapped air %lld voxels", static_cast<long long>(report.metrics->trapped_air_voxels));
-  }
-  if (report.glide) print_glide(out, *report.glide);
-  if (report.deform) {
-    const DeformReport& deform = *report.deform;
-    out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld voxels",
-                static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
-                static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
-                static_cast<long long>(deform.mended_voxels));
-    if (deform.settled && deform.settled->cells > 0)
-      out << line(
-          "flesh settled: cells were off their volume by %.1f %% in the mean, and are by %.1f %%; moved by up to %.1f "
-          "mm",
-          100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
-          deform.settled->largest_shift_mm);
-    std::int64_t moved = 0;
-    for (const auto& [_, voxels] : deform.kept_organs) moved += std::abs(voxels);
-    if (moved > 0)
-      out << line("organs kept: %lld that were off by more than 5 %% were given or gave %lld voxels at their surface",
-                  static_cast<long long>(deform.kept_organs.size()), static_cast<long long>(moved));
-    if (deform.mass_exact)
-      out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
-    double worst = 0;
-    for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
-    if (!deform.bones.empty())
-      out << line("bone parts of %zu rig bones are rigid within %.4f mm", deform.bones.size(), worst);
-  }
-  if (report.deform && report.deform->mesh) {
-    const MeshReport& mesh = *report.deform->mesh;
-    out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2",
-                static_cast<long long>(mesh.tets), static_cast<long long>(mesh.inverted), mesh.min_det_f,
-                100 * mesh.share_below_fifth);
-    if (report.metrics && !mesh.stretch.empty()) print_stretch(out, *report.metrics, mesh);
-  }
-  if (report.deform && report.deform->solve) {
-    const SolveReport& solve = *report.deform->solve;
-    out << line("%s %.1f %% of the pose in %d steps, %d iterations, residual %.3f mm",
-                solve.converged ? "solved:" : "NOT SOLVED, ended at", 100 * solve.reached, solve.steps,
-                solve.iterations, solve.residual_mm);
-  }
-  if (report.deform)
-    for (const ObjectReport& object : report.deform->objects)
-      out << line("%.60s presses with %.3g N on %.3g cm2, at most %.3g kPa, %.1f mm from its place, %lld crossings",
-                  object.name.c_str(), object.pressing_n, object.area_mm2 / 100, object.largest_kpa, object.away_mm,
-                  static_cast<long long>(object.crossings));
-  const Json seconds = seconds_of(report.seconds);
-  if (!seconds.empty()) {
-    out << "seconds";
-    for (const auto& [stage, value] : seconds.items()) {
-      const std::string text = line(" %.2f", value.get<double>());
-      out << "  " << stage << text.substr(0, text.size() - 1);
-    }
-    out << "\n";
-  }
-  out << line("peak memory %.0f MB", peak_memory_mb());
-  if (!report.gates.empty()) out << "\n";
-  for (const QualityGate& gate : report.gates)
-    out << line("%-11s %s", gate.state == GateState::Failed ? "FAILED" : std::string(to_string(gate.state)).c_str(),
-                gate.sentence.c_str());
-}
 
 }  // namespace limber

@@ -79,6 +79,8 @@ void judge(Report& report);
 std::vector<std::string> failed_gates(const Report& report);
 
 std::string to_json(const Report& report);
+// Returns the stages that have a time, with their names in reports, in order.
+std::vector<std::pair<std::string, double>> stages_of(const StageSeconds& seconds);
 void write_report(const Report& report, const Path& path);
 // Returns the seconds that the posing method took, from the JSON text of a report; 0: the report has no times. The time
 // for computing weights, reading files and writing the report is not included.

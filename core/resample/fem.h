@@ -15,6 +15,7 @@
 
 #include "core/fem/stretch.h"
 #include "core/mesh/mesh_tissue.h"
+#include "core/resample/fem_error.h"
 #include "core/resample/fem_objects.h"
 #include "core/volume/label_volume.h"
 
@@ -30,9 +31,13 @@ struct Fem {
   bool contact = false;                     // true: skin is pushed apart instead of passing through skin
   FemQuality quality = FemQuality::Normal;  // number of tets across the thinnest bent limb: 8, 12, or 24 at joints
   std::optional<double> spacing_mm;         // edge length of the tets; none: the quality decides
+  // Length that decides how far around a bent joint tissue is meshed, and what belongs to a joint. None: the edge of
+  // the tets, or that of normal quality if it is longer.
+  std::optional<double> reach_mm;
   Mesher mesher = Mesher::lattice;
-  std::vector<FemObject> objects;                   // rigid objects that press on the posed body; they need contact
-  glm::dvec3 gravity{0};                            // acceleration of gravity, m/s2, in the world
+  bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
+  std::vector<FemObject> objects;  // rigid objects that press on the posed body; they need contact
+  glm::dvec3 gravity{0};           // acceleration of gravity, m/s2, in the world
   std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
   std::function<void(const SolveStep&)> on_step;    // called after every iteration
 };
@@ -74,6 +79,7 @@ struct SolveReport {
   // are written at their exact positions.
   double bone_drift_mm = 0;
   SolveParameters parameters;
+  std::optional<FemError> error;  // none: not estimated
 };
 
 }  // namespace limber

@@ -34,12 +34,13 @@ constexpr double kMargin = 24;
 // Width of the margin that is meshed around tissue that the pose brings into contact, mm. It is smaller than kMargin,
 // because pressed flesh deforms less far out than a crease.
 constexpr double kGive = 16;
-// Width of the rim around the tissue that may deform, in tet edge lengths: at least two layers of tets. The nodes of
-// the rim move rigidly with a bone.
+// The lengths below are multiples of Fem::reach_mm, so that smaller tets solve the same problem more accurately.
+// Width of the rim around the tissue that may deform: at least two layers of tets. The nodes of the rim move rigidly
+// with a bone.
 constexpr double kRim = 2.5;
-// Distance from another bone, in tet edge lengths, below which the end of a bone is part of a joint and may slide.
+// Distance from another bone below which the end of a bone is part of a joint and may slide.
 constexpr double kJoint = 2;
-// Distance between two bones in a pose, in tet edge lengths, below which both are part of a joint there.
+// Distance between two bones in a pose below which both are part of a joint there.
 constexpr double kClosing = 1;
 // Upper limit on the distance of a bone's node from its exact position, mm. With coarse tets, which follow a bone's
 // shape only roughly, the limit is larger.
@@ -169,6 +170,17 @@ SolveReport report_of(const SolvedPose& solved) {
           .bone_drift_mm = solved.bone_drift_mm};
 }
 
+// Names the second solve in the progress of the first.
+class ForEstimate : public Progress {
+ public:
+  explicit ForEstimate(Progress& whole) : whole_(whole) {}
+  bool cancelled() const override { return whole_.cancelled(); }
+
+ private:
+  void on_update(std::string_view, double fraction) override { whole_.update("error estimate", fraction); }
+  Progress& whole_;
+};
+
 }  // namespace
 
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue,
@@ -186,7 +198,8 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
       is_bone_(is_bone),
       poses_(std::move(poses)),
       fem_(std::move(fem)),
-      objects_(fem_.objects) {
+      objects_(fem_.objects),
+      grid_(volume.grid) {
   const auto meshing = std::chrono::steady_clock::now();
   last_.pose = rest_pose(armature);
   size_ = limb_size(tissue, volume.grid, bent_joints(armature, poses_, 1));
@@ -195,12 +208,13 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   const BonePath way = way_through(poses_, weights, armature);
   const auto find_moving = [&](double spacing) {
     spacing_ = spacing;
+    reach_ = fem_.reach_mm.value_or(std::max(spacing, size_ * kUsual));
     moving = moving_tissue(volume, tissue, weights, way,
-                           {.margin_mm = size_ * kMargin + spacing,
-                            .rim_mm = kRim * spacing,
+                           {.margin_mm = size_ * kMargin + reach_,
+                            .rim_mm = kRim * reach_,
                             .contact = fem_.contact,
-                            .near_mm = 2 * spacing,
-                            .give_mm = size_ * kGive + spacing,
+                            .near_mm = 2 * reach_,
+                            .give_mm = size_ * kGive + reach_,
                             .places = places_of(poses_.size()),
                             .sweeps = objects_.sweeps(spacing),
                             .pressed_at = ends_of(poses_.size())},
@@ -235,7 +249,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   last_.model =
       tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
-                   {.joint_mm = kJoint * spacing_, .motions = motions_on(way), .closing_mm = kClosing * spacing_});
+                   {.joint_mm = kJoint * reach_, .motions = motions_on(way), .closing_mm = kClosing * reach_});
   waiting_ = last_.model.fem.waiting;
   if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
   if (!objects_.empty()) {
@@ -245,6 +259,15 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   last_.V = last_.model.fem.mesh.V;
   last_.seconds_mesh = seconds_since(meshing);
   if (fem_.on_mesh) fem_.on_mesh(last_.model);
+  if (!fem_.estimates_error) return;
+  Fem coarser = fem_;
+  coarser.estimates_error = false;
+  coarser.spacing_mm = kCoarser * spacing_;
+  coarser.reach_mm = reach_;
+  coarser.on_mesh = {}, coarser.on_step = {};
+  ForEstimate estimate(progress);
+  coarse_ = std::make_unique<FemSequence>(volume, tissue, tissues, is_bone, weights, armature, poses_,
+                                          std::move(coarser), estimate);
 }
 
 std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
@@ -291,13 +314,19 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
                              .step_degrees = settings.step_degrees,
                              .step_tolerance_mm = settings.step_tolerance_mm,
                              .tolerance_mm = settings.tolerance_mm,
-                             .joint_mm = kJoint * spacing_,
+                             .joint_mm = kJoint * reach_,
                              .contact_mm = fem_.contact ? std::optional(settings.contact_mm) : std::nullopt};
   shape->mesh = {.fallback = shape->mesh.fallback};
   measure(solved, spacing_, settings.contact_mm, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {
     return is_bone_[tissue.first] != 0;
   });  // bone voxels move rigidly, even inside tets that stretch
+  if (coarse_) {
+    ForEstimate estimate(progress);
+    const std::shared_ptr<const FemShape> coarse = coarse_->next(estimate);
+    shape->solve.error = coarse ? estimated_error(*shape, *coarse, grid_)
+                                : FemError{.unknown = "the second solve, with larger tets, has no flesh that bends"};
+  }
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
   // If the solve stopped early, the way to the next pose differs from the planned path, and the positions until which

@@ -3,6 +3,7 @@
 // (resample.h).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/fem/tissue_model.h"
@@ -54,13 +55,16 @@ class FemSequence {
   Fem fem_;
   double size_ = 1;                         // thickness of the thinnest bent limb, relative to an adult's elbow (1)
   double spacing_ = 0, finest_ = 0;         // edge length of the tets, and of the smallest tets around joints, mm
+  double reach_ = 0;                        // see Fem::reach_mm
   std::vector<FemModel::Waiting> waiting_;  // nodes that a bone moves at first; `until` is a position on the whole path
   std::size_t solved_ = 0;                  // number of poses solved so far
   FemObjects objects_;
-  double weight_n_ = 0;      // weight of the body, N
-  bool is_pressed_ = false;  // whether the objects are in their places
-  bool has_weight_ = false;  // whether gravity acts at the start of the next solve
-  FemShape last_;            // the shape solved last; at rest before the first solve
+  double weight_n_ = 0;                  // weight of the body, N
+  bool is_pressed_ = false;              // whether the objects are in their places
+  bool has_weight_ = false;              // whether gravity acts at the start of the next solve
+  Grid grid_;                            // of the body's volume
+  std::unique_ptr<FemSequence> coarse_;  // the same poses with larger tets, to estimate the error; null: not wanted
+  FemShape last_;                        // the shape solved last; at rest before the first solve
 };
 
 }  // namespace limber
