@@ -33,6 +33,7 @@ bool Renderer::upload(PreparedBody& prepared) { return resources_->upload(prepar
 void Renderer::limit_memory(std::int64_t bytes) { resources_->limits.bytes = bytes; }
 const TextureLimits& Renderer::limits() const { return resources_->limits; }
 void Renderer::average_at_rest(int pictures) { resources_->pictures_at_rest = std::max(0, pictures); }
+void Renderer::light_at_rest(Light light) { resources_->fine_light = light == Light::Fine; }
 void Renderer::finish() { glFinish(); }
 const std::string& Renderer::note() const { return resources_->note; }
 

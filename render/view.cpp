@@ -19,6 +19,7 @@ constexpr double kRest = 0.1;          // time without a change after which the 
 constexpr double kFrame = 0.028;       // time limit for drawing the body while something moves, seconds
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
 constexpr int kTile = 128;             // edge length of a tile, pixels
+constexpr int kLightTile = 64;         // the same where rays go on from the hits to the light and the sky
 constexpr int kImageTile = 40;         // the same where a grey image is drawn, whose rays take ten times as long
 constexpr int kImagePictures = 2;      // largest number of pictures of a grey image that are averaged
 // Length of the steps of rays through a grey image, in voxels of the image: in a picture in full resolution, and while
@@ -79,6 +80,7 @@ class Target {
     glClearBufferfv(GL_COLOR, 0, nothing);
   }
   const gl::Texture& texture() const { return texture_; }
+  GLuint framebuffer() const { return framebuffer_.name(); }
   const glm::ivec2& size() const { return size_; }
 
  private:
@@ -173,6 +175,12 @@ LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines,
           scene.line_scale};
 }
 
+Background background_of(const Scene& scene) {
+  return scene.transparent_background ? Background::Transparent
+         : scene.dark_background      ? Background::Dark
+                                      : Background::Light;
+}
+
 // Returns the box around the volume, or around the armature if there is no volume, in the world, mm.
 std::array<glm::dvec3, 2> box_of(const Scene& scene) {
   glm::dvec3 low(1e300), high(-1e300);
@@ -215,18 +223,21 @@ struct View3D::Impl {
 
   PassResources& resources;
   Target output, body, average;
+  Target lit;  // average of the pictures with fine light
   // The grey image: the picture that is shown, and the one that is traced next, tile by tile.
   Target image, next_image;
   using Layers = std::array<GBuffer, kMostLayers>;
-  Layers shown;     // hits of the rays of the shown picture, the outermost layer first
-  Layers jittered;  // hits of the rays of the picture that will be averaged next
+  Layers shown;                                // hits of the rays of the shown picture, the outermost layer first
+  Layers jittered;                             // hits of the rays of the picture that will be averaged next
+  std::array<LightBuffer, kMostLayers> light;  // light at the hits of `jittered`
   BodyKey key;
   Scene scene;  // the scene that was drawn last
   bool drawn = false;
   double changed_at = 0;
   int moving_scale = 3;  // the body is drawn at every n-th pixel while something moves
   int shown_scale = 0;   // scale at which the body was drawn (every n-th pixel); 0: no body
-  int sample = 0;        // number of pictures in the average so far
+  int sample = 0;        // number of pictures in the averages so far; those with fine light come after the others
+  bool fine = false;     // true: the last picture was drawn with fine light switched on
   int next_tile = 0;     // index of the next tile of the picture that will be averaged next
   bool refines = false;  // true: the picture will be refined to full resolution and averaged (scale 0)
   PixelRect rect;        // the rectangle that the body covers, in pixels of the picture drawn at shown_scale
@@ -323,17 +334,37 @@ struct View3D::Impl {
            : scene.weights->display == WeightDisplay::Mixed ? ShadePass::Colours::Weights
                                                             : ShadePass::Colours::WeightsWithBorders;
   }
-  void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
-    for (size_t layer = 0; source.weights && layer < source.layers.size(); ++layer)
-      resources.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
-    weight_changes = source.weights ? source.weights->changes() : 0;
+  // Follows rays from the hits to the light, for one rectangle of a picture with fine light.
+  void trace_light(const Source& source, const ViewRays& rays, int picture, const PixelRect& part) {
+    for (size_t layer = 0; layer < source.layers.size(); ++layer)
+      if (!is_ghost(layer))
+        resources.light.draw(*source.body->volume, *source.layers[layer], source.pose, source.posed_hulls[layer],
+                             scene.clip, rays, jittered[layer], light[layer], picture, part);
+  }
+  bool is_ghost(size_t layer) const { return layer == 0 && scene.display == Display::XRay; }
+  void clear_body(const Layers& buffers) {
     body.resize(buffers[0].size(), GL_RGBA8);
     body.share_depth(buffers[0].hull_depth);
     body.clear();
+  }
+  void shade(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
+    weigh(source, rays, buffers, part);
+    clear_body(buffers);
+    shade_layers(source, rays, buffers, part, false);
+  }
+  void weigh(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part) {
+    for (size_t layer = 0; source.weights && layer < source.layers.size(); ++layer)
+      resources.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
+    weight_changes = source.weights ? source.weights->changes() : 0;
+  }
+  // Adds the shaded layers of one rectangle to the picture of the body.
+  void shade_layers(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part,
+                    bool lit_by_rays) {
+    glBindFramebuffer(GL_FRAMEBUFFER, body.framebuffer());
     for (size_t layer = source.layers.size(); layer-- > 0;)
       resources.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer],
-                           source.looks->texture(), rays, part, static_cast<int>(layer),
-                           layer == 0 && scene.display == Display::XRay, colours());
+                           source.looks->texture(), rays, part, static_cast<int>(layer), is_ghost(layer), colours(),
+                           lit_by_rays ? &light[layer] : nullptr);
   }
 
   // Draws the whole body at once, with one ray for each `scale`-th pixel along each axis.
@@ -353,38 +384,40 @@ struct View3D::Impl {
     shown_scale = scale;
   }
 
-  // Draws some tiles of the next picture to average. Returns true if the picture is complete and was averaged.
+  // Draws some tiles of the next picture to average. Returns true if the picture is complete and was averaged. The
+  // pictures with fine light take the same rays as the others, and two rounds over their tiles: in the first, rays are
+  // followed; in the second, each pixel is shaded by the light around it.
   bool refine(const Source& source) {
     const double begin = seconds();
-    const ViewRays rays = rays_of(source, key.size, sample);
+    const bool with_light = sample >= pictures();
+    const int picture = with_light ? sample - pictures() : sample;
+    const ViewRays rays = rays_of(source, key.size, picture);
     const PixelRect part = covered_by(source, rays, key.size);
-    if (next_tile == 0) {
-      start(source, rays, jittered, key.size, part);
-      if (source.image) {
-        next_image.resize(key.size, GL_RGBA8);
-        next_image.clear();
-      }
-    }
-    const int edge = source.image ? kImageTile : kTile;
+    if (next_tile == 0) start_picture(source, rays, part, with_light);
+    const int edge = source.image ? kImageTile : with_light ? kLightTile : kTile;
     const glm::ivec2 tiles = (part.high - part.low + edge - 1) / edge;
-    const int count = part.empty() ? 0 : tiles.x * tiles.y;
+    const int round = part.empty() ? 0 : tiles.x * tiles.y, count = with_light ? 2 * round : round;
     do {
       if (next_tile >= count) break;
-      const glm::ivec2 low = part.low + glm::ivec2(next_tile % tiles.x, next_tile / tiles.x) * edge;
+      const int at = next_tile % round;
+      const glm::ivec2 low = part.low + glm::ivec2(at % tiles.x, at / tiles.x) * edge;
       const PixelRect tile = intersection(part, {low, low + edge});
-      march(source, rays, jittered, tile);
+      if (next_tile < round) march(source, rays, jittered, tile);
+      else weigh(source, rays, jittered, tile), shade_layers(source, rays, jittered, tile, true);
+      if (with_light && next_tile < round) trace_light(source, rays, picture, tile);
       if (source.image) draw_image(source, rays, next_image, kFineStep, tile);
       ++next_tile;
       glFinish();
     } while (seconds() - begin < kTileBudget);
     if (next_tile < count) return false;
 
-    if (!source.image) shade(source, rays, jittered, part);
-    average.resize(key.size, GL_RGBA16F);
-    if (sample == 0) average.clear();
-    average.bind();
-    const gl::Texture& picture = source.image ? next_image.texture() : body.texture();
-    resources.compose.accumulate(picture, key.size, 1.0f / float(sample + 1), part);
+    if (!source.image && !with_light) shade(source, rays, jittered, part);
+    Target& sum = with_light ? lit : average;
+    sum.resize(key.size, GL_RGBA16F);
+    if (picture == 0) sum.clear();
+    sum.bind();
+    const gl::Texture& drawn_picture = source.image ? next_image.texture() : body.texture();
+    resources.compose.accumulate(drawn_picture, key.size, 1.0f / float(picture + 1), part);
     if (sample == 0) {
       std::swap(shown, jittered);
       rect = part;
@@ -393,6 +426,16 @@ struct View3D::Impl {
     next_tile = 0;
     ++sample;
     return true;
+  }
+  void start_picture(const Source& source, const ViewRays& rays, const PixelRect& part, bool with_light) {
+    start(source, rays, jittered, key.size, part);
+    if (source.image) {
+      next_image.resize(key.size, GL_RGBA8);
+      next_image.clear();
+    }
+    if (!with_light) return;
+    for (size_t layer = 0; layer < source.layers.size(); ++layer) light[layer].resize(jittered[layer]);
+    clear_body(jittered);
   }
 
   // Shades the stored hits of the rays again, with other weights or with another display of the weights.
@@ -443,17 +486,18 @@ struct View3D::Impl {
 
   void compose() {
     output.bind();
-    const auto background = scene.transparent_background ? Background::Transparent
-                            : scene.dark_background      ? Background::Dark
-                                                         : Background::Light;
-    resources.compose.background(background, key.size);
+    resources.compose.background(background_of(scene), key.size);
     const auto [low, high] = box_of(scene);
     if (scene.grid && !scene.transparent_background)
       resources.compose.grid(key.camera, key.size, (low + high) / 2.0, low.z,
                              std::max(600.0, glm::length(high - low) * 1.5), scene.line_scale);
     const bool has_body = shown_scale > 0;
     const gl::Texture& first = shows_image(scene) ? image.texture() : body.texture();
-    if (has_body) resources.compose.body(sample > 0 ? average.texture() : first, key.size, shown_rect());
+    // Fine light fades in with each of its pictures.
+    if (has_body && sample > pictures())
+      resources.compose.bodies(average.texture(), lit.texture(), float(sample - pictures()) / float(lit_pictures()),
+                               key.size, shown_rect());
+    else if (has_body) resources.compose.body(sample > 0 ? average.texture() : first, key.size, shown_rect());
     if (has_body && scene.outlined)
       resources.compose.outline(shown[0], *scene.outlined, key.size, shown_rect(), scene.line_scale);
     if (has_body && scene.mesh) draw_mesh();
@@ -467,7 +511,12 @@ struct View3D::Impl {
   int pictures() const {
     return shows_image(scene) ? std::min(kImagePictures, resources.pictures_at_rest) : resources.pictures_at_rest;
   }
-  bool complete() const { return drawn && has_all_weights && has_whole_image && (!refines || sample >= pictures()); }
+  // The number of pictures with fine light that are averaged after those.
+  int lit_pictures() const { return resources.fine_light && !shows_image(scene) ? pictures() : 0; }
+  bool complete() const {
+    return drawn && has_all_weights && has_whole_image && fine == resources.fine_light &&
+           (!refines || sample >= pictures() + lit_pictures());
+  }
 };
 
 View3D::View3D(Renderer& renderer) : impl_(std::make_unique<Impl>(renderer)) {}
@@ -496,6 +545,10 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   const bool more_weights = my.drawn && source && source->weights && source->weights->changes() != my.weight_changes;
   const bool more_image = my.drawn && source && source->image && source->image->uploaded() != my.image_slices;
   bool redraw = overlay_changed || moved || recoloured || more_weights || more_image;
+  if (my.fine != my.resources.fine_light) {
+    my.fine = my.resources.fine_light;
+    if (my.sample >= my.pictures()) my.sample = my.pictures(), my.next_tile = 0, redraw = true;
+  }
   if (!source) {
     my.shown_scale = 0;
     my.sample = 0;
@@ -515,7 +568,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   } else if ((recoloured || more_weights) && !source->image) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
-  } else if (my.refines && my.sample < my.pictures() && now - my.changed_at >= kRest) {
+  } else if (my.refines && my.sample < my.pictures() + my.lit_pictures() && now - my.changed_at >= kRest) {
     redraw |= my.refine(*source);
   }
   my.drawn = true;
@@ -527,6 +580,40 @@ int View3D::scale() const { return impl_->shown_scale; }
 std::int64_t View3D::rays_followed() const { return impl_->rays_followed; }
 unsigned View3D::texture() const { return impl_->output.texture().name(); }
 Image View3D::read() const { return read_back(impl_->output, impl_->scene.transparent_background); }
+
+std::vector<Label> View3D::shown_labels(int pixels) const {
+  Impl& my = *impl_;
+  if (!my.drawn || my.shown_scale == 0 || shows_image(my.scene)) return {};
+  const KeepFramebuffer keep;
+  const auto source = my.source(my.scene, PassResources::Extent::Whole);
+  const LabelLooks& looks = *my.scene.looks;
+  const glm::ivec2 size = my.shown[0].size();
+  const size_t count = static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
+  std::vector<std::uint16_t> labels(count);
+  std::vector<std::uint8_t> hidden(count);  // 1: an opaque tissue lies in front
+  std::vector<int> shown(65536);
+  for (size_t layer = 0; layer < source->layers.size(); ++layer) {
+    glBindFramebuffer(GL_FRAMEBUFFER, my.shown[layer].march_target.name());
+    glReadBuffer(GL_COLOR_ATTACHMENT2);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, size.x, size.y, GL_RED_INTEGER, GL_UNSIGNED_SHORT, labels.data());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    const LabelSet* deeper = layer + 1 < source->layers.size() ? &source->looks->layers()[layer + 1] : nullptr;
+    for (size_t i = 0; i < count; ++i) {
+      const Label label = labels[i];
+      if (label == 0 || hidden[i] || (deeper && (*deeper)[label])) continue;
+      ++shown[label];
+      hidden[i] = my.scene.display == Display::Solid ||
+                  (!my.is_ghost(layer) && label < looks.size() && looks[label].opacity >= 1);
+    }
+  }
+  gl::check_gl("reading the labels of a picture");
+  std::vector<Label> result;
+  const int scale = my.shown_scale * my.shown_scale;
+  for (size_t label = 1; label < shown.size(); ++label)
+    if (shown[label] * scale >= pixels) result.push_back(static_cast<Label>(label));
+  return result;
+}
 
 std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {
   const Impl& my = *impl_;
@@ -606,7 +693,7 @@ struct SliceView::Impl {
   explicit Impl(Renderer& renderer) : resources(renderer.resources()) {}
   PassResources& resources;
   Target output;
-  bool has_all_weights = true, has_whole_image = true;
+  bool has_all_weights = true, has_whole_image = true, transparent = false;
   // The lines along which the slice cuts the mesh, cached with the inputs from which they were computed.
   struct {
     CutMesh mesh;
@@ -645,7 +732,8 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
   my.has_all_weights = my.has_whole_image = true;
   my.output.resize(size, GL_RGBA8);
   my.output.bind();
-  my.resources.compose.background(scene.dark_background ? Background::Dark : Background::Light, size);
+  my.transparent = scene.transparent_background;
+  my.resources.compose.background(background_of(scene), size);
   if (scene.volume && scene.looks) {
     auto& body = my.resources.body(scene.volume);
     const GreyTexture* grey = my.resources.grey(scene.grey, PassResources::Extent::InTime);
@@ -661,6 +749,6 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
 
 bool SliceView::complete() const { return impl_->has_all_weights && impl_->has_whole_image; }
 unsigned SliceView::texture() const { return impl_->output.texture().name(); }
-Image SliceView::read() const { return read_back(impl_->output, false); }
+Image SliceView::read() const { return read_back(impl_->output, impl_->transparent); }
 
 }  // namespace limber::render

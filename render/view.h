@@ -32,6 +32,10 @@ struct PreparedBody;
 std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
                                             Display display, const TextureLimits& limits, Progress& progress);
 
+// How the light on a body is computed. Draft: from the blurred occupancy of the body, at once, also while it moves.
+// Fine: by rays through the body to the light and to the sky, for pictures at rest (render/passes/light_pass.h).
+enum class Light { Draft, Fine };
+
 // The resources of one OpenGL context: textures of the volumes in use, and shader programs.
 class Renderer {
  public:
@@ -61,6 +65,10 @@ class Renderer {
   // Sets how many pictures are averaged when nothing moves; the default is six. Fewer pictures are complete sooner, but
   // less smooth. With 0 the picture stays at every third pixel, for tests that need no good picture.
   void average_at_rest(int pictures);
+
+  // Sets how the light of pictures at rest is computed; the default is Draft. Fine light starts when the pictures of
+  // average_at_rest() are complete, and fades in while its own pictures are added, as many as those.
+  void light_at_rest(Light light);
 
   // Waits until everything drawn so far is finished, for time measurements.
   void finish();
@@ -102,6 +110,10 @@ class View3D {
   std::int64_t rays_followed() const;
   unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
   Image read() const;        // the finished picture
+
+  // Returns the labels that the last picture shows on at least `pixels` of its pixels, in ascending order. Tissue
+  // behind an opaque one is not shown, but tissue behind a transparent one is.
+  std::vector<Label> shown_labels(int pixels) const;
 
   // These functions return what the last picture shows at a pixel. Pixels are counted from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;

@@ -2,6 +2,7 @@
 #include "editor/app/editor_session.h"
 
 #include "core/base/error.h"
+#include "editor/context/keep_preferences.h"
 #include "editor/file_browser/thumbnails.h"
 #include "editor/files/file_filters.h"
 #include "editor/files/project_session.h"
@@ -31,6 +32,7 @@ void write_changed(Editor& editor) {
 
 void begin_editor_session(Editor& editor, const Folders& folders, std::vector<Path> files) {
   editor.folders = folders;
+  apply_light(editor);
   if (!folders.config.empty()) {
     std::string warning;
     editor.recent_files = editor.recent_files_on_disk.contents = read_recent_files(file_of(editor), warning);

@@ -65,6 +65,10 @@ void apply_preferences(Editor& editor) {
   editor.touch();
 }
 
+void apply_light(Editor& editor) {
+  editor.views->renderer.light_at_rest(editor.preferences.fine_light ? render::Light::Fine : render::Light::Draft);
+}
+
 void write_preferences(Editor& editor) {
   if (editor.preferences_path.empty()) return;
   try {

@@ -8,6 +8,8 @@ namespace limber::editor {
 // Applies changed preferences to the editor, and writes them to the file Editor::preferences_path unless that is empty.
 void keep_preferences(Editor& editor);
 void apply_preferences(Editor& editor);
+// Applies Preferences::fine_light to the pictures of the views.
+void apply_light(Editor& editor);
 // Writes the preferences to the disk without applying them. If writing fails several times in a row, only the first
 // failure shows a warning.
 void write_preferences(Editor& editor);

@@ -167,6 +167,10 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
           &Preferences::letters, &Views::letters);
   overlay("Cross-hair", "Show the cross-hair where the slices meet.", &Preferences::cross_hair,
           &Views::show_cross_hair);
+  check(editor, column, "Soft shadows at rest",
+        "Compute shadows by rays as soon as nothing in the 3D view moves. Pictures and figures have them too.",
+        preferences.fine_light);
+  apply_light(editor);
 }
 
 void PreferencesDialog::draw_undo(Editor& editor, Column& column) {

@@ -22,6 +22,7 @@ ComposePass::ComposePass()
     : background_(gl::kWholePicture, "background.frag"),
       grid_("grid.vert", "grid.frag"),
       body_(gl::kWholePicture, "copy.frag"),
+      bodies_(gl::kWholePicture, "copy.frag", gl::define("MIXED")),
       outline_(gl::kWholePicture, "outline.frag"),
       nothing_(gl::VertexArray::create()) {}
 
@@ -77,6 +78,16 @@ void ComposePass::body(const gl::Texture& picture, const glm::ivec2& size, const
   blend_premultiplied();
   body_.use();
   body_.set_texture("u_picture", 0, GL_TEXTURE_2D, picture.name());
+  cover(size, rect);
+}
+
+void ComposePass::bodies(const gl::Texture& picture, const gl::Texture& other, float share, const glm::ivec2& size,
+                         const PixelRect& rect) {
+  blend_premultiplied();
+  bodies_.use();
+  bodies_.set_texture("u_picture", 0, GL_TEXTURE_2D, picture.name());
+  bodies_.set_texture("u_other", 1, GL_TEXTURE_2D, other.name());
+  bodies_.set("u_share", share);
   cover(size, rect);
 }
 

@@ -23,6 +23,9 @@ class ComposePass {
             float line_scale);
   // Draws the picture of the body, which has premultiplied alpha, stretched over the framebuffer.
   void body(const gl::Texture& picture, const glm::ivec2& size, const PixelRect& rect);
+  // The same for a mixture of two pictures, `share` of the second.
+  void bodies(const gl::Texture& picture, const gl::Texture& other, float share, const glm::ivec2& size,
+              const PixelRect& rect);
   // Draws an outline around the pixels that show `label`, two pixels times line_scale wide.
   void outline(const GBuffer& buffer, Label label, const glm::ivec2& size, const PixelRect& rect, float line_scale);
   // Adds a picture to the average in the framebuffer: accumulated = mix(accumulated, picture, weight).
@@ -31,7 +34,7 @@ class ComposePass {
  private:
   void cover(const glm::ivec2& size, const PixelRect& rect);
 
-  gl::Program background_, grid_, body_, outline_;
+  gl::Program background_, grid_, body_, bodies_, outline_;
   gl::VertexArray nothing_;
 };
 

@@ -13,6 +13,7 @@
 #include "render/passes/armature_pass.h"
 #include "render/passes/compose_pass.h"
 #include "render/passes/image_pass.h"
+#include "render/passes/light_pass.h"
 #include "render/passes/line_pass.h"
 #include "render/passes/shade_pass.h"
 #include "render/passes/slice_pass.h"
@@ -87,7 +88,9 @@ struct PassResources {
 
   TextureLimits limits;
   int pictures_at_rest = 6;  // number of pictures that are averaged once nothing in the 3D view moves
+  bool fine_light = false;   // true: pictures at rest get light that is computed by rays, after those
   ShadePass shade;
+  LightPass light;
   ComposePass compose;
   ArmaturePass armature;
   SlicePass slice;

@@ -25,10 +25,18 @@ ShadePass::ShadePass()
 
 void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
                      const GBuffer& buffer, const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect,
-                     int layer, bool ghost, Colours colours) {
+                     int layer, bool ghost, Colours colours, const LightBuffer* light) {
   if (field.hull().empty()) return;
-  const bool weights = colours != Colours::Tissues && !ghost;
-  gl::Program& program = ghost ? ghost_ : weights ? (posed ? posed_weights_ : weights_) : posed ? posed_ : solid_;
+  const bool weights = colours != Colours::Tissues && !ghost, lit = light && !ghost;
+  std::unique_ptr<gl::Program>& lit_program = weights ? lit_weights_ : lit_;
+  if (lit && !lit_program)
+    lit_program = std::make_unique<gl::Program>(gl::kWholePicture, "shade.frag",
+                                                gl::define("LIT") + (weights ? gl::define("WEIGHTS") : ""));
+  gl::Program& program = lit       ? *lit_program
+                         : ghost   ? ghost_
+                         : weights ? (posed ? posed_weights_ : weights_)
+                         : posed   ? posed_
+                                   : solid_;
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
@@ -46,10 +54,18 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   program.set_texture("u_normal", 1, GL_TEXTURE_2D, buffer.normal.name());
   program.set_texture("u_label", 2, GL_TEXTURE_2D, buffer.label.name());
   program.set_texture("u_looks", 3, GL_TEXTURE_2D, looks.name());
-  program.set_texture("u_occupancy", 4, GL_TEXTURE_3D, field.occupancy().name());
-  program.set("u_occupancy_texel", 1.0f / glm::vec3(volume.layout().bricks() * kBrick));
-  int unit = 5;
-  if (posed && !ghost) unit = posed->bind(volume, program, unit);
+  int unit = 4;
+  if (lit) {
+    program.set_texture("u_light", unit++, GL_TEXTURE_2D, light->light.name());
+    const glm::dmat3 to_world = glm::inverse(glm::dmat3(rays.padded_from_world));
+    const double step = 2.0 / buffer.size().x;
+    program.set("u_pixel",
+                glm::vec2(step * glm::length(to_world * rays.base_x), step * glm::length(to_world * rays.toward_x)));
+  } else {
+    program.set_texture("u_occupancy", unit++, GL_TEXTURE_3D, field.occupancy().name());
+    program.set("u_occupancy_texel", 1.0f / glm::vec3(volume.layout().bricks() * kBrick));
+  }
+  if (posed && !ghost && !lit) unit = posed->bind(volume, program, unit);
   if (weights) {
     program.set_texture("u_weight", unit++, GL_TEXTURE_2D, buffer.weight.name());
     program.set_texture("u_place", unit++, GL_TEXTURE_2D, buffer.place.name());
@@ -58,11 +74,7 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
                                                                     : 0);
     program.set("u_joined", glm::vec2(kJoined, kSlant * 2 / float(buffer.size().x)) / place_step(volume));
   }
-  // The matrix converts a unit normal in view axes to a vector in padded coordinates that is one brick long, for any
-  // voxel spacing.
-  const glm::dmat3 to_view = glm::transpose(rays.view_from_gradient);
-  const double scale = kBrick / std::max({glm::length(to_view[0]), glm::length(to_view[1]), glm::length(to_view[2])});
-  program.set("u_padded_from_view", glm::mat3(to_view * scale));
+  program.set("u_padded_from_view", padded_from_view(rays));
   glBindVertexArray(nothing_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindVertexArray(0);

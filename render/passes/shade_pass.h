@@ -6,6 +6,7 @@
 // viewer, and denser where it is seen at a slant. Cut faces have plain tissue colours, without shading.
 #pragma once
 
+#include "render/passes/light_pass.h"
 #include "render/passes/volume_pass.h"
 
 namespace limber::render {
@@ -22,12 +23,14 @@ class ShadePass {
   //   ghost  draws the layer as the outer layer of X-ray
   //   layer  index of the layer; labels that also belong to a deeper layer are not drawn here
   //   posed  the inverse map of the posed body; null: the body is at rest
+  //   light  light by rays at the buffer's pixels; null: creases are darkened by the body's blurred occupancy
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
             const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost,
-            Colours colours);
+            Colours colours, const LightBuffer* light);
 
  private:
   gl::Program solid_, posed_, ghost_, weights_, posed_weights_;
+  std::unique_ptr<gl::Program> lit_, lit_weights_;  // compiled at the first picture with light by rays
   gl::VertexArray nothing_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "render/passes/view_rays.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace limber::render {
@@ -54,6 +55,12 @@ glm::dvec4 ViewRays::padded_from_clip_plane(const glm::dvec3& point, const glm::
   const glm::dvec3 padded_normal = glm::transpose(to_world) * normal;
   const glm::dvec3 padded_point(padded_from_world * glm::dvec4(point, 1));
   return glm::dvec4(padded_normal, glm::dot(padded_normal, padded_point));
+}
+
+glm::mat3 padded_from_view(const ViewRays& rays) {
+  const glm::dmat3 to_padded = glm::transpose(rays.view_from_gradient);
+  return to_padded *
+         (kBrick / std::max({glm::length(to_padded[0]), glm::length(to_padded[1]), glm::length(to_padded[2])}));
 }
 
 void set_rays(gl::Program& program, const ViewRays& rays) {

@@ -14,11 +14,6 @@ namespace {
 // distance smooths the steps between voxels, and stays within the apron (2 voxels) of a block in its atlas.
 constexpr float kTap = 1.4f;
 
-std::string march_defines(int atlases, VolumePass::Space space) {
-  return atlas_defines(atlases) + gl::define("SURFACE", kSurface) + gl::define("BRICK", kBrick) +
-         (space == VolumePass::Space::Posed ? gl::define("POSED") : "");
-}
-
 void set_scissor(const PixelRect& rect) {
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, std::max(rect.high.x - rect.low.x, 0), std::max(rect.high.y - rect.low.y, 0));
@@ -49,6 +44,27 @@ bool eye_inside(const Hull& hull, const ViewRays& rays) {
 }
 
 }  // namespace
+
+std::string march_defines(int atlases, VolumePass::Space space) {
+  return atlas_defines(atlases) + gl::define("SURFACE", kSurface) + gl::define("BRICK", kBrick) +
+         (space == VolumePass::Space::Posed ? gl::define("POSED") : "");
+}
+
+void set_clip(gl::Program& program, const Hull& hull, const VolumeTexture& volume, const Clip& clip,
+              const ViewRays& rays) {
+  glm::vec3 low = hull.low(), high = hull.high();
+  if (clip.box) {
+    // Padded coordinates count voxels of the drawn volume. Its voxels are larger than the original ones if it is drawn
+    // at a coarser resolution.
+    const double scale = 1.0 / (1 << volume.halvings());
+    low = glm::max(low, glm::vec3(((*clip.box)[0] + 0.5) * scale + double(kPad)));
+    high = glm::min(high, glm::vec3(((*clip.box)[1] + 0.5) * scale + double(kPad)));
+  }
+  program.set("u_low", low);
+  program.set("u_high", high);
+  program.set("u_plane", clip.plane ? glm::vec4(rays.padded_from_clip_plane((*clip.plane)[0], (*clip.plane)[1]))
+                                    : glm::vec4(0, 0, 0, 1));
+}
 
 PixelRect intersection(const PixelRect& a, const PixelRect& b) {
   return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
@@ -179,18 +195,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.set("u_layer", static_cast<unsigned>(layer));
   set_rays(march_, rays);
   march_.set("u_view_from_gradient", glm::mat3(rays.view_from_gradient));
-  glm::vec3 low = hull.low(), high = hull.high();
-  if (clip.box) {
-    // Padded coordinates count voxels of the drawn volume. Its voxels are larger than the original ones if it is drawn
-    // at a coarser resolution.
-    const double scale = 1.0 / (1 << volume.halvings());
-    low = glm::max(low, glm::vec3(((*clip.box)[0] + 0.5) * scale + double(kPad)));
-    high = glm::min(high, glm::vec3(((*clip.box)[1] + 0.5) * scale + double(kPad)));
-  }
-  march_.set("u_low", low);
-  march_.set("u_high", high);
-  march_.set("u_plane", clip.plane ? glm::vec4(rays.padded_from_clip_plane((*clip.plane)[0], (*clip.plane)[1]))
-                                   : glm::vec4(0, 0, 0, 1));
+  set_clip(march_, hull, volume, clip, rays);
   march_.set("u_clipped", clip.box || clip.plane ? 1 : 0);
   glBindVertexArray(nothing_.name());
   glDrawArrays(GL_TRIANGLES, 0, 3);

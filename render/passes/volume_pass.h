@@ -14,6 +14,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include <glm/glm.hpp>
 
@@ -87,5 +88,10 @@ class VolumePass {
   gl::Program hull_, march_;
   gl::VertexArray nothing_;
 };
+
+// Returns the definitions, and sets the uniforms of the box and the clip, that shaders/trace.glsl needs.
+std::string march_defines(int atlases, VolumePass::Space space);
+void set_clip(gl::Program& program, const Hull& hull, const VolumeTexture& volume, const Clip& clip,
+              const ViewRays& rays);
 
 }  // namespace limber::render

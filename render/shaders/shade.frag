@@ -1,22 +1,83 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Shades the hits of the rays in the colours of tissues or of skin weights, or as an X-ray ghost.
 #include "rays.glsl"
-#ifdef POSED
+#if defined(POSED) && !defined(LIT)
 #include "posed.glsl"
 #endif
 
 in vec2 ndc;
 uniform sampler2D u_depth, u_normal;
 uniform usampler2D u_label, u_looks;
+#ifdef LIT
+uniform sampler2D u_light;  // shares of the key light and of the sky, of the rays of light.frag
+uniform vec2 u_pixel;       // a pixel is x + y * depth wide, mm
+#else
 uniform sampler3D u_occupancy;
 uniform vec3 u_occupancy_texel;
 uniform mat3 u_padded_from_view;   // converts directions; a unit normal becomes one brick long
+#endif
 uniform uint u_layer;
 layout(location = 0) out vec4 colour;
 
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
 const float kFold = 0.7;  // openness() in the crease of a fold, where two parts of a posed body touch
 
+// Returns the light on a surface that nothing covers, without gloss and rim.
+vec3 open_light(vec3 normal) {
+  float toward = clamp(normal.z, 0.0, 1.0);
+  float key = clamp(dot(normal, kKey) * 0.86 + 0.14, 0.0, 1.0);
+  float sky = 0.5 + 0.5 * normal.y;
+  return (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) *
+         (0.72 + 0.28 * toward);
+}
+
+float gloss_of(vec3 normal) {
+  float gloss = clamp(dot(normal, normalize(kKey + vec3(0, 0, 1))), 0.0, 1.0);
+  gloss *= gloss; gloss *= gloss; gloss *= gloss; gloss *= gloss;
+  return 0.04 * gloss;
+}
+
+float rim_of(vec3 normal) {
+  float away = 1.0 - clamp(normal.z, 0.0, 1.0);
+  return 0.06 * away * away * (0.5 + 0.5 * normal.y);
+}
+
+#ifdef LIT
+// Averages the light over the 4 x 4 pixels around one, which have all directions of rays between them. Only pixels of
+// the same surface count: those near the plane through it, with a similar normal.
+vec2 light_at(ivec2 at, vec4 stored, vec3 normal) {
+  float depth = texelFetch(u_depth, at, 0).r, pixel = u_pixel.x + u_pixel.y * depth;
+  ivec2 last = textureSize(u_depth, 0) - 1;
+  vec2 sum = vec2(0.0);
+  float count = 0.0;
+  for (int y = -2; y < 2; ++y)
+    for (int x = -2; x < 2; ++x) {
+      ivec2 beside = clamp(at + ivec2(x, y), ivec2(0), last);
+      vec4 other = texelFetch(u_normal, beside, 0);
+      vec3 step = vec3(vec2(x, y) * pixel, depth - texelFetch(u_depth, beside, 0).r);
+      float alike = dot(normal, other.xyz * 2.0 - 1.0);
+      if (abs(other.a - stored.a) > 0.1 || alike < 0.8 || abs(dot(step, normal)) > 2.0 * pixel) continue;
+      sum += texelFetch(u_light, beside, 0).rg;
+      count += 1.0;
+    }
+  return count > 0.0 ? sum / count : texelFetch(u_light, at, 0).rg;
+}
+
+// The light of an open surface comes from the key light and from the sky in these shares. They give a picture of a body
+// the mean brightness that it has while it moves.
+const float kKeyShare = 0.5;
+
+vec3 lit(vec3 albedo, vec3 normal, vec2 light) {
+  // Light that the surfaces around a position reflect onto it. [Jimenez, Wu, Pesce, Jarabo, "Practical real-time
+  // strategies for accurate indirect occlusion", SIGGRAPH courses 2016]
+  vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
+  vec3 sky = max(vec3(light.y), ((light.y * a + b) * light.y + c) * light.y);
+  // Faces turned away from the key light are in their own shadow already.
+  float key = mix(1.0, light.x, smoothstep(0.0, 0.3, dot(normal, kKey)));
+  return albedo * (open_light(normal) * (kKeyShare * key + (1.0 - kKeyShare) * sky) + rim_of(normal) * light.y) +
+         gloss_of(normal) * key;
+}
+#else
 // Returns how open a position is: 1 on a flat or convex surface, less in a crease.
 float openness(float depth, vec3 normal) {
   vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
@@ -35,19 +96,11 @@ float openness(float depth, vec3 normal) {
 }
 
 vec3 lit(vec3 albedo, vec3 normal, float open) {
-  float toward = clamp(normal.z, 0.0, 1.0);
-  float key = clamp(dot(normal, kKey) * 0.86 + 0.14, 0.0, 1.0);
-  float sky = 0.5 + 0.5 * normal.y;
-  float half_way = clamp(dot(normal, normalize(kKey + vec3(0, 0, 1))), 0.0, 1.0);
-  float gloss = half_way * half_way;
-  gloss *= gloss; gloss *= gloss; gloss *= gloss;
-  float rim = (1.0 - toward) * (1.0 - toward);
   // Shadows are warmer, like light that has passed through flesh.
   vec3 shade = mix(vec3(0.55, 0.42, 0.38), vec3(1.0), open);
-  vec3 light = (0.92 * key * vec3(1.0, 0.975, 0.945) + mix(0.06, 0.18, sky) * vec3(0.95, 0.97, 1.03)) * shade * open *
-               (0.72 + 0.28 * toward);
-  return albedo * (light + 0.06 * rim * sky) + 0.04 * gloss * open;
+  return albedo * (open_light(normal) * shade * open + rim_of(normal)) + gloss_of(normal) * open;
 }
+#endif
 
 #ifdef WEIGHTS
 uniform sampler2D u_weight;
@@ -99,9 +152,12 @@ void main() {
 #else
   alpha *= float(look.a >> 3) / 255.0;
   vec3 n = normalize(normal.xyz * 2.0 - 1.0);
-  vec3 rgb = cap ? srgb
-                 : sqrt(clamp(lit(srgb * srgb, n, normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n)),
-                              0.0, 1.0));
+#ifdef LIT
+  vec2 light = light_at(at, normal, n);
+#else
+  float light = normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n);
+#endif
+  vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, light), 0.0, 1.0));
 #endif
   colour = vec4(rgb * alpha, alpha);
 }

@@ -128,6 +128,9 @@ struct Scene {
       : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
     editor().preferences.reduce_motion = true;
     editor().views->renderer.average_at_rest(6);  // as users see it
+    // Most pictures show the light of a body that has just moved: they check the window, and would take twice as long.
+    // The light at rest has a picture of its own, and tests/render/passes/test_light_pass.cpp.
+    editor().views->renderer.light_at_rest(render::Light::Draft);
     editor().preferences.scale = wanted_window().value_or(Window{}).scale;
     sitting.play("wait-idle");
   }

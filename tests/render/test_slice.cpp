@@ -64,13 +64,18 @@ TEST_CASE("slice: hidden tissue shows the background, and outlines leave the ins
       painted(grid, [](const glm::dvec3& p) -> Label { return glm::length(p - glm::dvec3(20)) < 15 ? 1 : 0; });
   const SliceCamera camera{.centre = glm::dvec3(20), .millimetres_per_pixel = 0.6};
   auto looks = plain_looks();
-  const Scene shown = scene_of(volume, looks);
+  const auto scene_on_dark = [&] {
+    Scene scene = scene_of(volume, std::make_shared<LabelLooks>(*looks));
+    scene.transparent_background = false;
+    return scene;
+  };
+  const Scene shown = scene_on_dark();
   view.draw(shown, camera, SliceDisplay::Labels, kSize);
   const glm::ivec4 filled = pixel_of(view.read(), {45, 35});
   view.draw(shown, camera, SliceDisplay::Outline, kSize);
   const Image outlines = view.read();
   (*looks)[1].visible = false;
-  view.draw(scene_of(volume, std::make_shared<LabelLooks>(*looks)), camera, SliceDisplay::Labels, kSize);
+  view.draw(scene_on_dark(), camera, SliceDisplay::Labels, kSize);
   const glm::ivec4 hidden = pixel_of(view.read(), {45, 35});
   CHECK(filled == colour_of((*plain_looks())[1]));
   CHECK(hidden.r < 70);
@@ -79,4 +84,16 @@ TEST_CASE("slice: hidden tissue shows the background, and outlines leave the ins
   for (int x = 0; x < kSize.x; ++x) rim += pixel_of(outlines, {x, 35}).r > 200;
   CHECK(rim >= 2);
   CHECK(rim <= 6);
+}
+
+TEST_CASE("slice: without a background, air is transparent and tissue is not") {
+  Studio studio;
+  SliceView view(studio.renderer);
+  const auto volume = painted(
+      grid_of({40, 40, 40}), [](const glm::dvec3& p) -> Label { return glm::length(p - glm::dvec3(20)) < 15 ? 1 : 0; });
+  const SliceCamera camera{.centre = glm::dvec3(20), .millimetres_per_pixel = 0.6};
+  view.draw(scene_of(volume), camera, SliceDisplay::Labels, kSize);
+  const Image image = view.read();
+  CHECK(pixel_of(image, {45, 35}) == colour_of((*plain_looks())[1]));
+  CHECK(pixel_of(image, {1, 1}).a == 0);
 }
