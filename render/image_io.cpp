@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "render/image_io.h"
 
+#include <cmath>
+
 #include <png.h>
 
 #include "core/base/error.h"
@@ -10,6 +12,29 @@ namespace limber::render {
 namespace {
 
 constexpr std::uint32_t kLargestSide = 16384;
+constexpr std::size_t kHeadSize = 33;  // of a PNG file's signature and first chunk, bytes
+
+void append_big_endian(std::string& bytes, std::uint32_t value) {
+  for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift & 255);
+}
+
+// Returns the chunk pHYs, which libpng's simplified interface cannot write: pixels per metre along both axes.
+std::string resolution_chunk(double dots_per_inch) {
+  std::string chunk = "pHYs";
+  for (int axis = 0; axis < 2; ++axis)
+    append_big_endian(chunk, static_cast<std::uint32_t>(std::lround(dots_per_inch / 0.0254)));
+  chunk += 1;               // the unit is the metre
+  std::uint32_t sum = ~0u;  // CRC-32 of the chunk, bit by bit
+  for (const char c : chunk) {
+    sum ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) sum = sum >> 1 ^ (sum & 1 ? 0xEDB88320u : 0);
+  }
+  std::string whole;
+  append_big_endian(whole, static_cast<std::uint32_t>(chunk.size() - 4));
+  whole += chunk;
+  append_big_endian(whole, ~sum);
+  return whole;
+}
 
 png_image png_head(const glm::ivec2& size) {
   png_image png{};
@@ -22,22 +47,20 @@ png_image png_head(const glm::ivec2& size) {
 
 }  // namespace
 
-void write_png(const Image& image, const Path& path) {
-  write_atomically(path, [&](const Path& temporary) {
-    png_image png = png_head(image.size);
-    if (!png_image_write_to_file(&png, temporary.string().c_str(), 0, image.rgba.data(), 0, nullptr))
-      throw Error("the picture cannot be written", path.string(),
-                  std::string("make room or choose another folder (") + png.message + ")");
-  });
+void write_png(const Image& image, const Path& path, double dots_per_inch) {
+  write_file_atomically(path, png_of(image, dots_per_inch));
 }
 
-std::string png_of(const Image& image) {
+std::string png_of(const Image& image, double dots_per_inch) {
   png_image png = png_head(image.size);
   png_alloc_size_t size = 0;
   std::string bytes;
   if (png_image_write_to_memory(&png, nullptr, &size, 0, image.rgba.data(), 0, nullptr)) {
     bytes.resize(size);
-    if (png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr)) return bytes;
+    if (png_image_write_to_memory(&png, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr)) {
+      if (dots_per_inch > 0) bytes.insert(kHeadSize, resolution_chunk(dots_per_inch));
+      return bytes;
+    }
   }
   throw Error("the picture cannot be packed", "PNG", png.message);
 }

@@ -2,10 +2,12 @@
 // Defines the command `limber render`, which renders a picture without a window or a display. If it is given a project,
 // it uses the project's rig, pose and visibility.
 //   limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG]
-//     [--tilt DEG] [--zoom FACTOR] [--orthographic] [--display solid|xray|tissue] [--hide L,L] [--opacity L=A]
-//     [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ] [--rig RIG]
+//     [--tilt DEG] [--zoom FACTOR] [--orthographic] [--display solid|xray|tissue] [--shading fine|draft] [--hide L,L]
+//     [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ] [--rig RIG]
 //     [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs|mix] [--preview]
 //     [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light] [--grid]
+//     [--figure WxH [--dpi N] [--letter A] [--title T] [--paper white|black|transparent] [--no-legend]
+//       [--no-scale-bar]]
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -25,7 +27,6 @@
 #include "core/cmd/command_files.h"
 #include "core/cmd/pose_options.h"
 #include "core/deform/preview_map.h"
-#include "core/deform/skinning.h"
 #include "core/project/project_io.h"
 #include "core/resample/deformation_method.h"
 #include "core/resample/resample.h"
@@ -34,6 +35,11 @@
 #include "core/skin/weights_io.h"
 #include "core/volume_io/grey_image.h"
 #include "editor/cli/command.h"
+#include "editor/cli/figure_options.h"
+#include "editor/cli/posed_box.h"
+#include "editor/figure/figure_source.h"
+#include "editor/figure/video.h"
+#include "editor/figure/write_figure.h"
 #include "editor/volume/body_seams.h"
 #include "render/gl/egl_context.h"
 #include "render/image_io.h"
@@ -54,11 +60,13 @@ struct Options {
                                method = deformation_methods().front().word;
   StandardView view = StandardView::Front;
   Display display = Display::Solid;
+  Light shading = Light::Fine;
   double turn = 0, tilt = 0, zoom = 1;
   std::vector<double> hide, clip_box, clip_plane;
   std::vector<std::string> opacity;
   std::optional<double> at;
   std::optional<int> turntable;
+  FigureFlags figure;
   bool orthographic = false, outline = false, transparent = false, light = false, grid = false, preview = false;
 };
 
@@ -175,34 +183,6 @@ SkinWeights weights_of(const Options& options, const Document& document, Progres
   return std::move(file.weights);
 }
 
-// Returns the bounding box of the posed tissue in voxels of `grid`. The box is computed from bones and weights alone,
-// so that pictures of a preview and of a resampled volume show the same part of space.
-std::array<glm::dvec3, 2> box_of_posed(const Grid& rest_grid, const Grid& grid, const TissueVoxels& tissue,
-                                       const SkinWeights& weights, const std::vector<RigidTransform>& posed_from_rest,
-                                       Blend blend) {
-  const std::vector<SkinTransform> bones = skin_transforms(posed_from_rest);
-  const AffineTransform to_world = world_from_voxel(rest_grid), to_voxel = voxel_from_world(grid);
-  std::vector<std::array<glm::dvec3, 2>> boxes(tissue.bricks().size(), {glm::dvec3(1e300), glm::dvec3(-1e300)});
-  parallel_for(std::ssize(boxes), 16, [&](std::int64_t begin, std::int64_t end) {
-    for (auto brick = begin; brick < end; ++brick) {
-      auto influence = weights.chunk(brick).begin();
-      tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
-        std::array<limber::BoneWeight, 4> influences;
-        int count = 0;
-        const Influence follows = *influence++;
-        for (; count < 4 && follows.weight[count]; ++count)
-          influences[count] = {follows.bone[count], double(follows.weight[count])};
-        const glm::dvec3 posed =
-            to_voxel * blend_point(blend, bones, {influences.data(), size_t(count)}, to_world * glm::dvec3(voxel));
-        boxes[brick] = {glm::min(boxes[brick][0], posed - 0.5), glm::max(boxes[brick][1], posed + 0.5)};
-      });
-    }
-  });
-  std::array<glm::dvec3, 2> all = boxes.at(0);
-  for (const auto& [low, high] : boxes) all = {glm::min(all[0], low), glm::max(all[1], high)};
-  return all;
-}
-
 // The scene to render, with the posed volume and rig.
 struct PosedScene {
   Scene scene;
@@ -285,7 +265,8 @@ Image picture_3d(Renderer& renderer, const Scene& scene, const Camera& camera, c
   return view.read();
 }
 
-Image picture_slice(Renderer& renderer, const PosedScene& posed, const Options& options, const glm::ivec2& size) {
+// Returns the camera that shows the whole slice in a picture of a given size.
+SliceCameraAt slice_camera_of(const PosedScene& posed, const Options& options) {
   static const std::map<std::string, SliceAxis> axes = {
       {"axial", SliceAxis::Axial}, {"coronal", SliceAxis::Coronal}, {"sagittal", SliceAxis::Sagittal}};
   const auto [low, high] = box_of_tissue(posed, {});
@@ -293,10 +274,45 @@ Image picture_slice(Renderer& renderer, const PosedScene& posed, const Options& 
   const SliceFrame frame = frame_of(camera.axis);
   if (options.at) camera.centre += frame.normal * (*options.at - glm::dot(camera.centre, frame.normal));
   const double width = std::abs(glm::dot(high - low, frame.right)), height = std::abs(glm::dot(high - low, frame.down));
-  camera.millimetres_per_pixel = 1.06 * std::max({width / size.x, height / size.y, 1e-6}) / options.zoom;
+  return [camera, width, height, zoom = options.zoom](const glm::ivec2& size) {
+    SliceCamera fitted = camera;
+    fitted.millimetres_per_pixel = 1.06 * std::max({width / size.x, height / size.y, 1e-6}) / zoom;
+    return fitted;
+  };
+}
+
+Image picture_slice(Renderer& renderer, const Scene& scene, const Options& options, const SliceCamera& camera,
+                    const glm::ivec2& size) {
   SliceView view(renderer);
-  view.draw(posed.scene, camera, options.outline ? SliceDisplay::Outline : SliceDisplay::Labels, size);
+  view.draw(scene, camera, options.outline ? SliceDisplay::Outline : SliceDisplay::Labels, size);
   return view.read();
+}
+
+// Returns the camera that shows the whole body in a picture of a given size.
+CameraAt camera_of(const PosedScene& posed, const Options& options) {
+  Camera camera;
+  if (options.orthographic) camera.projection = Projection::Orthographic;
+  camera = turned(looking_from(options.view, camera), options.turn, options.tilt);
+  const auto [low, high] = box_of_tissue(posed, posed.scene.clip);
+  return [camera, low = low, high = high, zoom = options.zoom](const glm::ivec2& size) {
+    return zoomed(framing(camera, low, high, double(size.x) / size.y), 1 / zoom);
+  };
+}
+
+void draw_figure(Renderer& renderer, const PosedScene& posed, const Options& options, const FigureOptions& wanted,
+                 const std::shared_ptr<const TissueTable>& tissues) {
+  const Lettering lettering;
+  const Scene scene = figure_scene(posed.scene, wanted);
+  if (options.slice.empty()) {
+    const CameraAt camera = camera_of(posed, options);
+    const FigureLayout layout = figure_layout(wanted, body_source(renderer, scene, camera, tissues), lettering);
+    const glm::ivec2& size = layout.picture_pixels;
+    return write_figure(layout, picture_3d(renderer, scene, camera(size), size), lettering, options.output);
+  }
+  const SliceCameraAt camera = slice_camera_of(posed, options);
+  const FigureLayout layout = figure_layout(wanted, slice_source(scene, camera, tissues), lettering);
+  const glm::ivec2& size = layout.picture_pixels;
+  write_figure(layout, picture_slice(renderer, scene, options, camera(size), size), lettering, options.output);
 }
 
 // Returns the path of a numbered picture: NAME-0000.png in the same folder as NAME.png.
@@ -309,9 +325,39 @@ std::string numbered(const std::string& path, int number) {
 
 cmd::OptionFiles files_of_pictures(const Options& options, const std::string& name) {
   cmd::OptionFiles files;
-  if (!options.turntable) files.written.emplace_back(name);
-  for (int i = 0; i < options.turntable.value_or(0); ++i) files.written.emplace_back(numbered(name, i));
+  if (!options.turntable || is_video(name)) {
+    files.written.emplace_back(name);
+    return files;
+  }
+  for (int i = 0; i < *options.turntable; ++i) files.written.emplace_back(numbered(name, i));
   return files;
+}
+
+// Draws a picture, or pictures from all around, and writes them or a video of them.
+void draw_pictures(Renderer& renderer, const PosedScene& posed, const Options& options, const glm::ivec2& size,
+                   Progress& progress) {
+  const Camera camera = camera_of(posed, options)(size);
+  const int pictures = options.turntable.value_or(1);
+  std::optional<Video> video;
+  if (is_video(options.output)) video.emplace(options.output, size, "", progress);
+  for (int i = 0; i < pictures; ++i) {
+    progress.update("pictures", double(i) / pictures);
+    const Image image = picture_3d(renderer, posed.scene, turned(camera, 360.0 * i / pictures, 0), size);
+    if (video) video->add(image);
+    else write_png(image, options.turntable ? numbered(options.output, i) : options.output);
+  }
+  if (video) video->finish();
+}
+
+// Checks what can be checked of the output before a long computation.
+void check_output(const Options& options, bool figure) {
+  const Path output = options.output;
+  check_place(options.turntable && !is_video(output) ? Path(numbered(options.output, 0)) : output);
+  if (figure) return check_figure_path(output);
+  if (!is_video(output)) return;
+  if (!options.turntable || !options.slice.empty())
+    throw Error("a video shows the body from all around", options.output, "add --turntable N, without --slice");
+  require_ffmpeg(output);
 }
 
 void run(const Options& options) {
@@ -319,7 +365,8 @@ void run(const Options& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   cmd::CommandProgress progress(options.run.progress);
-  check_place(options.turntable ? numbered(options.output, 0) : options.output);
+  const std::optional<FigureOptions> figure = figure_of(options.figure);
+  check_output(options, figure.has_value());
 
   const Document document = read_document(options, progress);
   const Visibility visibility =
@@ -340,21 +387,11 @@ void run(const Options& options) {
 
   const HeadlessContext context;
   Renderer renderer;
-  if (!options.slice.empty()) {
-    write_png(picture_slice(renderer, posed, options, size), options.output);
-  } else {
-    Camera camera;
-    if (options.orthographic) camera.projection = Projection::Orthographic;
-    camera = turned(looking_from(options.view, camera), options.turn, options.tilt);
-    const auto [low, high] = box_of_tissue(posed, scene.clip);
-    camera = zoomed(framing(camera, low, high, double(size.x) / size.y), 1 / options.zoom);
-    const int pictures = options.turntable.value_or(1);
-    for (int i = 0; i < pictures; ++i) {
-      progress.update("pictures", double(i) / pictures);
-      const Image image = picture_3d(renderer, scene, turned(camera, 360.0 * i / pictures, 0), size);
-      write_png(image, options.turntable ? numbered(options.output, i) : options.output);
-    }
-  }
+  renderer.light_at_rest(options.shading);
+  if (figure) draw_figure(renderer, posed, options, *figure, document.tissues);
+  else if (!options.slice.empty())
+    write_png(picture_slice(renderer, scene, options, slice_camera_of(posed, options)(size), size), options.output);
+  else draw_pictures(renderer, posed, options, size, progress);
   if (!renderer.note().empty()) cmd::warn(renderer.note());
 }
 
@@ -386,6 +423,13 @@ void add_render(CLI::App& app) {
   command->add_option("--display", options->display, "solid, xray or tissue")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Display>{
           {"solid", Display::Solid}, {"xray", Display::XRay}, {"tissue", Display::Tissue}}));
+  command
+      ->add_option(
+          "--shading", options->shading,
+          "fine (default): soft shadows and covered light by rays, as the editor shows at rest, about a second "
+          "more a picture without a graphics card; draft: as while it moves")
+      ->transform(
+          CLI::CheckedTransformer(std::map<std::string, Light>{{"fine", Light::Fine}, {"draft", Light::Draft}}));
   command->add_option("--hide", options->hide, "labels to hide, as numbered in the file")
       ->delimiter(',')
       ->type_name("L,L");
@@ -412,11 +456,17 @@ void add_render(CLI::App& app) {
       ->check(CLI::IsMember({"axial", "coronal", "sagittal"}));
   command->add_option("--at", options->at, "position of the slice on its axis, mm (default: the middle)");
   command->add_flag("--outline", options->outline, "draws only the borders of tissues in the slice");
-  command->add_option("--turntable", options->turntable, "draws N pictures from all around: NAME-0000.png and so on")
+  command
+      ->add_option("--turntable", options->turntable,
+                   "draws N pictures from all around: NAME-0000.png and so on, or a video (-o NAME.mp4 or .webm, "
+                   "by ffmpeg)")
       ->check(CLI::Range(1, 9999));
   command->add_flag("--transparent", options->transparent, "no background");
   command->add_flag("--light", options->light, "the light theme's background");
   command->add_flag("--grid", options->grid, "draws the ground grid");
+  add_figure_options(*command, options->figure);
+  for (const char* other : {"--size", "--turntable", "--transparent", "--light", "--grid"})
+    command->get_option("--figure")->excludes(command->get_option(other));
   cmd::add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

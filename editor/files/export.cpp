@@ -2,9 +2,7 @@
 #include "editor/files/export.h"
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstdio>
-#include <mutex>
 #include <numbers>
 
 #include "core/base/error.h"
@@ -22,7 +20,9 @@
 #include "core/volume_io/volume_io.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
+#include "editor/figure/video.h"
 #include "editor/file_browser/temp_folder.h"
+#include "editor/files/picture_task.h"
 #include "editor/files/study_pictures.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
@@ -64,31 +64,24 @@ void check_export(ExportKind kind, const Path& path) {
   else check_place(path);
 }
 
-// Draws the body until the picture is complete, which may take several frames, and returns the picture.
-render::Image picture_of_body(Views& views, const render::Camera& camera, const glm::ivec2& size) {
-  render::View3D picture(views.renderer);
-  for (double now = 0; now == 0 || !picture.complete(); now += 1) picture.draw(views.scene, camera, size, now, 1);
-  return picture.read();
-}
-
 glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
   const Rect* place = editor.layout.place_of(id);
   return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
 }
 
-// Passes pictures from the editor's thread to the task that writes them. The editor's thread draws them, because it
-// owns the GL context.
-struct TurntableBoard {
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::optional<render::Image> picture;
-  bool over = false;
-};
-
 Path numbered(const Path& path, int number) {
   char suffix[16];
   std::snprintf(suffix, sizeof suffix, "-%04d", number);
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+// A video turns once in five seconds.
+constexpr int kPicturesOfVideo = 5 * kPicturesPerSecond;
+
+render::Camera turned_about(const render::Camera& camera, double angle) {
+  render::Camera result = camera;
+  result.world_from_view = glm::normalize(glm::angleAxis(angle, glm::dvec3(0, 0, 1)) * camera.world_from_view);
+  return result;
 }
 
 }  // namespace
@@ -270,84 +263,67 @@ void export_report(Editor& editor, const std::shared_ptr<const Result>& result, 
 void export_picture(Editor& editor, const Path& path) {
   check_place(path);
   Views& views = *editor.views;
-  const glm::ivec2 size = size_of_view(editor, views.active);
-  const bool body = views.active == ViewId::Body || !editor.layout.place_of(views.active);
-  auto image = std::make_shared<render::Image>(body ? picture_of_body(views, views.body.camera, size)
-                                                    : slice_of(views, views.active).picture->read());
-  start_task(editor, "Export " + path.filename().string(), [path, image](Progress&) -> Finish {
-    render::write_png(*image, path);
+  const auto done = [path](Progress&) -> Finish {
     return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+  };
+  const std::string label = "Export " + path.filename().string();
+  if (views.active == ViewId::Body || !editor.layout.place_of(views.active))
+    return start_picture_task(
+        editor, {.label = label,
+                 .scene = views.scene,
+                 .size = size_of_view(editor, views.active),
+                 .camera = [camera = views.body.camera](int) { return camera; },
+                 .take = [path](int, const render::Image& image, Progress&) { render::write_png(image, path); },
+                 .finish = done});
+  auto image = std::make_shared<render::Image>(slice_of(views, views.active).picture->read());
+  start_task(editor, label, [path, image, done](Progress& progress) -> Finish {
+    render::write_png(*image, path);
+    return done(progress);
   });
 }
 
 namespace {
 
-// The state of a running turntable. It draws one picture per frame, so that the editor stays responsive.
-struct Turntable {
-  std::unique_ptr<render::View3D> view;
-  render::Camera camera;
-  glm::ivec2 size;
-  int pictures, drawn = 0;
-  double time = 0;
-
-  render::Camera turned() const {
-    render::Camera result = camera;
-    result.world_from_view = glm::normalize(
-        glm::angleAxis(2 * std::numbers::pi * drawn / pictures, glm::dvec3(0, 0, 1)) * camera.world_from_view);
-    return result;
-  }
-};
-
 void begin_turntable(Editor& editor, const Path& path, int pictures) {
-  auto board = std::make_shared<TurntableBoard>();
-  start_task(editor, "Export turntable", [path, board, pictures](Progress& progress) -> Finish {
-    struct Over {
-      TurntableBoard& board;
-      ~Over() {
-        const std::lock_guard lock(board.mutex);
-        board.over = true;
-      }
-    } over{*board};
-    for (int i = 0; i < pictures; ++i) {
-      render::Image image;
-      for (bool here = false; !here;) {
-        progress.update("pictures", static_cast<double>(i) / pictures);
-        std::unique_lock lock(board->mutex);
-        here = board->changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return board->picture.has_value(); });
-        if (!here) continue;
-        image = std::move(*board->picture);
-        board->picture.reset();
-      }
-      render::write_png(image, numbered(path, i));
-    }
-    return [path, pictures](Editor& e) {
-      e.messages.ok("Exported " + std::to_string(pictures) + " pictures", path.parent_path().string());
+  const render::Camera from = editor.views->body.camera;
+  PictureTask task{
+      .label = "Export turntable",
+      .scene = editor.views->scene,
+      .size = size_of_view(editor, ViewId::Body),
+      .pictures = pictures,
+      .camera = [from, pictures](int i) { return turned_about(from, 2 * std::numbers::pi * i / pictures); },
+      .take = {},
+      .finish = {}};
+  if (is_video(path)) {
+    const auto video = std::make_shared<std::unique_ptr<Video>>();
+    task.take = [video, path, size = task.size, scratch = editor.preferences.scratch_folder](
+                    int i, const render::Image& image, Progress& progress) {
+      if (i == 0) *video = std::make_unique<Video>(path, size, scratch, progress);
+      (*video)->add(image);
     };
-  });
-
-  auto turn = std::make_shared<Turntable>();
-  turn->view = std::make_unique<render::View3D>(editor.views->renderer);
-  turn->camera = editor.views->body.camera;
-  turn->size = size_of_view(editor, ViewId::Body);
-  turn->pictures = pictures;
-  // The scene is a copy, so that edits during the turn do not change the later pictures.
-  editor.each_frame.push_back([board, turn, scene = editor.views->scene](Editor& e) {
-    const std::lock_guard lock(board->mutex);
-    if (board->over || turn->drawn >= turn->pictures) return false;
-    e.touch();
-    if (board->picture) return true;
-    turn->view->draw(scene, turn->turned(), turn->size, turn->time += 1, 1);
-    board->picture = turn->view->read();
-    ++turn->drawn;
-    board->changed.notify_all();
-    return true;
-  });
+    task.finish = [video, path](Progress&) -> Finish {
+      (*video)->finish();
+      return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+    };
+  } else {
+    task.take = [path](int i, const render::Image& image, Progress&) { render::write_png(image, numbered(path, i)); };
+    task.finish = [path, pictures](Progress&) -> Finish {
+      return [path, pictures](Editor& e) {
+        e.messages.ok("Exported " + std::to_string(pictures) + " pictures", path.parent_path().string());
+      };
+    };
+  }
+  start_picture_task(editor, std::move(task));
 }
 
 }  // namespace
 
 void export_turntable(Editor& editor, const Path& path, int pictures) {
   check_place(path);
+  if (is_video(path)) {
+    require_ffmpeg(path);
+    return begin_turntable(editor, path, kPicturesOfVideo);
+  }
   int there = 0;
   for (int i = 0; i < pictures; ++i) there += std::filesystem::exists(numbered(path, i));
   if (there == 0) return begin_turntable(editor, path, pictures);

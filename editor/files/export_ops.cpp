@@ -6,6 +6,7 @@
 #include "editor/context/operator_polls.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/files/export.h"
+#include "editor/files/export_figure.h"
 #include "editor/files/file_filters.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
@@ -49,18 +50,18 @@ Operator export_operator(const ExportFacts& facts) {
 }
 
 Operator picture_operator(const char* id, const char* label, const char* description, const char* suffix,
-                          void (*act)(Editor&, const Path&)) {
+                          std::vector<FileFilter> filters, void (*act)(Editor&, const Path&)) {
   return {id,
           label,
           icon::kCamera,
           "File",
           description,
-          [label, suffix, act](Editor& e) {
+          [label, suffix, filters, act](Editor& e) {
             browse(e, {.purpose = "picture",
                        .title = title_of(label),
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
-                       .filters = {{"PNG pictures", {".png"}}},
+                       .filters = filters,
                        .name = stem_of(e) + suffix + ".png",
                        .folder = e.project_path.parent_path(),
                        .chosen = act});
@@ -177,9 +178,15 @@ std::vector<Operator> export_operators() {
                            export_report);
        },
        needs_result},
-      picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", "", export_picture),
+      picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", "",
+                       {{"PNG pictures", {".png"}}}, export_picture),
+      {"file.export_figure", "Figure...", icon::kCamera, "File",
+       "Export the active view for a page: its size in mm, with a scale bar, a legend and a title, as PNG, TIFF or "
+       "SVG.",
+       [last = std::make_shared<FigureOptions>()](Editor& e) { ask_for_figure(e, last); }, needs_volume},
       picture_operator("view.turntable", "Turntable...",
-                       "Export 36 pictures of the body, with the camera turning once around it.", "-turn",
+                       "Export 36 pictures of the body, with the camera turning once around it, or a video of 5 s.",
+                       "-turn", {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
                        [](Editor& e, const Path& path) { export_turntable(e, path); }),
   };
 }

@@ -88,7 +88,7 @@ std::vector<Menu> menus() {
         "file.import_motion", "file.import_weights", "file.import_tissues", "file.import_pose", "<",
         "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion",
         "file.export_weights", "file.export_tissues", "file.export_gltf", "file.export_image",
-        "view.screenshot", "view.turntable", "<",
+        "view.screenshot", "file.export_figure", "view.turntable", "<",
         "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "edit.adjust_last", "-",

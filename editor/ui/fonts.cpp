@@ -2,25 +2,18 @@
 #include "editor/ui/fonts.h"
 
 #include <cmath>
-#include <filesystem>
 #include <string>
 #include <utility>
 
 #include <imgui.h>
 #include <imgui_freetype.h>
 
-#include "core/base/asset.h"
 #include "core/base/error.h"
+#include "editor/ui/font_files.h"
 
 namespace limber::editor {
 
 namespace {
-
-// The fonts' files, where Debian's packages put them.
-constexpr char kInter[] = "/usr/share/fonts/opentype/inter/Inter-Regular.otf";
-constexpr char kInterSemiBold[] = "/usr/share/fonts/opentype/inter/Inter-SemiBold.otf";
-constexpr char kMono[] = "/usr/share/fonts/truetype/jetbrains-mono/JetBrainsMono-Regular.ttf";
-constexpr char kIcons[] = "/usr/share/fonts/truetype/font-awesome/fontawesome-webfont.ttf";
 
 // Ranges of Unicode characters to rasterize. Each pair of numbers is the first and last character of a range. kText has
 // Latin with all accents, Greek, Cyrillic, punctuation, arrows, superscript and subscript digits, the minus sign.
@@ -28,15 +21,6 @@ constexpr ImWchar kText[] = {0x20,   0x24F,  0x370,  0x3FF,  0x400,  0x4FF,  0x1
                              0x205E, 0x2070, 0x209F, 0x2190, 0x2193, 0x2212, 0x2212, 0};
 constexpr ImWchar kLatin[] = {0x20, 0xFF, 0x2010, 0x2026, 0x2190, 0x2193, 0x2212, 0x2212, 0};
 constexpr ImWchar kIconRange[] = {0xF000, 0xF2E0, 0};
-
-// Returns the file of a font: one that came with the program, else that of Debian's package. Throws Error if there is
-// neither.
-std::string font_file(const std::string& system_file, const char* package) {
-  const std::filesystem::path path = system_file;
-  if (const auto own = find_asset("fonts/" + path.filename().string())) return own->string();
-  if (std::filesystem::exists(path)) return system_file;
-  throw Error("a font is missing", system_file, std::string("install the package ") + package);
-}
 
 class Builder {
  public:
@@ -69,15 +53,15 @@ class Builder {
 }  // namespace
 
 Fonts build_fonts(double scale) {
-  const std::string regular = font_file(kInter, "fonts-inter"), semibold = font_file(kInterSemiBold, "fonts-inter"),
-                    mono = font_file(kMono, "fonts-jetbrains-mono");
+  const std::string regular = font_file(FontFile::Inter), semibold = font_file(FontFile::InterSemiBold),
+                    mono = font_file(FontFile::JetBrainsMono);
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
   atlas.TexDesiredWidth = scale > 1.3 ? 4096 : 2048;  // pixels; OpenGL 3.3 guarantees 1024, current drivers allow 8192
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
 
-  Builder build(scale, font_file(kIcons, "fonts-font-awesome"));
+  Builder build(scale, font_file(FontFile::FontAwesome));
   Fonts fonts;
   fonts.regular = build.text(regular, 16, kText, 14);
   fonts.semibold = build.text(semibold, 16, kText, 14);
@@ -86,7 +70,7 @@ Fonts build_fonts(double scale) {
   fonts.mono = build.text(mono, 16, kLatin, 0);
   fonts.small_mono = build.text(mono, 14, kLatin, 0);
   fonts.icons = build.icons(16, false, 0);
-  if (!atlas.Build()) throw Error("the fonts cannot be prepared", kInter, "install the package fonts-inter again");
+  if (!atlas.Build()) throw Error("the fonts cannot be prepared", regular, "install the package fonts-inter again");
   return fonts;
 }
 

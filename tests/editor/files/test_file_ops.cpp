@@ -179,6 +179,18 @@ std::vector<Proof> proofs_of_files() {
               })},
       {"view.screenshot", "key F12\n type view\n key Return\n wait-job",
        writes("view.png", [](const Path& p, const Document&) { return render::read_png(p).size.x > 300; })},
+      {"file.export_figure",
+       "click \"File/Export/Figure...\"\n double-click Width/value\n type \"60\"\n key Return\n type paper.svg\n"
+       " key Return\n wait-job",
+       writes("paper.svg",
+              [](const Path& p, const Document& d) {
+                const std::string svg = read_file(p);
+                const auto has = [&](const std::string& text) { return svg.find(text) != std::string::npos; };
+                const auto& tissues = d.tissues->tissues;
+                return has("width=\"60mm\" height=\"90mm\"") && has(" mm at the focus</text>") &&
+                       std::any_of(tissues.begin(), tissues.end(),
+                                   [&](const Tissue& tissue) { return has(">" + tissue.name + "</text>"); });
+              })},
       {"view.turntable", "key Ctrl+F12\n type turn\n key Return\n wait-job",
        writes("turn-0035.png",
               [](const Path& p, const Document&) {

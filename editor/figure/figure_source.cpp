@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/figure/figure_source.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/deform/preview_map.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kScreenResolution = 96;  // dots per inch for which line widths are made
+// A tissue is in the legend if it covers more than this share of the picture: less cannot be recognized.
+constexpr double kSmallestShare = 1.0 / 20000;
+
+int least_pixels(const glm::ivec2& size) { return std::max(1, static_cast<int>(kSmallestShare * size.x * size.y)); }
+
+std::vector<LegendEntry> legend_of(const std::vector<Label>& labels, const render::Scene& scene,
+                                   const TissueTable& tissues) {
+  std::vector<LegendEntry> legend;
+  for (const Label label : labels)
+    if (const Tissue* tissue = tissues.find(label))
+      legend.push_back({tissue->name.empty() ? "label " + std::to_string(label) : tissue->name,
+                        label < scene.looks->size() ? (*scene.looks)[label].colour : tissue->colour});
+  return legend;
+}
+
+}  // namespace
+
+render::Scene figure_scene(render::Scene scene, const FigureOptions& options) {
+  scene.transparent_background = true;
+  scene.grid = false;
+  scene.outlined.reset();
+  scene.line_scale = static_cast<float>(std::max(1.0, options.dots_per_inch / kScreenResolution));
+  return scene;
+}
+
+double millimetres_per_pixel(const render::Camera& camera, const glm::ivec2& size) {
+  return 2 * camera.distance * std::tan(camera.field_of_view / 2) / size.y;
+}
+
+FigureSource body_source(render::Renderer& renderer, const render::Scene& scene, const CameraAt& camera,
+                         const std::shared_ptr<const TissueTable>& tissues) {
+  FigureSource source;
+  source.legend = [&renderer, scene, camera, tissues](const glm::ivec2& size) {
+    if (scene.weights || !scene.volume) return std::vector<LegendEntry>{};
+    render::View3D view(renderer);
+    view.draw(scene, camera(size), size, 0, 1);
+    return legend_of(view.shown_labels(least_pixels(size)), scene, *tissues);
+  };
+  source.millimetres_per_pixel = [camera](const glm::ivec2& size) { return millimetres_per_pixel(camera(size), size); };
+  source.at_focus = camera({1, 1}).projection == render::Projection::Perspective;
+  return source;
+}
+
+FigureSource slice_source(const render::Scene& scene, const SliceCameraAt& camera,
+                          const std::shared_ptr<const TissueTable>& tissues) {
+  FigureSource source;
+  source.legend = [scene, camera, tissues](const glm::ivec2& size) {
+    if (scene.weights || !scene.volume) return std::vector<LegendEntry>{};
+    return legend_of(labels_of_slice(scene, camera(size), size, least_pixels(size)), scene, *tissues);
+  };
+  source.millimetres_per_pixel = [camera](const glm::ivec2& size) { return camera(size).millimetres_per_pixel; };
+  return source;
+}
+
+std::vector<Label> labels_of_slice(const render::Scene& scene, const render::SliceCamera& camera,
+                                   const glm::ivec2& size, int pixels) {
+  const render::SliceFrame frame = render::frame_of(camera.axis);
+  const AffineTransform to_voxel = voxel_from_world(scene.volume->grid);
+  std::vector<int> counts(65536);
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      const glm::dvec3 world = camera.centre + camera.millimetres_per_pixel * ((x + 0.5 - size.x / 2.0) * frame.right +
+                                                                               (y + 0.5 - size.y / 2.0) * frame.down);
+      std::optional<glm::dvec3> voxel = to_voxel * world;
+      if (scene.pose) voxel = scene.pose->rest_at(*voxel);
+      if (voxel) ++counts[scene.volume->at_or_air(glm::ivec3(glm::floor(*voxel + 0.5)))];
+    }
+  std::vector<Label> labels;
+  for (std::size_t label = 1; label < counts.size(); ++label)
+    if (counts[label] >= pixels && label < scene.looks->size() && (*scene.looks)[label].visible)
+      labels.push_back(static_cast<Label>(label));
+  return labels;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/files/export_figure.h"
+
+#include <algorithm>
+
+#include "editor/dialogs/form_dialog.h"
+#include "editor/figure/figure_source.h"
+#include "editor/figure/write_figure.h"
+#include "editor/file_browser/file_browser.h"
+#include "editor/files/picture_task.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Paper = FigureOptions::Paper;
+
+bool shows_slice(const Editor& editor) {
+  return editor.views->active != ViewId::Body && editor.layout.place_of(editor.views->active);
+}
+
+glm::dvec2 size_of_active(const Editor& editor) {
+  const Rect* place = editor.layout.place_of(editor.views->active);
+  return place ? glm::dvec2(place->size()) : glm::dvec2(16, 9);
+}
+
+// Returns the view's camera for a picture of another shape, moved back if that is narrower, so that it shows the same.
+CameraAt camera_for(const Editor& editor) {
+  const glm::dvec2 view = size_of_active(editor);
+  return [camera = editor.views->body.camera, view](const glm::ivec2& size) {
+    return zoomed(camera, std::max(1.0, view.x / view.y * size.y / size.x));
+  };
+}
+SliceCameraAt slice_camera_for(Editor& editor) {
+  const glm::dvec2 view = size_of_active(editor);
+  return [camera = slice_of(*editor.views, editor.views->active).camera, view](const glm::ivec2& size) {
+    render::SliceCamera fitted = camera;
+    fitted.millimetres_per_pixel *= std::max(view.x / size.x, view.y / size.y);
+    return fitted;
+  };
+}
+
+FigureOptions options_of(const std::vector<FormField>& fields) {
+  FigureOptions options;
+  options.size = {fields[0].value, fields[1].value};
+  options.dots_per_inch = fields[2].value;
+  options.letter = fields[3].text;
+  options.title = fields[4].text;
+  options.paper = static_cast<Paper>(fields[5].chosen);
+  options.legend = fields[6].chosen == 0;
+  options.scale_bar = fields[7].chosen == 0;
+  return options;
+}
+
+void finish_export(Editor& editor, const Path& path) {
+  editor.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+}
+
+}  // namespace
+
+void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) {
+  const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
+    const glm::ivec2 pixels = figure_pixels(options_of(fields));
+    const bool perspective =
+        !shows_slice(e) && e.views->body.camera.projection == render::Projection::Perspective && fields[7].chosen == 0;
+    return std::to_string(pixels.x) + " x " + std::to_string(pixels.y) + " pixels." +
+           (perspective ? " The scale holds at the focus; without perspective it holds everywhere." : "");
+  };
+  const auto act = [last](Editor& e, const std::vector<FormField>& fields) {
+    const FigureOptions options = *last = options_of(fields);
+    browse(e,
+           {.purpose = "picture",
+            .title = "Export Figure",
+            .action = "Export",
+            .kind = FileRequest::Kind::Save,
+            .filters = {{"PNG pictures", {".png"}}, {"TIFF pictures", {".tif", ".tiff"}}, {"SVG drawings", {".svg"}}},
+            .name = (e.name.empty() ? "Untitled" : Path(e.name).stem().string()) + "-figure.png",
+            .folder = e.project_path.parent_path(),
+            .chosen = [options](Editor& ed, const Path& path) { export_figure(ed, options, path); }});
+  };
+  editor.open_dialog(make_form(
+      {"Export Figure",
+       "A picture of the active view for a page, with a scale bar and a legend of its tissues.",
+       "Export...",
+       {number_of("Width", "Width of the figure on the page.", last->size.x, kSmallestFigure, kLargestFigure, "%.1f",
+                  "mm"),
+        number_of("Height", "Height of the figure on the page.", last->size.y, kSmallestFigure, kLargestFigure, "%.1f",
+                  "mm"),
+        number_of("Resolution", "Pixels per inch on the page. Journals ask for 300 to 600.", last->dots_per_inch,
+                  kLowestResolution, kHighestResolution, "%.0f", "dpi"),
+        text_of("Letter", "Letter of this figure among others, as in a. May be empty.", last->letter),
+        text_of("Title", "Title above the picture. May be empty.", last->title),
+        choice_of("Background", "Colour behind everything.", {"White", "Black", "None"}, static_cast<int>(last->paper)),
+        choice_of("Legend", "Names and colours of the tissues that the picture shows.", {"Show", "Leave out"},
+                  last->legend ? 0 : 1),
+        choice_of("Scale bar", "A bar of a round length in the body.", {"Show", "Leave out"}, last->scale_bar ? 0 : 1)},
+       outcome,
+       act,
+       {}}));
+}
+
+void export_figure(Editor& editor, const FigureOptions& options, const Path& path) {
+  check_place(path);
+  check_figure_path(path);
+  Views& views = *editor.views;
+  const auto lettering = std::make_shared<const Lettering>();
+  const render::Scene scene = figure_scene(views.scene, options);
+  const auto& tissues = editor.document().tissues;
+  const std::string label = "Export " + path.filename().string();
+  const auto done = [path](Progress&) -> Finish { return [path](Editor& e) { finish_export(e, path); }; };
+  if (!shows_slice(editor)) {
+    const CameraAt camera = camera_for(editor);
+    const FigureLayout layout = figure_layout(options, body_source(views.renderer, scene, camera, tissues), *lettering);
+    return start_picture_task(
+        editor, {.label = label,
+                 .scene = scene,
+                 .size = layout.picture_pixels,
+                 .camera = [at = camera(layout.picture_pixels)](int) { return at; },
+                 .take = [layout, lettering, path](int, const render::Image& image,
+                                                   Progress&) { write_figure(layout, image, *lettering, path); },
+                 .finish = done});
+  }
+  const SliceCameraAt camera = slice_camera_for(editor);
+  const FigureLayout layout = figure_layout(options, slice_source(scene, camera, tissues), *lettering);
+  render::SliceView view(views.renderer);
+  do view.draw(scene, camera(layout.picture_pixels), views.slice_display, layout.picture_pixels);
+  while (!view.complete());
+  start_task(editor, label, [layout, lettering, path, done, image = view.read()](Progress& progress) -> Finish {
+    write_figure(layout, image, *lettering, path);
+    return done(progress);
+  });
+}
+
+}  // namespace limber::editor
