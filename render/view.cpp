@@ -364,7 +364,7 @@ struct View3D::Impl {
     for (size_t layer = source.layers.size(); layer-- > 0;)
       resources.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer],
                            source.looks->texture(), rays, part, static_cast<int>(layer), is_ghost(layer), colours(),
-                           lit_by_rays ? &light[layer] : nullptr);
+                           lit_by_rays ? &light[layer] : nullptr, scene.line_scale);
   }
 
   // Draws the whole body at once, with one ray for each `scale`-th pixel along each axis.
@@ -391,7 +391,8 @@ struct View3D::Impl {
     const double begin = seconds();
     const bool with_light = sample >= pictures();
     const int picture = with_light ? sample - pictures() : sample;
-    const ViewRays rays = rays_of(source, key.size, picture);
+    ViewRays rays = rays_of(source, key.size, picture);
+    rays.smooth_cuts = with_light;
     const PixelRect part = covered_by(source, rays, key.size);
     if (next_tile == 0) start_picture(source, rays, part, with_light);
     const int edge = source.image ? kImageTile : with_light ? kLightTile : kTile;

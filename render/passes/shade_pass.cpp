@@ -2,6 +2,7 @@
 #include "render/passes/shade_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <epoxy/gl.h>
 
@@ -25,7 +26,7 @@ ShadePass::ShadePass()
 
 void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
                      const GBuffer& buffer, const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect,
-                     int layer, bool ghost, Colours colours, const LightBuffer* light) {
+                     int layer, bool ghost, Colours colours, const LightBuffer* light, float line_scale) {
   if (field.hull().empty()) return;
   const bool weights = colours != Colours::Tissues && !ghost, lit = light && !ghost;
   std::unique_ptr<gl::Program>& lit_program = weights ? lit_weights_ : lit_;
@@ -58,6 +59,7 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   if (lit) {
     program.set_texture("u_light", unit++, GL_TEXTURE_2D, light->light.name());
     const glm::dmat3 to_world = glm::inverse(glm::dmat3(rays.padded_from_world));
+    program.set("u_cut_line", std::max(1, static_cast<int>(std::lround(line_scale))));
     const double step = 2.0 / buffer.size().x;
     program.set("u_pixel",
                 glm::vec2(step * glm::length(to_world * rays.base_x), step * glm::length(to_world * rays.toward_x)));

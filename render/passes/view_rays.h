@@ -31,6 +31,7 @@ struct ViewRays {
   // True: gradients are sampled at the corners of the mirrored tetrahedron. Every other one of the averaged pictures
   // does this.
   bool mirrored_taps = false;
+  bool smooth_cuts = false;  // true: borders between labels on cut faces are smooth
 };
 
 // Computes the rays of a picture of `size` pixels.

@@ -189,6 +189,7 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   march_.set_texture("u_range", unit++, GL_TEXTURE_2D, buffer.range.name());
   march_.set("u_nearest", eye_inside(hull, rays) ? static_cast<float>(rays.nearest) : -kNothingDepth);
   march_.set("u_label_shift", rays.label_shift);
+  march_.set("u_smooth_cuts", rays.smooth_cuts ? 1 : 0);
   march_.set("u_places", 1.0f / place_step(volume));
   march_.set("u_tap", rays.mirrored_taps ? -kTap : kTap);
   march_.set_texture("u_looks", unit++, GL_TEXTURE_2D, looks.name());

@@ -24,6 +24,79 @@ const float kNodeTap = 0.5 / 1.4;
 uniform float u_tap;  // distance of gradient samples along each axis, voxels; negative: mirrored tetrahedron
 uniform vec3 u_label_shift;
 uniform float u_places;            // steps of out_place per padded voxel
+uniform bool u_smooth_cuts;        // true: borders between labels on cut faces are smooth
+
+bool in_layer(uint label) { return (texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) > u_layer; }
+
+// Returns how many voxels of a label lie in a row through a voxel that has it, counted no farther than two away. Voxels
+// farther than two from `middle`, which the slot may not have, count as if they had it.
+int row_length(uint atlas, ivec3 middle, ivec3 voxel, ivec3 axis, uint label) {
+  int count = 1;
+  for (int side = -1; side <= 1; side += 2)
+    for (int i = 1; i <= 2; ++i) {
+      ivec3 at = voxel + axis * i * side;
+      if (all(lessThanEqual(abs(at - middle), ivec3(2))) && label_at(atlas, at) != label) break;
+      ++count;
+    }
+  return count;
+}
+
+// Returns true if a sheet of one voxel, or a thread of at most two by two, runs through the voxel.
+bool is_thin(uint atlas, ivec3 middle, ivec3 voxel, uint label) {
+  ivec3 rows = ivec3(row_length(atlas, middle, voxel, ivec3(1, 0, 0), label),
+                     row_length(atlas, middle, voxel, ivec3(0, 1, 0), label),
+                     row_length(atlas, middle, voxel, ivec3(0, 0, 1), label));
+  ivec3 narrow = ivec3(lessThanEqual(rows, ivec3(2)));
+  return any(equal(rows, ivec3(1))) || narrow.x + narrow.y + narrow.z >= 2;
+}
+
+// Returns the weight of a voxel's vote by its distance along one axis, which falls smoothly to 0: at 2.5 voxels, or at
+// 1.5 (the quadratic B-spline).
+float vote(float apart, bool narrow) {
+  float far = max(0.0, 1.5 - apart), near = max(0.0, 1.0 - apart * apart / 6.25);
+  return !narrow ? near * near : apart < 0.5 ? 0.75 - apart * apart : 0.5 * far * far;
+}
+
+// Returns the label of a position on a cut face. The voxels around it vote, so that a border between two labels is
+// smooth. Beside thin sheets and threads, which would lose such a vote, fewer voxels vote. A voxel whose label would
+// lose even at its middle keeps it, so that nothing vanishes.
+uint voted_label(uint atlas, vec3 p) {
+  ivec3 middle = ivec3(p);
+  vec3 f = p - vec3(middle) - 0.5;
+  ivec3 side = ivec3(greaterThan(f, vec3(0.0))) * 2 - 1;
+  uint own = label_at(atlas, middle), labels[8];
+  int count = 0;  // of the labels of the eight nearest voxels, each counted once
+  for (int i = 0; i < 8; ++i) {
+    uint label = label_at(atlas, middle + ivec3(i & 1, i >> 1 & 1, i >> 2) * side);
+    bool known = label == 0u || !in_layer(label);
+    for (int k = 0; k < count; ++k) known = known || labels[k] == label;
+    if (!known) labels[count++] = label;
+  }
+  if (count == 0) return own;
+  if (count == 1) return labels[0];
+  bool narrow = false;
+  for (int i = 0; i < 8 && !narrow; ++i) {
+    ivec3 voxel = middle + ivec3(i & 1, i >> 1 & 1, i >> 2) * side;
+    uint label = label_at(atlas, voxel);
+    narrow = label != 0u && is_thin(atlas, middle, voxel, label);
+  }
+  float votes[8] = float[8](0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), at_middle = 0.0;
+  int reach = narrow ? 1 : 2;
+  for (int z = -reach; z <= reach; ++z)
+    for (int y = -reach; y <= reach; ++y)
+      for (int x = -reach; x <= reach; ++x) {
+        uint label = label_at(atlas, middle + ivec3(x, y, z));
+        vec3 apart = abs(vec3(x, y, z) - f);
+        float share = vote(apart.x, narrow) * vote(apart.y, narrow) * vote(apart.z, narrow);
+        for (int k = 0; k < count; ++k) votes[k] += labels[k] == label ? share : 0.0;
+        if (label == own) at_middle += (x == 0 ? 0.75 : 0.125) * (y == 0 ? 0.75 : 0.125) * (z == 0 ? 0.75 : 0.125);
+      }
+  if (narrow && own != 0u && in_layer(own) && at_middle < 0.5) return own;
+  int best = 0;
+  for (int k = 1; k < count; ++k)
+    if (votes[k] > votes[best]) best = k;
+  return labels[best];
+}
 
 void main() {
   vec3 base = u_base + ndc.x * u_base_x + ndc.y * u_base_y;
@@ -115,7 +188,7 @@ void main() {
   // one voxel thick has no gaps.
   vec3 step = (cap ? d : inward) * 0.5;
   vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
-  uint label = label_at(slot.atlas, ivec3(inside));
+  uint label = cap && u_smooth_cuts ? voted_label(slot.atlas, at + step * 0.02) : label_at(slot.atlas, ivec3(inside));
   int steps = 0;
   while (label == 0u && steps < 8) {
     ivec3 from = ivec3(inside);
@@ -131,7 +204,7 @@ void main() {
       if (first != 0u) label = first;
     }
   }
-  while ((texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) <= u_layer) {
+  while (!in_layer(label)) {
     inside += step;
     if (++steps > 8) { label = 0u; break; }
     label = label_at(slot.atlas, ivec3(inside));

@@ -11,6 +11,7 @@ uniform usampler2D u_label, u_looks;
 #ifdef LIT
 uniform sampler2D u_light;  // shares of the key light and of the sky, of the rays of light.frag
 uniform vec2 u_pixel;       // a pixel is x + y * depth wide, mm
+uniform int u_cut_line;     // width of the outlines of tissues on cut faces, pixels
 #else
 uniform sampler3D u_occupancy;
 uniform vec3 u_occupancy_texel;
@@ -62,6 +63,17 @@ vec2 light_at(ivec2 at, vec4 stored, vec3 normal) {
     }
   return count > 0.0 ? sum / count : texelFetch(u_light, at, 0).rg;
 }
+
+// Returns true if an outline of a tissue runs through this pixel of a cut face.
+bool outlined(ivec2 at, uint label) {
+  ivec2 last = textureSize(u_depth, 0) - 1;
+  for (int i = 0; i < 2; ++i) {
+    ivec2 beside = min(at + ivec2(1 - i, i) * u_cut_line, last);
+    if (texelFetch(u_normal, beside, 0).a > 0.7 && texelFetch(u_label, beside, 0).r != label) return true;
+  }
+  return false;
+}
+const float kCutLine = 0.45;  // brightness of these outlines
 
 // The light of an open surface comes from the key light and from the sky in these shares. They give a picture of a body
 // the mean brightness that it has while it moves.
@@ -156,6 +168,9 @@ void main() {
   vec2 light = light_at(at, normal, n);
 #else
   float light = normal.a > 0.5 ? kFold : openness(texelFetch(u_depth, at, 0).r, n);
+#endif
+#if defined(LIT) && !defined(WEIGHTS)
+  if (cap && outlined(at, label)) srgb *= kCutLine;
 #endif
   vec3 rgb = cap ? srgb : sqrt(clamp(lit(srgb * srgb, n, light), 0.0, 1.0));
 #endif

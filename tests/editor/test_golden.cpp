@@ -180,6 +180,12 @@ TEST_CASE("golden: arm, solid") {
   check_golden("arm_solid", scene.picture());
 }
 
+TEST_CASE("golden: arm, soft shadows at rest") {
+  Arm scene;
+  scene.editor().views->renderer.light_at_rest(render::Light::Fine);
+  check_golden("arm_soft_shadows", scene.picture());
+}
+
 TEST_CASE("golden: arm, X-ray with bones, one chosen") {
   Arm scene;
   scene.play("move \"3D view/view\"\n key Alt+Z");

@@ -129,3 +129,81 @@ TEST_CASE("fine light: what is solid has it in every display, and the ghost of X
     CHECK((fine.rgba != draft.rgba) == (display != Display::XRay));
   }
 }
+
+namespace {
+
+// The picture of a body cut by the plane y = 20.5, seen from the front, eight pixels a voxel.
+Image cut_open(Studio& studio, const std::function<Label(const glm::dvec3&)>& at) {
+  Scene scene = scene_of(painted(grid_of({40, 40, 40}), at));
+  scene.clip.plane = {glm::dvec3(20, 20.5, 20), glm::dvec3(0, -1, 0)};
+  Camera camera = looking_from(StandardView::Front, {});
+  camera.projection = Projection::Orthographic;
+  camera.centre = glm::dvec3(19.5);
+  camera.distance = 20 / std::tan(camera.field_of_view / 2);
+  View3D view(studio.renderer);
+  double now = 0;
+  return rested(view, scene, camera, {320, 320}, now);
+}
+
+bool is_red(const glm::ivec4& pixel) { return pixel.r > pixel.g; }
+
+}  // namespace
+
+TEST_CASE("fine light: on a cut face a slanted border between tissues is straight, with a line on it, not stairs") {
+  Studio studio;
+  // The border runs along z = 19.5 + 0.3 (x - 19.5); in the picture, y goes down and x, at this side, to the right.
+  const auto body = [](const glm::dvec3& p) -> Label {
+    if (glm::any(glm::lessThan(p, glm::dvec3(3))) || glm::any(glm::greaterThan(p, glm::dvec3(36)))) return 0;
+    return p.z < 19.5 + 0.3 * (p.x - 19.5) ? 1 : 2;
+  };
+  // How far the border is from a straight line, pixels: the range of its distances from the true one.
+  const auto roughness = [](const Image& image) {
+    double lowest = 1e9, highest = -1e9;
+    for (int x = 80; x < 240; ++x) {
+      int y = 40;
+      while (y < 280 && !is_red(pixel_of(image, {x, y}))) ++y;
+      const double off = y - (160 - 0.3 * (x - 160));
+      lowest = std::min(lowest, off);
+      highest = std::max(highest, off);
+    }
+    return highest - lowest;
+  };
+  const Image stairs = cut_open(studio, body);
+  studio.renderer.light_at_rest(Light::Fine);
+  const Image smooth = cut_open(studio, body);
+  INFO("the border's roughness is ", roughness(smooth), " pixels, in the draft ", roughness(stairs));
+  CHECK(roughness(smooth) < 3.5);
+  CHECK(roughness(smooth) < 0.6 * roughness(stairs));
+  // Away from the border, a cut face has the tissue's own colour, as a legend has it.
+  CHECK(pixel_of(smooth, {160, 250}) == glm::ivec4(230, 26, 26, 255));
+  CHECK(pixel_of(smooth, {160, 70}) == glm::ivec4(26, 230, 26, 255));
+  int darkest = 255;
+  for (int y = 150; y < 170; ++y) {
+    const glm::ivec4 pixel = pixel_of(smooth, {160, y});
+    darkest = std::min(darkest, std::max(pixel.r, pixel.g));
+  }
+  CHECK(darkest < 150);
+}
+
+TEST_CASE("fine light: sheets and threads of one voxel do not vanish from a cut face") {
+  Studio studio;
+  studio.renderer.light_at_rest(Light::Fine);
+  const Image image = cut_open(studio, [](const glm::dvec3& p) -> Label {
+    if (glm::any(glm::lessThan(p, glm::dvec3(3))) || glm::any(glm::greaterThan(p, glm::dvec3(36)))) return 0;
+    const bool sheet = std::round(p.x) == 12, thread = std::round(p.x) == 28 && std::round(p.z) == 20;
+    const bool slanted = std::round(p.z) == std::round(8 + 0.4 * p.x) && p.z < 19 && p.x > 14;
+    return sheet || thread || slanted ? 2 : 1;
+  });
+  const auto has_green = [&](const glm::ivec2& at) {
+    for (int y = -6; y <= 6; ++y)
+      for (int x = -6; x <= 6; ++x)
+        if (!is_red(pixel_of(image, at + glm::ivec2(x, y)))) return true;
+    return false;
+  };
+  // Voxel v has its middle at pixel 8 v + 4.
+  for (int z = 6; z < 34; ++z) CHECK(has_green({8 * 12 + 4, 319 - (8 * z + 4)}));
+  CHECK(has_green({8 * 28 + 4, 319 - (8 * 20 + 4)}));
+  for (int x = 16; x < 26; ++x)
+    CHECK(has_green({8 * x + 4, 319 - (8 * static_cast<int>(std::round(8 + 0.4 * x)) + 4)}));
+  CHECK_FALSE(has_green({8 * 20 + 4, 319 - (8 * 30 + 4)}));
+}
