@@ -302,11 +302,12 @@ CameraAt camera_of(const PosedScene& posed, const Options& options) {
 void draw_figure(Renderer& renderer, const PosedScene& posed, const Options& options, const FigureOptions& wanted,
                  const std::shared_ptr<const TissueTable>& tissues) {
   const Lettering lettering;
-  const Scene scene = figure_scene(posed.scene, wanted);
+  Scene scene = figure_scene(posed.scene);
   if (options.slice.empty()) {
     const CameraAt camera = camera_of(posed, options);
     const FigureLayout layout = figure_layout(wanted, body_source(renderer, scene, camera, tissues), lettering);
     const glm::ivec2& size = layout.picture_pixels;
+    scene.line_scale = figure_line_scale(layout);
     return write_figure(layout, picture_3d(renderer, scene, camera(size), size), lettering, options.output);
   }
   const SliceCameraAt camera = slice_camera_of(posed, options);

@@ -164,8 +164,9 @@ glm::ivec2 figure_pixels(const FigureOptions& options) {
   if (!(options.dots_per_inch >= kLowestResolution) || !(options.dots_per_inch <= kHighestResolution))
     throw Error("this is no resolution of a figure", text, "use 30 to 2400 dpi");
   const glm::ivec2 pixels(glm::round(options.size * options.dots_per_inch / 25.4));
-  if (std::max(pixels.x, pixels.y) > kMostFigurePixels)
-    throw Error("the figure has too many pixels", text, "use at most 8192 pixels a side: fewer dpi or mm");
+  if (std::max(pixels.x, pixels.y) > kMostFigurePixels || double(pixels.x) * pixels.y > kLargestFigureArea)
+    throw Error("the figure has too many pixels", text,
+                "use at most 8192 pixels a side and 32 million in all: fewer dpi or mm");
   return pixels;
 }
 

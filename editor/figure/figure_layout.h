@@ -24,6 +24,8 @@ struct FigureOptions {
 inline constexpr double kSmallestFigure = 20, kLargestFigure = 1000;  // mm
 inline constexpr double kLowestResolution = 30, kHighestResolution = 2400;
 inline constexpr int kMostFigurePixels = 8192;  // largest side of a figure
+inline constexpr double kLargestFigureArea =
+    32e6;  // pixels; a 3D picture of this size takes gigabytes while it is drawn
 
 // Returns the figure's size in pixels. Throws Error when it is too large or too small.
 glm::ivec2 figure_pixels(const FigureOptions& options);

@@ -10,7 +10,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kScreenResolution = 96;  // dots per inch for which line widths are made
+// Line widths are made for pictures of this height and resolution. Lines of one dot at kFinestLines dots per inch (a
+// quarter of a point) are the finest that print well.
+constexpr double kScreenHeight = 700, kScreenResolution = 96, kFinestLines = 288;
 // A tissue is in the legend if it covers more than this share of the picture: less cannot be recognized.
 constexpr double kSmallestShare = 1.0 / 20000;
 
@@ -28,12 +30,17 @@ std::vector<LegendEntry> legend_of(const std::vector<Label>& labels, const rende
 
 }  // namespace
 
-render::Scene figure_scene(render::Scene scene, const FigureOptions& options) {
+render::Scene figure_scene(render::Scene scene) {
   scene.transparent_background = true;
   scene.grid = false;
   scene.outlined.reset();
-  scene.line_scale = static_cast<float>(std::max(1.0, options.dots_per_inch / kScreenResolution));
   return scene;
+}
+
+float figure_line_scale(const FigureLayout& layout) {
+  const double dots = layout.options.dots_per_inch;
+  return static_cast<float>(
+      std::clamp(layout.picture_pixels.y / kScreenHeight, dots / kFinestLines, dots / kScreenResolution));
 }
 
 double millimetres_per_pixel(const render::Camera& camera, const glm::ivec2& size) {

@@ -8,9 +8,11 @@
 
 namespace limber::editor {
 
-// Returns the scene as figures show it: without a background, a grid and marks of what is selected, with lines as wide
-// on the page as on a screen.
-render::Scene figure_scene(render::Scene scene, const FigureOptions& options);
+// Returns the scene as figures show it: without a background, a grid and marks of what is selected.
+render::Scene figure_scene(render::Scene scene);
+// Returns the factor on the widths of lines and joints (Scene::line_scale) for the picture of a figure. They are as
+// wide relative to the picture as on a screen, but on the page neither invisibly thin nor wider than on a screen.
+float figure_line_scale(const FigureLayout& layout);
 
 using CameraAt = std::function<render::Camera(const glm::ivec2& size)>;
 using SliceCameraAt = std::function<render::SliceCamera(const glm::ivec2& size)>;

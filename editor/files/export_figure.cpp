@@ -104,7 +104,7 @@ void export_figure(Editor& editor, const FigureOptions& options, const Path& pat
   check_figure_path(path);
   Views& views = *editor.views;
   const auto lettering = std::make_shared<const Lettering>();
-  const render::Scene scene = figure_scene(views.scene, options);
+  render::Scene scene = figure_scene(views.scene);
   const auto& tissues = editor.document().tissues;
   const std::string label = "Export " + path.filename().string();
   const auto done = [path](Progress&) -> Finish { return [path](Editor& e) { finish_export(e, path); }; };

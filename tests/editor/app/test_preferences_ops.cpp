@@ -119,6 +119,7 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
       click "Reduce motion"
       click dialog/View
       click "Scale bar"
+      click "Soft shadows at rest"
       click "dialog/Undo and saving"
       double-click "Memory for undo"
       type "64"
@@ -143,6 +144,7 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
   CHECK(kept.theme == "light");
   CHECK(kept.reduce_motion);
   CHECK_FALSE(kept.scale_bar);
+  CHECK_FALSE(kept.fine_light);
   CHECK(kept.undo_limit_mb == 64);
   CHECK(kept.keys.at({"select", "select.none"}) == std::vector<std::string>{"A"});
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/files/export_figure.h"
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "editor/figure/figure_source.h"
+#include "render/image_io.h"
+#include "tests/editor/small_editor.h"
+#include "tests/support/program.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+namespace {
+
+std::string exported(SmallEditor& test, const FigureOptions& options, const Path& path) {
+  export_figure(*test.editor, options, path);
+  test.play("wait-job\n wait-idle");
+  return read_file(path);
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("export figure: it shows the active view, and says where its scale holds") {
+  SmallEditor test;
+  const TemporaryFolder folder;
+  Views& views = *test.editor->views;
+  const FigureOptions options{.size = {60, 50}, .dots_per_inch = 100, .letter = "c", .title = "A ball"};
+  const std::string perspective = exported(test, options, folder / "perspective.svg");
+  CHECK(has(perspective, "at the focus"));
+  CHECK(has(perspective, ">A ball</text>"));
+  CHECK(has(perspective, ">c</text>"));
+  views.body.camera.projection = render::Projection::Orthographic;
+  CHECK_FALSE(has(exported(test, options, folder / "parallel.svg"), "at the focus"));
+  test.play("key Ctrl+Alt+Q\n wait-idle");
+  views.active = ViewId::Axial;
+  const std::string slice = exported(test, options, folder / "slice.svg");
+  CHECK(has(slice, " mm</text>"));
+  CHECK_FALSE(has(slice, "at the focus"));
+  CHECK(slice != perspective);
+}
+
+TEST_CASE("export figure: PNG and TIFF are written with the editor staying responsive, other names are refused") {
+  SmallEditor test;
+  const TemporaryFolder folder;
+  const FigureOptions options{.size = {40, 30}, .dots_per_inch = 127};
+  exported(test, options, folder / "figure.png");
+  CHECK(render::read_png(folder / "figure.png").size == glm::ivec2(200, 150));
+  CHECK(exported(test, options, folder / "figure.tif").starts_with("II*"));
+  CHECK_THROWS_AS(export_figure(*test.editor, options, folder / "figure.bmp"), Error);
+  CHECK_THROWS_AS(export_figure(*test.editor, options, folder / "nowhere" / "figure.png"), Error);
+}
+
+TEST_CASE("export figure: lines are as wide on the page as on a screen, whatever the resolution") {
+  FigureLayout layout;
+  const auto points = [&](double dots, int height) {
+    layout.options.dots_per_inch = dots;
+    layout.picture_pixels = {height, height};
+    return figure_line_scale(layout) / dots * 72;
+  };
+  for (const double dots : {100.0, 300.0, 1200.0})
+    for (const int height : {100, 700, 3000, 8000}) {
+      CHECK(points(dots, height) >= 0.2499);
+      CHECK(points(dots, height) <= 0.7501);
+    }
+  CHECK(points(300, 1400) == doctest::Approx(points(600, 2800)));
+}
