@@ -21,6 +21,7 @@
 #include "core/binding/heat_diffusion.h"
 #include "core/phantom/phantom.h"
 #include "editor/context/background_task.h"
+#include "editor/files/export_figure.h"
 #include "editor/files/project_session.h"
 #include "editor/motion/graph.h"
 #include "editor/volume/shown_image.h"
@@ -184,6 +185,25 @@ TEST_CASE("golden: arm, soft shadows at rest") {
   Arm scene;
   scene.editor().views->renderer.light_at_rest(render::Light::Fine);
   check_golden("arm_soft_shadows", scene.picture());
+}
+
+TEST_CASE("golden: a figure of the arm cut lengthwise, with soft shadows, outlines on the cut, scale bar and legend") {
+  Arm scene;
+  scene.editor().views->renderer.light_at_rest(render::Light::Fine);
+  scene.editor().views->bones = false;
+  scene.play("move \"3D view/view\"\n key Num3");
+  Document cut = scene.editor().document();
+  Visibility visibility = *cut.visibility;
+  visibility.clip_plane = {true, cut.armature->bones[1].head, glm::dvec3(1, 0, 0)};
+  cut.visibility = std::make_shared<const Visibility>(visibility);
+  scene.editor().history.commit("Cut", cut);
+  scene.play("wait-idle");
+  render::Camera& camera = scene.editor().views->body.camera;
+  camera = zoomed(camera, 0.7);
+  FigureOptions options{.size = {100, 120}, .dots_per_inch = 200, .letter = "a", .title = "The arm at rest"};
+  export_figure(scene.editor(), options, scene.home / "figure.png");
+  scene.play("wait-job");
+  check_golden("figure_arm", render::read_png(scene.home / "figure.png"));
 }
 
 TEST_CASE("golden: arm, X-ray with bones, one chosen") {
