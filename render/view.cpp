@@ -435,7 +435,8 @@ struct View3D::Impl {
       next_image.clear();
     }
     if (!with_light) return;
-    for (size_t layer = 0; layer < source.layers.size(); ++layer) light[layer].resize(jittered[layer]);
+    for (size_t layer = 0; layer < source.layers.size(); ++layer)
+      light[layer].resize(jittered[layer], source.pose ? 2 : 1);
     clear_body(jittered);
   }
 

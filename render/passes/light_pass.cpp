@@ -7,19 +7,18 @@
 
 namespace limber::render {
 
-void LightBuffer::resize(const GBuffer& buffer) {
+void LightBuffer::resize(const GBuffer& buffer, int every_nth) {
   if (!target) target = gl::Framebuffer::create(), light = gl::Texture::create();
+  every = every_nth;
+  const glm::ivec2 size = (buffer.size() + every - 1) / every;
+  if (size_ == size) return;
+  size_ = size;
   glBindFramebuffer(GL_FRAMEBUFFER, target.name());
-  if (size_ != buffer.size()) {
-    size_ = buffer.size();
-    glBindTexture(GL_TEXTURE_2D, light.name());
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RG8, size_.x, size_.y, 0, GL_RG, GL_UNSIGNED_BYTE, nullptr);
-    for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-      glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, light.name(), 0);
-  }
-  // Buffers of pictures are swapped, so the depth may be another one than last time.
-  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, buffer.hull_depth.name(), 0);
+  glBindTexture(GL_TEXTURE_2D, light.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG8, size.x, size.y, 0, GL_RG, GL_UNSIGNED_BYTE, nullptr);
+  for (const GLenum filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
+    glTexParameteri(GL_TEXTURE_2D, filter, GL_NEAREST);
+  glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, light.name(), 0);
   gl::check_gl("the buffer of a picture's light");
 }
 
@@ -27,7 +26,7 @@ LightPass::LightPass() : nothing_(gl::VertexArray::create()) {}
 
 void LightPass::draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
                      const PosedHull* posed_hull, const Clip& clip, const ViewRays& rays, const GBuffer& buffer,
-                     const LightBuffer& into, int picture, const PixelRect& rect) {
+                     LightBuffer& into, int picture, const PixelRect& rect) {
   const Hull& hull = posed_hull ? posed_hull->hull() : field.hull();
   if (hull.empty() || rect.empty()) return;
   auto& program = programs_[{volume.layout().atlases, posed != nullptr}];
@@ -36,15 +35,14 @@ void LightPass::draw(const VolumeTexture& volume, const VisibleField& field, con
         gl::kWholePicture, "light.frag",
         march_defines(volume.layout().atlases, posed ? VolumePass::Space::Posed : VolumePass::Space::Rest));
   glBindFramebuffer(GL_FRAMEBUFFER, into.target.name());
-  glViewport(0, 0, buffer.size().x, buffer.size().y);
+  const glm::ivec2 size = (buffer.size() + into.every - 1) / into.every, low = rect.low / into.every,
+                   high = (rect.high + into.every - 1) / into.every;
+  into.offset = glm::ivec2(picture % 2, (picture + picture / 2) % 2) % into.every;
+  glViewport(0, 0, size.x, size.y);
   glEnable(GL_SCISSOR_TEST);
-  glScissor(rect.low.x, rect.low.y, rect.high.x - rect.low.x, rect.high.y - rect.low.y);
+  glScissor(low.x, low.y, high.x - low.x, high.y - low.y);
   glDisable(GL_BLEND);
-  // Covers the picture with a triangle at the far plane. Only pixels with the hull in front of the far plane pass the
-  // depth test, so that all others are skipped.
-  glEnable(GL_DEPTH_TEST);
-  glDepthFunc(GL_GREATER);
-  glDepthMask(GL_FALSE);
+  glDisable(GL_DEPTH_TEST);
   program->use();
   int unit = field.bind(volume, *program, 0);
   if (posed) {
@@ -55,6 +53,8 @@ void LightPass::draw(const VolumeTexture& volume, const VisibleField& field, con
   program->set_texture("u_depth", unit++, GL_TEXTURE_2D, buffer.depth.name());
   program->set_texture("u_normal", unit++, GL_TEXTURE_2D, buffer.normal.name());
   program->set("u_picture", picture);
+  program->set("u_every", into.every);
+  program->set("u_offset", into.offset);
   set_rays(*program, rays);
   program->set("u_padded_from_view", padded_from_view(rays));
   set_clip(*program, hull, volume, clip, rays);

@@ -4,6 +4,9 @@
 // that is seen there (ambient occlusion, the form factor of the sky). A ray is followed through the field of the body,
 // posed bodies included, without a limit of its length. Every picture that is averaged has other rays than those
 // before, all from fixed sequences: the same scene gives the same light, byte for byte.
+//
+// Rays through the map of a posed body take several times as long, so that there only every other pixel along each axis
+// is followed.
 #pragma once
 
 #include <map>
@@ -14,14 +17,15 @@
 
 namespace limber::render {
 
-// The light at each pixel of a picture.
+// The light at the pixels of a picture, or at every n-th pixel along each axis, other ones in each picture.
 class LightBuffer {
  public:
-  // Attaches the depth of the picture's hull, so that pixels outside of it cost nothing.
-  void resize(const GBuffer& buffer);
+  void resize(const GBuffer& buffer, int every);
 
   gl::Texture light;  // RG8: shares [0, 1] of the key light and of the sky
   gl::Framebuffer target;
+  int every = 1;
+  glm::ivec2 offset{0};  // the first pixel that has light; set by LightPass::draw()
 
  private:
   glm::ivec2 size_{0};
@@ -35,7 +39,7 @@ class LightPass {
   //   picture  number of pictures before this one, whose rays were others
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
             const PosedHull* posed_hull, const Clip& clip, const ViewRays& rays, const GBuffer& buffer,
-            const LightBuffer& into, int picture, const PixelRect& rect);
+            LightBuffer& into, int picture, const PixelRect& rect);
 
  private:
   // One program for each number of atlas textures, at rest (false) and posed (true).

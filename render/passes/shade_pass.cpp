@@ -59,6 +59,8 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   if (lit) {
     program.set_texture("u_light", unit++, GL_TEXTURE_2D, light->light.name());
     const glm::dmat3 to_world = glm::inverse(glm::dmat3(rays.padded_from_world));
+    program.set("u_every", light->every);
+    program.set("u_offset", light->offset);
     program.set("u_cut_line", std::max(1, static_cast<int>(std::lround(line_scale))));
     const double step = 2.0 / buffer.size().x;
     program.set("u_pixel",

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes the light that reaches the surface which each pixel shows: the shares of rays to the key light, and of rays
-// into the sky, that leave the body. Neighbouring pixels follow different rays; shade.frag averages over squares of
-// 4 x 4 pixels, which have all of them.
+// into the sky, that leave the body. Neighbouring texels follow different rays; shade.frag averages over squares of
+// 4 x 4 texels, which have all of them.
 #include "rays.glsl"
 #include "trace.glsl"
 
-in vec2 ndc;
 uniform sampler2D u_depth, u_normal;
+uniform int u_every;     // every n-th pixel along each axis has light of its own
+uniform ivec2 u_offset;  // the first of these pixels
 uniform mat3 u_padded_from_view;  // converts directions; a unit normal becomes one brick long
 uniform int u_picture;            // number of pictures before this one
 layout(location = 0) out vec2 light;
 
-// Rays of one pixel in one picture. Those through the map of a posed body take four times as long.
+// Rays of one texel in one picture. Those through the map of a posed body take several times as long.
 #ifdef POSED
 const int kSkyRays = 2, kKeyRays = 1;
 #else
@@ -50,7 +51,8 @@ float leaves(vec3 from, vec3 view) {
 }
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
+  ivec2 texel = ivec2(gl_FragCoord.xy), size = textureSize(u_depth, 0), at = min(texel * u_every + u_offset, size - 1);
+  vec2 ndc = (vec2(at) + 0.5) / vec2(size) * 2.0 - 1.0;
   vec4 stored = texelFetch(u_normal, at, 0);
   light = vec2(stored.a > 0.5 && stored.a < 0.7 ? kFold : 1.0);
   // A cut face is convex with what the clip leaves, so nothing can shade it.
@@ -64,8 +66,8 @@ void main() {
   vec3 along = cross(normal, across);
   vec3 key_across = normalize(cross(kKey, vec3(0, 0, 1))), key_along = cross(kKey, key_across);
 
-  // The place in a square of 4 x 4 pixels; its two bits are mixed so that neighbours follow rays far apart.
-  ivec2 cell = at & 3;
+  // The place in a square of 4 x 4 texels; its two bits are mixed so that neighbours follow rays far apart.
+  ivec2 cell = texel & 3;
   int place = ((cell.x ^ cell.y) & 1) << 3 | (cell.y & 1) << 2 | ((cell.x ^ cell.y) & 2) | (cell.y >> 1);
   float sky = 0.0, key = 0.0;
   for (int i = 0; i < kSkyRays; ++i) {

@@ -10,6 +10,8 @@ uniform sampler2D u_depth, u_normal;
 uniform usampler2D u_label, u_looks;
 #ifdef LIT
 uniform sampler2D u_light;  // shares of the key light and of the sky, of the rays of light.frag
+uniform int u_every;        // the light is that of every n-th pixel
+uniform ivec2 u_offset;     // the first of these pixels
 uniform vec2 u_pixel;       // a pixel is x + y * depth wide, mm
 uniform int u_cut_line;     // width of the outlines of tissues on cut faces, pixels
 #else
@@ -44,24 +46,28 @@ float rim_of(vec3 normal) {
 }
 
 #ifdef LIT
-// Averages the light over the 4 x 4 pixels around one, which have all directions of rays between them. Only pixels of
-// the same surface count: those near the plane through it, with a similar normal.
+// Averages the light over 4 x 4 texels around a pixel, which have all directions of rays between them. Only those of
+// the same surface count: those near the plane through the pixel, with a similar normal.
 vec2 light_at(ivec2 at, vec4 stored, vec3 normal) {
-  float depth = texelFetch(u_depth, at, 0).r, pixel = u_pixel.x + u_pixel.y * depth;
-  ivec2 last = textureSize(u_depth, 0) - 1;
-  vec2 sum = vec2(0.0);
-  float count = 0.0;
-  for (int y = -2; y < 2; ++y)
-    for (int x = -2; x < 2; ++x) {
-      ivec2 beside = clamp(at + ivec2(x, y), ivec2(0), last);
+  float depth = texelFetch(u_depth, at, 0).r, pixel = (u_pixel.x + u_pixel.y * depth) * float(u_every);
+  ivec2 last = textureSize(u_depth, 0) - 1, last_texel = textureSize(u_light, 0) - 1;
+  ivec2 first = (at - u_offset + u_every) / u_every - 3;
+  vec2 sum = vec2(0.0), sum_of_all = vec2(0.0);
+  float count = 0.0, count_of_all = 0.0;
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 4; ++x) {
+      ivec2 texel = clamp(first + ivec2(x, y), ivec2(0), last_texel), beside = min(texel * u_every + u_offset, last);
       vec4 other = texelFetch(u_normal, beside, 0);
-      vec3 step = vec3(vec2(x, y) * pixel, depth - texelFetch(u_depth, beside, 0).r);
-      float alike = dot(normal, other.xyz * 2.0 - 1.0);
-      if (abs(other.a - stored.a) > 0.1 || alike < 0.8 || abs(dot(step, normal)) > 2.0 * pixel) continue;
-      sum += texelFetch(u_light, beside, 0).rg;
+      if (abs(other.a - stored.a) > 0.1) continue;
+      vec2 light = texelFetch(u_light, texel, 0).rg;
+      sum_of_all += light;
+      count_of_all += 1.0;
+      vec3 step = vec3(vec2(beside - at) * (pixel / float(u_every)), depth - texelFetch(u_depth, beside, 0).r);
+      if (dot(normal, other.xyz * 2.0 - 1.0) < 0.8 || abs(dot(step, normal)) > 2.0 * pixel) continue;
+      sum += light;
       count += 1.0;
     }
-  return count > 0.0 ? sum / count : texelFetch(u_light, at, 0).rg;
+  return count > 0.0 ? sum / count : count_of_all > 0.0 ? sum_of_all / count_of_all : vec2(1.0);
 }
 
 // Returns true if an outline of a tissue runs through this pixel of a cut face.

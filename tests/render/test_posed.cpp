@@ -204,6 +204,24 @@ TEST_CASE("posed body: at rest the picture is that of the volume itself, in ever
   }
 }
 
+TEST_CASE("posed body: at rest the light by rays is that of the volume itself") {
+  Studio studio;
+  const Camera camera = camera_of(arm().volume->grid, Projection::Perspective, StandardView::Left);
+  const auto rested = [&](const Scene& scene, Light light) {
+    studio.renderer.light_at_rest(light);
+    View3D view(studio.renderer);
+    for (double now = 0; now == 0 || !view.complete(); now += 1) view.draw(scene, camera, kSize, now);
+    return view.read();
+  };
+  const Scene still = arm().scene(), posed = arm().posed(rest_pose(arm().rig), Blend::Linear);
+  // Posed bodies have light at every other pixel, averaged over a larger square.
+  const Difference apart = difference(rested(posed, Light::Fine), rested(still, Light::Fine)),
+                   without = difference(rested(still, Light::Draft), rested(still, Light::Fine));
+  INFO("mean ", apart.mean, ", share ", apart.share, "; of the light itself ", without.mean, ", ", without.share);
+  CHECK(apart.mean < 0.06);
+  CHECK(apart.mean < 0.5 * without.mean);
+}
+
 TEST_CASE("posed body: a bent elbow has the outline of the dense map, from any side, by both methods") {
   for (const auto& [linear, degrees] : {std::pair{true, 60.0}, std::pair{false, 90.0}}) {
     CAPTURE(linear);

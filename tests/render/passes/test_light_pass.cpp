@@ -45,7 +45,7 @@ Found light_of(Studio& studio, const Scene& scene, const Camera& camera, const g
   GBuffer buffer;
   buffer.resize(size);
   LightBuffer light;
-  light.resize(buffer);
+  light.resize(buffer, 1);
   const ViewRays rays =
       view_rays(camera, body.volume->grid(), size, glm::dvec2(0), field.hull().low(), field.hull().high());
   VolumePass& pass = resources.volume_pass(*body.volume, VolumePass::Space::Rest);
