@@ -88,8 +88,11 @@ double Lettering::width(const std::string& text, bool bold) const {
   return units / face->units_per_EM;
 }
 
-std::vector<std::string> Lettering::lines(const std::string& text, bool bold, double most) const {
+std::vector<std::string> Lettering::lines(const std::string& given, bool bold, double most) const {
   std::vector<std::string> result;
+  std::string text = given;  // line ends and tabs count as spaces
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
   std::string line;
   for (std::size_t at = 0; at < text.size();) {
     std::size_t end = std::min(text.find(' ', at), text.size());

@@ -98,6 +98,8 @@ TEST_CASE("figure layout: a name wider than the figure is broken into lines, wit
   for (std::size_t i = 0; i + 1 < layout.texts.size(); ++i) again += layout.texts[i].text;
   CHECK(again == name);
   CHECK(layout.texts.back().text == "short");
+  CHECK(lettering.lines("one\n two\tthree  four", false, 100) == std::vector<std::string>{"one two three four"});
+  CHECK(lettering.lines("", false, 100).empty());
   CHECK(lettering.lines("f\u00fcr \u00e4u\u00dferst enge Spalten", false, 1.2).size() > 5);  // no character is cut
 }
 

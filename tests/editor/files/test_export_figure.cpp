@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "editor/figure/figure_source.h"
+#include "editor/files/export.h"
 #include "render/image_io.h"
 #include "tests/editor/small_editor.h"
 #include "tests/support/program.h"
@@ -68,4 +69,22 @@ TEST_CASE("export figure: lines are as wide on the page as on a screen, whatever
       CHECK(points(dots, height) <= 0.7501);
     }
   CHECK(points(300, 1400) == doctest::Approx(points(600, 2800)));
+}
+
+TEST_CASE(
+    "export turntable: a name that ends in .mp4 makes a video where ffmpeg is, and an error in one line elsewhere") {
+  SmallEditor test({640, 480});
+  const TemporaryFolder folder;
+  const Path path = folder / "turn.mp4";
+  if (!has_program("ffmpeg")) {
+    CHECK_THROWS_WITH_AS(export_turntable(*test.editor, path), doctest::Contains("ffmpeg, which is not installed"),
+                         Error);
+    CHECK_FALSE(std::filesystem::exists(path));
+    return;
+  }
+  export_turntable(*test.editor, path);
+  test.play("wait-job");
+  REQUIRE(std::filesystem::exists(path));
+  CHECK(read_file(path).substr(4, 4) == "ftyp");
+  CHECK(test.fact("error") == "none");
 }
