@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <new>
 #include <utility>
 
 #include "core/base/error.h"
@@ -181,6 +182,19 @@ class ForEstimate : public Progress {
   Progress& whole_;
 };
 
+// Does a step of the second solve. Returns why it failed; empty if it did not. The first solve's result stands anyway.
+template <class Step>
+std::string why_it_failed(const Step& step) {
+  try {
+    step();
+    return "";
+  } catch (const Error& error) {
+    return std::string("the second solve, with larger tets, failed: ") + error.what();
+  } catch (const std::bad_alloc&) {
+    return "memory did not suffice for the second solve";
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const FemShape> solve_shape(const LabelVolume& volume, const TissueVoxels& tissue,
@@ -240,12 +254,11 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
     for (const double place : places_of(poses_.size())) motions.push_back(path(place));
     return motions;
   };
-  const LabelVolume regions = regions_to_mesh(volume, tissue, is_bone, weights, moving);
   MeshSettings settings{
       .spacing_mm = spacing_, .mesher = fem_.mesher, .fine_radius_mm = size_ * MeshSettings().fine_radius_mm};
   if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_, kBent);
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
-  TissueMesh meshed = mesh_tissue(regions, settings, progress);
+  TissueMesh meshed = mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving), settings, progress);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   last_.model =
       tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
@@ -257,17 +270,34 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
     objects_.add_to(last_.model.fem);
   }
   last_.V = last_.model.fem.mesh.V;
-  last_.seconds_mesh = seconds_since(meshing);
   if (fem_.on_mesh) fem_.on_mesh(last_.model);
-  if (!fem_.estimates_error) return;
-  Fem coarser = fem_;
-  coarser.estimates_error = false;
-  coarser.spacing_mm = kCoarser * spacing_;
-  coarser.reach_mm = reach_;
-  coarser.on_mesh = {}, coarser.on_step = {};
-  ForEstimate estimate(progress);
-  coarse_ = std::make_unique<FemSequence>(volume, tissue, tissues, is_bone, weights, armature, poses_,
-                                          std::move(coarser), estimate);
+  if (fem_.estimates_error) {
+    Fem coarser = fem_;
+    coarser.estimates_error = false;
+    coarser.spacing_mm = kCoarser * spacing_;
+    coarser.reach_mm = reach_;
+    coarser.on_mesh = {}, coarser.on_step = {};
+    ForEstimate estimate(progress);
+    no_estimate_ = why_it_failed([&] {
+      coarse_ = std::make_unique<FemSequence>(volume, tissue, tissues, is_bone, weights, armature, poses_,
+                                              std::move(coarser), estimate);
+    });
+  }
+  last_.seconds_mesh = seconds_since(meshing);
+}
+
+FemError FemSequence::error_of(const FemShape& shape, Progress& progress) {
+  FemError error;
+  if (coarse_ && no_estimate_.empty()) {
+    ForEstimate estimate(progress);
+    no_estimate_ = why_it_failed([&] {
+      const std::shared_ptr<const FemShape> coarse = coarse_->next(estimate);
+      if (coarse) error = estimated_error(shape, *coarse, grid_);
+      else error.unknown = "the second solve, with larger tets, has no flesh that bends";
+    });
+  }
+  if (!no_estimate_.empty()) error.unknown = no_estimate_;
+  return error;
 }
 
 std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
@@ -321,12 +351,9 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {
     return is_bone_[tissue.first] != 0;
   });  // bone voxels move rigidly, even inside tets that stretch
-  if (coarse_) {
-    ForEstimate estimate(progress);
-    const std::shared_ptr<const FemShape> coarse = coarse_->next(estimate);
-    shape->solve.error = coarse ? estimated_error(*shape, *coarse, grid_)
-                                : FemError{.unknown = "the second solve, with larger tets, has no flesh that bends"};
-  }
+  if (fem_.estimates_error)
+    shape->solve.error = ends && !solved.converged ? FemError{.unknown = "the solve did not come to the pose"}
+                                                   : error_of(*shape, progress);
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
   // If the solve stopped early, the way to the next pose differs from the planned path, and the positions until which

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/fem/tissue_model.h"
@@ -48,6 +49,9 @@ class FemSequence {
   std::shared_ptr<const FemShape> next(Progress& progress = no_progress());
 
  private:
+  // Solves the same pose with larger tets. Returns the estimated error of `shape`.
+  FemError error_of(const FemShape& shape, Progress& progress);
+
   const SkinWeights& weights_;
   const Armature& armature_;
   const LabelSet& is_bone_;
@@ -64,6 +68,7 @@ class FemSequence {
   bool has_weight_ = false;              // whether gravity acts at the start of the next solve
   Grid grid_;                            // of the body's volume
   std::unique_ptr<FemSequence> coarse_;  // the same poses with larger tets, to estimate the error; null: not wanted
+  std::string no_estimate_;              // why the error cannot be estimated
   FemShape last_;                        // the shape solved last; at rest before the first solve
 };
 

@@ -125,3 +125,32 @@ TEST_CASE("fem error: the estimate bounds the difference from tets of half the e
   CHECK(bounded >= 0.9 * known);
   CHECK(furthest < 20);
 }
+
+TEST_CASE(
+    "fem error: a second solve that fails leaves the result and is told, and one that is cancelled is cancelled") {
+  class Failing : public Progress {
+   public:
+    explicit Failing(bool cancels) : cancels_(cancels) {}
+
+   private:
+    void on_update(std::string_view stage, double) override {
+      if (stage != "error estimate") return;
+      if (!cancels_) throw Error("no room", "the test", "make room");
+      cancel();
+    }
+    bool cancels_;
+  };
+  const Limb limb(3);
+  Pose pose = rest_pose(limb.rig);
+  pose.rotation[1] = glm::angleAxis(glm::radians(20.0), glm::dvec3(1, 0, 0));
+  const Fem fem{.spacing_mm = 12, .estimates_error = true};
+  Failing fails(false), cancels(true);
+  const Posed posed = resample(limb.volume, limb.tissues, limb.rig, limb.weights, pose, fem, {}, fails);
+  REQUIRE(posed.report.solve);
+  CHECK(posed.report.solve->converged);
+  REQUIRE(posed.report.solve->error);
+  CHECK(posed.report.solve->error->unknown.find("no room") != std::string::npos);
+  const Posed without = resample(limb.volume, limb.tissues, limb.rig, limb.weights, pose, Fem{.spacing_mm = 12});
+  CHECK(posed.volume.voxels == without.volume.voxels);
+  CHECK_THROWS_AS(resample(limb.volume, limb.tissues, limb.rig, limb.weights, pose, fem, {}, cancels), Cancelled);
+}
