@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/motion/motion_edit.h"
+#include "core/motion/clip_speed.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/form_dialog.h"
@@ -186,29 +186,6 @@ void untrim(Editor& editor) {
   });
 }
 
-// Resamples the clip to another rate, in frames per second. Keys, markers and the playing range get new frame numbers,
-// so that they stay at the same time.
-void change_rate(Clip& clip, double rate) {
-  const double ratio = rate / clip.rate;
-  const auto moved = [&](int frame) { return clip.start + static_cast<int>(std::round((frame - clip.start) * ratio)); };
-  std::map<int, int> frame_of;
-  for (int frame : frames_of(clip.keys)) frame_of[frame] = moved(frame);
-  move_keys(clip.keys, frame_of);
-  scale_tangents(clip.keys, 1 / ratio);
-  for (Marker& marker : clip.markers) marker.frame = moved(marker.frame);
-  clip.range_start = moved(clip.range_start);
-  clip.range_end = moved(clip.range_end);
-  if (clip.motion) {
-    Motion played = *clip.motion;
-    played.frame_time = 1 / clip.rate;
-    clip.motion = std::make_shared<const Motion>(resampled(played, rate));
-    const int most = std::max(0, clip.motion->frame_count - 1);
-    clip.first = std::clamp(static_cast<int>(std::round(clip.first * ratio)), 0, most);
-    clip.last = std::clamp(static_cast<int>(std::round(clip.last * ratio)), clip.first, most);
-  }
-  clip.rate = rate;
-}
-
 void ask_rate(Editor& editor) {
   editor.open_dialog(make_form(
       {"Resample the clip",
@@ -223,7 +200,7 @@ void ask_rate(Editor& editor) {
                 std::to_string(static_cast<int>(std::round((clip->range_end - clip->range_start) * ratio)) + 1) + ".";
        },
        [](Editor& e, const std::vector<FormField>& fields) {
-         edit_clip(e, "Resample clip", PoseThen::FromClip, [&](Clip& clip) { change_rate(clip, fields[0].value); });
+         edit_clip(e, "Resample clip", PoseThen::FromClip, [&](Clip& clip) { clip = at_rate(clip, fields[0].value); });
        }}));
 }
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/clip_speed.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/motion/motion_edit.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kMostFrame = 1e9;  // frame numbers must stay integers
+
+void require_speed(double factor) {
+  if (!(factor >= kSlowest && factor <= kFastest))
+    throw Error("this speed cannot be used", std::to_string(factor) + " times as fast", "choose one from 0.05 to 20");
+}
+
+// Gives the clip `ratio` times as many frames.
+//   played_rate  the rate at which the clip's motion is read, frames per second;  rate  that of the new motion
+void stretch(Clip& clip, double ratio, double played_rate, double rate) {
+  const auto moved = [&](int frame) {
+    const double wanted = clip.start + std::round((double(frame) - clip.start) * ratio);
+    if (std::abs(wanted) > kMostFrame)
+      throw Error("the clip would become too long", clip.name, "choose a higher speed or a lower rate");
+    return static_cast<int>(wanted);
+  };
+  std::map<int, int> frame_of;
+  for (int frame : frames_of(clip.keys)) frame_of[frame] = moved(frame);
+  move_keys(clip.keys, frame_of);
+  scale_tangents(clip.keys, 1 / ratio);
+  for (Marker& marker : clip.markers) marker.frame = moved(marker.frame);
+  const bool plays_to_end = clip.motion && clip.range_end == clip.end();
+  clip.range_start = moved(clip.range_start);
+  clip.range_end = moved(clip.range_end);
+  if (!clip.motion) return;
+  Motion played = *clip.motion;
+  played.frame_time = 1 / played_rate;
+  clip.motion = std::make_shared<const Motion>(resampled(played, rate));
+  const int most = std::max(0, clip.motion->frame_count - 1);
+  clip.first = std::clamp(static_cast<int>(std::round(clip.first * ratio)), 0, most);
+  clip.last = std::clamp(static_cast<int>(std::round(clip.last * ratio)), clip.first, most);
+  if (plays_to_end) clip.range_end = clip.end();  // half a frame may be lost in rounding
+}
+
+}  // namespace
+
+Clip at_rate(const Clip& clip, double rate) {
+  Clip changed = clip;
+  stretch(changed, rate / clip.rate, clip.rate, rate);
+  changed.rate = rate;
+  return changed;
+}
+
+Clip at_speed(const Clip& clip, double factor) {
+  require_speed(factor);
+  Clip changed = clip;
+  // A rate that the motion could be resampled to, whatever the clip's own rate is.
+  const double rate = std::clamp(clip.rate, 1.0, 1000.0);
+  stretch(changed, 1 / factor, rate * factor, rate);
+  return changed;
+}
+
+std::vector<Pose> at_speed(const std::vector<Pose>& poses, double factor) {
+  require_speed(factor);
+  std::vector<Pose> out;
+  if (poses.empty()) return out;
+  const int last = static_cast<int>(poses.size()) - 1;
+  const int frames = static_cast<int>(std::floor(last / factor + 1e-6)) + 1;
+  for (int frame = 0; frame < frames; ++frame) {
+    const double place = std::min(frame * factor, double(last));
+    const int before = std::min(static_cast<int>(place + 1e-9), last), after = std::min(before + 1, last);
+    const double share = std::clamp(place - before, 0.0, 1.0);
+    Pose pose = poses[before];
+    for (std::size_t bone = 0; share > 0 && bone < pose.rotation.size(); ++bone)
+      pose.rotation[bone] = glm::normalize(glm::slerp(pose.rotation[bone], poses[after].rotation[bone], share));
+    pose.root_translation = glm::mix(pose.root_translation, poses[after].root_translation, share);
+    out.push_back(std::move(pose));
+  }
+  return out;
+}
+
+}  // namespace limber

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Changes the number of frames of a clip: its rate at the same speed, or its speed at the same rate.
+#pragma once
+
+#include "core/motion/clip.h"
+
+namespace limber {
+
+constexpr double kSlowest = 0.05, kFastest = 20;  // factors of speed
+
+// Returns the clip resampled to another rate, in frames per second. Keys, markers and the playing range get new frame
+// numbers, so that they stay at the same time.
+Clip at_rate(const Clip& clip, double rate);
+
+// Returns the clip that plays `factor` times as fast at the same rate: the motion is resampled by slerp, and keys,
+// handles, markers and the playing range keep their places in the motion, to the nearest frame. The clip's frame
+// `start` stays. Throws Error for a factor outside [kSlowest, kFastest].
+Clip at_speed(const Clip& clip, double factor);
+// The same for poses. The first pose stays, and the duration changes by less than a frame.
+std::vector<Pose> at_speed(const std::vector<Pose>& poses, double factor);
+
+}  // namespace limber
