@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber clean-motion RIG --motion F.bvh [--smooth HZ] [--plant-feet] [--hold "LIMB[=X,Y,Z]@FIRST-LAST"]... -o OUT.bvh:
-// a motion on a rig without tremble and sliding feet, and with hands where they should be.
+// limber clean-motion RIG --motion F.bvh [--smooth HZ] [--plant-feet] [--hold "LIMB[=X,Y,Z]@FIRST-LAST"]...
+// [--mirror] [--speed F] [--loop N [--seam FRAMES] [--on-the-spot]] -o OUT.bvh: a motion on a rig without tremble and
+// sliding feet, and with hands where they should be; then mirrored, faster or slower, and repeated.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -13,8 +14,11 @@
 #include "core/cmd/pose_options.h"
 #include "core/motion/bvh.h"
 #include "core/motion/clean_motion.h"
+#include "core/motion/clip_speed.h"
+#include "core/motion/loop_poses.h"
 #include "core/motion/motion_edit.h"
 #include "core/motion/pose_filter.h"
+#include "core/rig/mirror.h"
 #include "core/rig_io/rig_io.h"
 
 namespace limber::cmd {
@@ -26,6 +30,11 @@ struct Options {
   double smooth = 0, ease = 0.15;
   bool plant_feet = false;
   std::vector<std::string> holds;
+  bool mirror = false, on_the_spot = false;
+  double speed = 1;
+  int repeats = 0, seam = -1;  // 0: not repeated; -1: 0.3 seconds
+
+  bool cleans() const { return smooth > 0 || plant_feet || !holds.empty(); }
 };
 
 constexpr const char* kHoldForm =
@@ -103,9 +112,27 @@ void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, 
            ": the limb stays " + std::to_string(std::lround(error.from_place)) + " mm off its place");
 }
 
+// Mirrors the poses, changes their speed and repeats them, as the options say.
+std::vector<Pose> changed(const Options& options, const Armature& rig, double rate, std::vector<Pose> poses) {
+  if (options.mirror)
+    for (Pose& pose : poses) pose = flipped(pose, rig);
+  if (options.speed != 1) poses = at_speed(poses, options.speed);
+  if (options.repeats == 0) return poses;
+  const double usual = std::min(std::round(0.3 * rate), double(poses.size()) - 1);
+  LoopedPoses loop = looped(rig, poses,
+                            {.repeats = options.repeats,
+                             .blend = options.seam >= 0 ? options.seam : static_cast<int>(usual),
+                             .stays = options.on_the_spot});
+  print("The seam closes a gap of up to %.1f degrees%s%s; bones turn up to %.2f times as fast there.\n",
+        loop.gap_degrees, loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str(), loop.haste);
+  if (loop.haste > 1.5) warn("the seam is hasty: use a take of a whole cycle, or a longer --seam");
+  return std::move(loop.poses);
+}
+
 void clean(const Options& options) {
-  if (options.smooth <= 0 && !options.plant_feet && options.holds.empty())
-    throw Error("there is nothing to clean", "clean-motion", "add --smooth HZ, --plant-feet or --hold");
+  if (!options.cleans() && !options.mirror && options.speed == 1 && options.repeats == 0)
+    throw Error("there is nothing to clean", "clean-motion",
+                "add --smooth HZ, --plant-feet, --hold, --mirror, --speed or --loop");
   const ArmatureFile file = read_armature_file(options.rig);
   warn(file.warnings);
   const Armature& rig = file.armature;
@@ -124,12 +151,13 @@ void clean(const Options& options) {
   const auto [cleaned, plants] = clean_motion(rig, limbs, smooth, rate, options.plant_feet, holds, options.ease);
   if (options.plant_feet && plants.size() == holds.size())
     warn("no foot was found to stand: none is low and slow for a tenth of a second");
-  const std::vector<Pose>& written = cleaned;
+  const std::vector<Pose> written = changed(options, rig, rate, cleaned);
   write_bvh(motion_of_poses(rig, static_cast<int>(written.size()), rate, [&](int frame) { return written[frame]; }),
             options.output);
   print_plants(plants, rig, limbs, recorded, cleaned);
   warn_of_short_limbs(plants, rig, limbs, cleaned);
-  print("%zu frames cleaned.\n", cleaned.size());
+  if (options.cleans()) print("%zu frames cleaned.\n", cleaned.size());
+  if (written.size() != cleaned.size()) print("%zu frames written.\n", written.size());
 }
 }  // namespace
 
@@ -157,6 +185,18 @@ void add_clean_motion(CLI::App& app) {
   command->add_option("--ease", options->ease, "seconds over which a limb comes to its place and leaves it")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
+  command->add_flag("--mirror", options->mirror, "swap left and right, and mirror the travel");
+  command->add_option("--speed", options->speed, "play this many times as fast at the same rate")
+      ->check(CLI::Range(kSlowest, kFastest))
+      ->capture_default_str();
+  auto* loop = command
+                   ->add_option("--loop", options->repeats,
+                                "play this often in all; travel and heading go on from repeat to repeat")
+                   ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--seam", options->seam, "frames over which a seam is blended (default: those of 0.3 seconds)")
+      ->check(CLI::Range(0, 1'000'000))
+      ->needs(loop);
+  command->add_flag("--on-the-spot", options->on_the_spot, "repeat without travel and change of heading")->needs(loop);
   writes(command->add_option("-o,--output", options->output, "the cleaned motion, a BVH of the rig"))->required();
   command->callback([options] { clean(*options); });
 }

@@ -40,6 +40,8 @@ std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();
 std::vector<Operator> graph_operators();
 std::vector<Operator> motion_clean_operators();
+std::vector<Operator> clip_deed_operators();
+std::vector<Operator> clip_join_operators();
 std::vector<Operator> motion_reduce_operators();
 std::vector<Operator> motion_clip_operators();
 std::vector<Operator> resample_operators();
@@ -82,6 +84,8 @@ std::vector<Operator> gather_operators() {
                     motion_operators,
                     graph_operators,
                     motion_clean_operators,
+                    clip_deed_operators,
+                    clip_join_operators,
                     motion_reduce_operators,
                     motion_clip_operators,
                     resample_operators,

@@ -9,10 +9,9 @@
 #include "core/base/error.h"
 #include "core/motion/clean_motion.h"
 #include "core/motion/close_gap.h"
-#include "core/motion/motion_edit.h"
 #include "core/motion/pose_filter.h"
+#include "core/motion/recorded_clip.h"
 #include "editor/context/background_task.h"
-#include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/ui/icons.h"
@@ -63,17 +62,6 @@ std::string needs_limb(const Editor& editor) {
 
 std::string frames_text(int first, int last) {
   return "frames " + std::to_string(first) + " to " + std::to_string(last);
-}
-
-// Returns the clip that plays the cleaned poses as they are.
-Clip recorded_clip(const Document& document, const Clip& source, const std::vector<Pose>& poses, int start,
-                   const std::string& name) {
-  auto motion = std::make_shared<const Motion>(motion_of_poses(*document.armature, static_cast<int>(poses.size()),
-                                                               source.rate, [&](int frame) { return poses[frame]; }));
-  Clip clip = clip_for(document, std::move(motion), name, start);
-  clip.rate = source.rate;
-  clip.markers = source.markers;
-  return clip;
 }
 
 struct Result {
@@ -144,25 +132,11 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
 }
 
 void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, int first, const Cleaning& cleaning,
-             const Result& result) {
-  settle_frame(editor);
-  Document next = editor.document();
-  const auto place = std::find(next.clips.begin(), next.clips.end(), source);
-  if (place == next.clips.end() || !next.armature)
-    throw Error("the clip was changed while it was cleaned", source->name, "clean it again");
+             const Armature& rig, const Result& result) {
   const bool is_new = cleaning.becomes == Becomes::NewClip;
-  Clip clip = recorded_clip(next, *source, result.poses, first, is_new ? source->name + cleaning.made : source->name);
-  const int frame = std::clamp(next.frame, clip.range_start, clip.range_end);
-  if (is_new) {
-    add_clip(next, std::move(clip));
-  } else {
-    next.clip = static_cast<int>(place - next.clips.begin());
-    next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
-  }
-  next.frame = frame;
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  editor.timeline->chosen.clear();
-  commit(editor, cleaning.label, std::move(next));
+  Clip clip = clip_of_poses(*source, rig, result.poses, first);
+  if (is_new) clip.name += cleaning.made;
+  take_in_clip(editor, source, cleaning.label, std::move(clip), is_new);
   if (result.is_short) editor.messages.warn(result.line, result.detail);
   else editor.messages.ok(result.line, result.detail);
 }
@@ -177,7 +151,7 @@ void start_cleaning(Editor& editor, const Cleaning& cleaning) {
                const ClipOnRig clip(source, rig);
                if (!clip.problem().empty()) throw Error("the clip cannot be cleaned", source->name, clip.problem());
                const auto result = std::make_shared<const Result>(clean(clip, first, last, cleaning, progress));
-               return [=](Editor& e) { take_in(e, source, first, cleaning, *result); };
+               return [=](Editor& e) { take_in(e, source, first, cleaning, *rig, *result); };
              });
 }
 

@@ -170,6 +170,26 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
   return clip;
 }
 
+void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::string& label, Clip clip,
+                  bool is_new) {
+  settle_frame(editor);
+  Document next = editor.document();
+  const auto place = std::find(next.clips.begin(), next.clips.end(), source);
+  if (place == next.clips.end() || !next.armature)
+    throw Error("the clip was changed meanwhile", source->name, "do this again: " + label);
+  const int frame = std::clamp(next.frame, clip.range_start, std::max(clip.range_start, clip.range_end));
+  if (is_new) {
+    add_clip(next, std::move(clip));
+  } else {
+    next.clip = static_cast<int>(place - next.clips.begin());
+    next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
+  }
+  next.frame = frame;
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  editor.timeline->chosen.clear();
+  commit(editor, label, std::move(next));
+}
+
 void choose_clip(Editor& editor, int clip) {
   if (clip == editor.document().clip) return;
   stop_playing(editor);

@@ -171,6 +171,8 @@ std::vector<Menu> menus() {
         "> Rest poses", "motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical", "-",
         "motion.rig_rest_file", "motion.rig_rest_t", "motion.rig_rest_a", "motion.rig_rest_anatomical", "<",
         "> Clip", "motion.rename_clip", "motion.trim", "motion.untrim", "motion.resample", "-",
+        "> Whole clip", "motion.mirror_clip", "motion.loop_clip", "motion.join_clip", "motion.speed", "motion.bake",
+        "<", "-",
         "motion.clean", "motion.hold", "motion.close_gap", "motion.reduce_keys", "-",
         "motion.delete_clip", "<",
         "-", "motion.play", "motion.play_reverse", "motion.frame_back", "motion.frame_forward", "motion.first",

@@ -345,6 +345,52 @@ std::vector<Proof> proofs_of_clips() {
                 std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(33)) - 33) < 0.5;
        },
        Shows::Nothing, "", stand_at(20)},
+      {"motion.mirror_clip", "click \"Motion/Clip/Whole clip/Mirror clip\"\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         const auto& turns = shown_clip(s.editor())->keys.bones;
+         return edit_is("Mirror clip")(s, b) && shown_clip(s.editor())->retarget.mirror && turns.contains("Fore") &&
+                turns.at("Fore").at(20).y < -0.1;
+       },
+       Shows::InBody, "",
+       edited(20, [](Clip& clip) { clip.keys.bones["Fore"][20] = glm::angleAxis(0.6, glm::dvec3(0, 1, 0)); })},
+      {"motion.loop_clip",
+       "click \"Motion/Clip/Whole clip/Loop clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         const Clip* clip = shown_clip(s.editor());
+         return edit_is("Loop clip")(s, b) && s.is("clip", "bending loop") && clip->range_end == 240 &&
+                std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(150)) - 30) < 1e-3;
+       },
+       Shows::Nothing, "", stand_at(20)},
+      {"motion.join_clip",
+       "click \"Motion/Clip/Whole clip/Join clip...\"\n type next\n key Return\n wait-job\n wait-idle\n key Return\n "
+       "wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         const Clip* clip = shown_clip(s.editor());
+         return edit_is("Join clip")(s, b) && s.is("clip", "bending + next") && clip->range_end == 60 + 61 - 9 &&
+                std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(112)) - 60) < 1e-3;
+       },
+       Shows::Nothing, "",
+       [](Stage& s) {
+         stand_at(20)(s);
+         write_bvh(bending_motion(*s.document().armature), s.home / "next.bvh");
+       }},
+      {"motion.speed",
+       "click \"Motion/Clip/Whole clip/Change speed...\"\n wait-idle\n double-click Speed/value\n key Ctrl+A\n type "
+       "2\n key Return\n key Return\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         return edit_is("Change speed")(s, b) && shown_clip(s.editor())->range_end == 30 &&
+                std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(15)) - 30) < 1e-3;
+       },
+       Shows::InBody, "", stand_at(20)},
+      {"motion.bake", "click \"Motion/Clip/Whole clip/Bake clip\"\n wait-job\n wait-idle",
+       [](Stage& s, const Seen& b) {
+         return edit_is("Bake clip")(s, b) && shown_clip(s.editor())->keys.empty() &&
+                std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(30)) - 50) < 1e-3;
+       },
+       Shows::Nothing, "",
+       edited(
+           20,
+           [](Clip& clip) { clip.keys.bones["Fore"][30] = glm::angleAxis(glm::radians(50.0), glm::dvec3(1, 0, 0)); })},
       {"motion.delete_clip", "click \"Motion/Clip/Delete clip\"",
        [](Stage& s, const Seen&) { return s.document().clips.empty() && s.is("edit", "Delete clip bending"); },
        Shows::Nothing, "", stand_at(20)},

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators on the whole shown clip: it is mirrored, repeated, played faster or slower, and its keys become motion.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/motion/clip_speed.h"
+#include "core/motion/loop_poses.h"
+#include "core/motion/mirror_clip.h"
+#include "core/motion/recorded_clip.h"
+#include "editor/context/background_task.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are recorded at once
+constexpr double kHasty = 1.5;             // a seam in which bones turn faster than this is warned of
+
+std::string needs_clip(const Editor& editor) {
+  return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
+}
+std::string needs_clip_and_rig(const Editor& editor) {
+  if (const std::string why = needs_clip(editor); !why.empty()) return why;
+  return editor.document().armature ? "" : "Import a rig first";
+}
+std::string needs_three_frames(const Editor& editor) {
+  if (const std::string why = needs_clip_and_rig(editor); !why.empty()) return why;
+  const auto [low, high] = playing_range(editor);
+  return high - low < 2 ? "Set a range of at least three frames first" : "";
+}
+
+std::shared_ptr<const Clip> shared_clip(const Editor& editor) {
+  return editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+}
+
+std::string frames_text(int frames) { return std::to_string(frames) + (frames == 1 ? " frame" : " frames"); }
+
+// Throws Error if there is no clip any more, or if too many frames play.
+void require_frames(const Editor& editor) {
+  if (!needs_clip_and_rig(editor).empty()) throw Error("there is no clip any more", "clip", "open this again");
+  const auto [first, last] = playing_range(editor);
+  if (std::int64_t{last} - first >= kMostFrames)
+    throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
+                "set a shorter range");
+}
+
+void mirror_shown(Editor& editor) {
+  stop_playing(editor);
+  const auto source = shared_clip(editor);
+  edit_clip(editor, "Mirror clip", PoseThen::FromClip,
+            [&](Clip& clip) { clip = mirrored_clip(source, editor.document().armature); });
+}
+
+void bake(Editor& editor) {
+  stop_playing(editor);
+  require_frames(editor);
+  const auto source = shared_clip(editor);
+  start_task(editor, "Bake clip", [source, rig = editor.document().armature](Progress&) -> Finish {
+    const auto baked = std::make_shared<const Clip>(baked_clip(source, rig));
+    return [=](Editor& e) {
+      take_in_clip(e, source, "Bake clip", *baked, false);
+      e.messages.ok(frames_text(baked->motion->frame_count) + " baked",
+                    "Keys and retargeting are part of the motion, which is the rig's own now");
+    };
+  });
+}
+
+// ---- Speed
+
+// The factor that the fields ask for: the speed, or what gives the playing range the wanted length.
+double factor_of(const Clip& clip, const std::vector<FormField>& fields) {
+  if (fields[0].chosen == 0) return fields[1].value;
+  const int steps = clip.range_end - clip.range_start, wanted = static_cast<int>(std::lround(fields[2].value)) - 1;
+  if (steps < 1) throw NotYet{"The clip plays a single frame, which has no length to change."};
+  return double(steps) / wanted;
+}
+
+std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fields) {
+  const Clip* clip = shown_clip(editor);
+  if (!clip) throw Error("there is no clip any more", "speed", "open this again");
+  const double factor = factor_of(*clip, fields);
+  const double steps = double(clip->range_end) - clip->range_start;
+  if (factor < kSlowest || factor > kFastest)
+    throw Error("this length cannot be reached", frames_text(static_cast<int>(fields[2].value)),
+                "choose from " + std::to_string(static_cast<int>(std::ceil(steps / kFastest)) + 1) + " to " +
+                    std::to_string(static_cast<std::int64_t>(steps / kSlowest) + 1));
+  std::set<int> moved;
+  const std::set<int> keys = frames_of(clip->keys);
+  for (const int frame : keys) moved.insert(static_cast<int>(std::lround((frame - clip->start) / factor)));
+  char text[160];
+  std::snprintf(text, sizeof text, "%s at %.4g times the speed become %s.",
+                frames_text(clip->range_end - clip->range_start + 1).c_str(), factor,
+                frames_text(static_cast<int>(std::lround(steps / factor)) + 1).c_str());
+  return text + (moved.size() < keys.size()
+                     ? " " + std::to_string(keys.size() - moved.size()) + " frames with keys fall on others and go."
+                     : std::string());
+}
+
+void ask_speed(Editor& editor) {
+  const auto [low, high] = playing_range(editor);
+  editor.open_dialog(make_form(
+      {"Change speed",
+       "Makes the clip longer or shorter at the same frame rate. Keys, markers and range keep their places in it.",
+       "Change",
+       {choice_of("Set", "Whether the speed or the length is set.", {"Speed", "Length"}),
+        number_of("Speed", "2 plays twice as fast, 0.5 half as fast.", 1, kSlowest, kFastest, "%.3f", "times"),
+        number_of("Length", "Number of frames that then play.", high - low + 1, 2, 1e6, "%.0f", "frames")},
+       speed_outcome,
+       [](Editor& e, const std::vector<FormField>& fields) {
+         stop_playing(e);
+         edit_clip(e, "Change speed", PoseThen::FromClip,
+                   [&](Clip& clip) { clip = at_speed(clip, factor_of(clip, fields)); });
+         e.timeline->chosen.clear();
+       }}));
+}
+
+// ---- Loop
+
+void tell_of_loop(Editor& editor, const LoopedPoses& loop, int repeats) {
+  char text[200];
+  std::snprintf(text, sizeof text, "The seam closes a gap of up to %.1f\u00b0%s%.60s", loop.gap_degrees,
+                loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str());
+  std::string detail = text;
+  const std::string line = std::to_string(repeats) + (repeats == 1 ? " repeat, " : " repeats, ") +
+                           frames_text(static_cast<int>(loop.poses.size()));
+  if (loop.haste <= kHasty) return editor.messages.ok(line, detail);
+  std::snprintf(text, sizeof text,
+                "; bones turn up to %.1f times as fast there: set the range to a whole cycle, or blend more frames",
+                loop.haste);
+  editor.messages.warn(line, detail + text);
+}
+
+void start_looping(Editor& editor, const LoopSettings& settings, bool is_new) {
+  stop_playing(editor);
+  const auto [first, last] = playing_range(editor);
+  const auto source = shared_clip(editor);
+  start_task(editor, "Loop clip", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+    const ClipOnRig clip(source, rig);
+    if (!clip.problem().empty()) throw Error("the clip cannot be repeated", source->name, clip.problem());
+    std::vector<Pose> poses;
+    for (int frame = first; frame <= last; ++frame) {
+      if (progress.cancelled()) throw Cancelled();
+      poses.push_back(clip.at(frame));
+    }
+    const auto loop = std::make_shared<const LoopedPoses>(looped(*rig, poses, settings));
+    auto made = std::make_shared<Clip>(clip_of_poses(*source, *rig, loop->poses, first));
+    if (is_new) made->name += " loop";
+    return [=](Editor& e) {
+      take_in_clip(e, source, "Loop clip", *made, is_new);
+      tell_of_loop(e, *loop, settings.repeats);
+    };
+  });
+}
+
+LoopSettings loop_of(const std::vector<FormField>& fields) {
+  return {.repeats = static_cast<int>(std::lround(fields[0].value)),
+          .blend = static_cast<int>(std::lround(fields[1].value)),
+          .stays = fields[2].chosen == 1};
+}
+
+void ask_loop(Editor& editor) {
+  const auto [low, high] = playing_range(editor);
+  const int steps = high - low;
+  const double usual = std::min<double>(steps, std::round(0.3 * shown_clip(editor)->rate));
+  editor.open_dialog(make_form(
+      {"Loop clip",
+       "Repeats the frames that play. Each repeat begins where the one before ended, with the pose of the first frame.",
+       "Loop",
+       {number_of("Repeats", "How many times the frames play in all.", 4, 1, 1000, "%.0f"),
+        number_of("Blend", "Frames around each seam in which the end of the take is led over to its beginning.", usual,
+                  0, steps, "%.0f", "frames"),
+        choice_of("Body", "Whether travel and heading go on, or the body stays in its place.",
+                  {"Travels on", "On the spot"}),
+        choice_of("Result", "Whether the repeats become a clip of their own or replace the shown clip.",
+                  {"New clip", "Same clip"})},
+       [](const Editor& e, const std::vector<FormField>& fields) {
+         require_frames(e);
+         const auto [first, last] = playing_range(e);
+         const LoopSettings settings = loop_of(fields);
+         const std::int64_t frames = std::int64_t{last - first} * settings.repeats + 1;
+         if (frames > kMostFrames)
+           throw Error("so many repeats cannot be made", std::to_string(frames) + " frames", "choose fewer");
+         const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
+         return frames_text(last - first + 1) + " become " + frames_text(static_cast<int>(frames)) +
+                ", keys included." +
+                (is_locked && !settings.stays ? " The body stays in place here: for travel, set Root motion to Free "
+                                                "first."
+                                              : "");
+       },
+       [](Editor& e, const std::vector<FormField>& fields) {
+         start_looping(e, loop_of(fields), fields[3].chosen == 0);
+       }}));
+}
+
+}  // namespace
+
+std::vector<Operator> clip_deed_operators() {
+  return {
+      {"motion.mirror_clip", "Mirror clip", icon::kMirror, "Motion",
+       "Swap left and right in the whole clip: its motion, its keys with their curves, and the body's travel.",
+       mirror_shown, needs_clip_and_rig},
+      {"motion.loop_clip", "Loop clip...", icon::kLoop, "Motion",
+       "Repeat the frames that play, with blended seams; travel and heading go on, or the body stays on the spot.",
+       ask_loop, needs_three_frames},
+      {"motion.speed", "Change speed...", "", "Motion",
+       "Make the clip longer or shorter by a factor or to a number of frames; keys keep their places in it.", ask_speed,
+       needs_clip},
+      {"motion.bake", "Bake clip", "", "Motion",
+       "Make keys and curves part of the motion, for the frames that play. What plays stays the same.", bake,
+       needs_clip_and_rig},
+  };
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The operator that appends a take from a BVH file to the shown clip, with a cross-fade.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "core/motion/join_poses.h"
+#include "core/motion/motion_edit.h"
+#include "core/motion/recorded_clip.h"
+#include "core/motion/up_axis.h"
+#include "editor/context/background_task.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/file_browser/file_browser.h"
+#include "editor/motion/motion_clip_edits.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames of the joined clip
+
+// A take that was read from a file, before the user says how it is joined.
+struct NextTake {
+  std::shared_ptr<const Motion> motion;
+  std::string name;
+  UpAxis up = UpAxis::Y;
+};
+
+struct JoinWish {
+  JoinSettings settings;
+  UpAxis up = UpAxis::Y;
+  bool is_new = true;
+};
+
+std::string needs_clip_and_rig(const Editor& editor) {
+  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
+  return editor.document().armature ? "" : "Import a rig first";
+}
+
+// The number of frames that the take has at the rate of the clip.
+std::int64_t frames_at_rate(const Motion& motion, double rate) {
+  return static_cast<std::int64_t>(std::floor(std::max(0, motion.frame_count - 1) * motion.frame_time * rate + 1e-6)) +
+         1;
+}
+
+std::vector<Pose> poses_of(const ClipOnRig& clip, int first, int last, Progress& progress) {
+  if (!clip.problem().empty()) throw Error("the takes cannot be joined", clip.clip()->name, clip.problem());
+  std::vector<Pose> poses;
+  for (int frame = first; frame <= last; ++frame) {
+    if (progress.cancelled()) throw Cancelled();
+    poses.push_back(clip.at(frame));
+  }
+  return poses;
+}
+
+// Returns the poses of the second take at the rate of the first one, retargeted as an import is, with the root motion
+// of the first one.
+std::vector<Pose> poses_of_next(const Clip& source, const std::shared_ptr<const Armature>& rig, const NextTake& next,
+                                UpAxis up, Progress& progress) {
+  Motion motion = up == UpAxis::Z ? y_up_from_z_up(*next.motion) : *next.motion;
+  if (std::abs(1 / motion.frame_time - source.rate) > 1e-3) motion = resampled(motion, source.rate);
+  Clip clip = clip_of(std::make_shared<const Motion>(std::move(motion)), next.name);
+  clip.retarget.travel = source.motion ? source.retarget.travel : Travel::Free;
+  const int last = clip.last;
+  return poses_of(ClipOnRig(std::make_shared<const Clip>(std::move(clip)), rig), 0, last, progress);
+}
+
+std::string mm_text(double mm) {
+  char text[32];
+  std::snprintf(text, sizeof text, mm < 10 ? "%.1f mm" : "%.0f mm", mm);
+  return text;
+}
+
+struct JoinResult {
+  Clip clip;
+  std::string line, detail;
+  bool is_doubtful = false;
+};
+
+JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
+                const NextTake& next, const JoinWish& wish, Progress& progress) {
+  const int start = source->range_start;
+  const std::vector<Pose> first = poses_of(ClipOnRig(source, rig), start, std::max(start, source->range_end), progress),
+                          second = poses_of_next(*source, rig, next, wish.up, progress);
+  const std::vector<PlantedLimb> limbs = planted_limbs(*rig);
+  const JoinedPoses made = joined(*rig, limbs, first, second, source->rate, wish.settings);
+  JoinResult result{.clip = clip_of_poses(*source, *rig, made.poses, start)};
+  const int seam = start + made.fade_first;
+  std::vector<Marker>& markers = result.clip.markers;
+  markers.insert(std::upper_bound(markers.begin(), markers.end(), seam,
+                                  [](int frame, const Marker& marker) { return frame < marker.frame; }),
+                 {seam, next.name});
+  result.line = std::to_string(made.poses.size()) + " frames: " + next.name + " begins at " + std::to_string(seam);
+  if (!wish.settings.keeps_feet) return result;
+  double slides = 0;
+  for (const Plant& plant : made.plants) slides = std::max(slides, error_of(plant, *rig, limbs, made.poses).slide);
+  result.detail = made.plants.empty() ? "No foot was found to stand in the cross-fade"
+                                      : "Feet that stand in the cross-fade slide by up to " + mm_text(slides);
+  result.is_doubtful = slides > 10 || made.foot_gap > 0;
+  if (made.foot_gap > 0)
+    result.detail += "; a foot goes " + mm_text(made.foot_gap) +
+                     " without being lifted: join the takes at frames in which the same foot steps";
+  return result;
+}
+
+void start_joining(Editor& editor, const NextTake& next, const JoinWish& wish) {
+  stop_playing(editor);
+  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  start_task(editor, "Join clip", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+    auto result = std::make_shared<JoinResult>(join(source, rig, next, wish, progress));
+    if (wish.is_new) result->clip.name += " + " + next.name;
+    return [=](Editor& e) {
+      take_in_clip(e, source, "Join clip", result->clip, wish.is_new);
+      if (result->is_doubtful) e.messages.warn(result->line, result->detail);
+      else e.messages.ok(result->line, result->detail);
+    };
+  });
+}
+
+JoinWish wish_of(const std::vector<FormField>& fields) {
+  JoinWish wish;
+  wish.settings.fade = static_cast<int>(std::lround(fields[0].value));
+  wish.settings.keeps_feet = fields[1].chosen == 1;
+  wish.up = fields[2].chosen == 1 ? UpAxis::Z : UpAxis::Y;
+  wish.is_new = fields[3].chosen == 0;
+  return wish;
+}
+
+std::string join_outcome(const Editor& editor, const NextTake& next, const std::vector<FormField>& fields) {
+  if (!needs_clip_and_rig(editor).empty()) throw Error("there is no clip any more", "join", "open this again");
+  const auto [low, high] = playing_range(editor);
+  const std::int64_t here = std::int64_t{high} - low + 1,
+                     there = frames_at_rate(*next.motion, shown_clip(editor)->rate);
+  const JoinWish wish = wish_of(fields);
+  if (wish.settings.fade > std::min(here, there))
+    throw Error("the takes cannot fade over so many frames", std::to_string(wish.settings.fade) + " frames",
+                "choose from 1 to " + std::to_string(std::min(here, there)));
+  if (here + there > kMostFrames)
+    throw Error("too many frames play", std::to_string(here + there) + " frames", "set a shorter range");
+  const auto limbs = planted_limbs(*editor.document().armature);
+  const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
+  if (wish.settings.keeps_feet && !has_legs)
+    throw Error("no leg of the rig is known by its name", "feet", "name its bones as in \"LeftThigh\"");
+  const bool is_locked = shown_clip(editor)->motion && shown_clip(editor)->retarget.travel == Travel::Locked;
+  return std::to_string(here) + " frames and " + std::to_string(there) + " of " + next.name + " become " +
+         std::to_string(here + there - wish.settings.fade) + ", keys included." +
+         (is_locked ? " The body stays in place here: for travel, set Root motion to Free first." : "");
+}
+
+void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {
+  if (const std::string why = needs_clip_and_rig(editor); !why.empty())
+    throw Error("there is no clip any more", next->name, "import or make one first");
+  const auto [low, high] = playing_range(editor);
+  const double rate = shown_clip(editor)->rate;
+  const double most = double(std::min(std::int64_t{high} - low + 1, frames_at_rate(*next->motion, rate)));
+  const auto limbs = planted_limbs(*editor.document().armature);
+  const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
+  editor.open_dialog(make_form(
+      {"Join " + next->name + ".bvh",
+       "Appends this take to the frames that play. It begins with the place and heading that the body has there.",
+       "Join",
+       {number_of("Cross-fade", "Frames in which the shown clip fades out and the take fades in.",
+                  std::clamp(std::round(0.3 * rate), 1.0, most), 1, most, "%.0f", "frames"),
+        choice_of("Feet", "Whether feet that stand in the cross-fade are kept in place.",
+                  {"As they are", "Kept in place"}, has_legs ? 1 : 0),
+        choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, next->up == UpAxis::Z ? 1 : 0),
+        choice_of("Result", "Whether the joined takes become a clip of their own or replace the shown clip.",
+                  {"New clip", "Same clip"})},
+       [next](const Editor& e, const std::vector<FormField>& fields) { return join_outcome(e, *next, fields); },
+       [next](Editor& e, const std::vector<FormField>& fields) { start_joining(e, *next, wish_of(fields)); }}));
+}
+
+void read_next(Editor& editor, const Path& path) {
+  start_task(editor, "Read " + path.filename().string(), [path](Progress&) -> Finish {
+    auto next = std::make_shared<NextTake>();
+    next->motion = std::make_shared<const Motion>(read_bvh(path));
+    next->name = path.stem().string();
+    if (next->motion->frame_count == 0)
+      throw Error("this motion has no frames", path.string(), "select a file with a take");
+    next->up = up_axis_of(*next->motion).axis;
+    return [next](Editor& e) { ask_join(e, next); };
+  });
+}
+
+}  // namespace
+
+std::vector<Operator> clip_join_operators() {
+  return {{"motion.join_clip", "Join clip...", "", "Motion",
+           "Append a take from a BVH file to the clip, with a cross-fade from where the body is and as it stands.",
+           [](Editor& editor) {
+             browse(editor, {.purpose = "file.import_motion",
+                             .title = "Join a motion to the clip",
+                             .action = "Join",
+                             .filters = {{"Motions", {".bvh"}}},
+                             .folder = editor.project_path.parent_path(),
+                             .chosen = read_next});
+           },
+           needs_clip_and_rig}};
+}
+
+}  // namespace limber::editor
