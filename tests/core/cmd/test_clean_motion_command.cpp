@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/motion/bvh.h"
 #include "tests/support/program.h"
 #include "tests/support/shared_data.h"
 
@@ -96,6 +97,71 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated without a jump at the seam") {
+  NEEDS_SHARED("data/bp3d/body.armature.json");
+  NEEDS_SHARED("data/bvh/cmu_12_01_walk.bvh");
+  const std::string rig = shared_path("data/bp3d/body.armature.json").string();
+  const TemporaryFolder folder;
+  const auto made = [&](const std::string& from, const char* name, std::vector<std::string> more) {
+    const std::string to = (folder / name).string();
+    std::vector<std::string> words{"clean-motion", rig, "--motion", from, "--up", "auto", "-o", to};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto run = run_limber(words);
+    CAPTURE(run.err);
+    REQUIRE(run.exit_code == 0);
+    return to;
+  };
+  const std::string walk = made(shared_path("data/bvh/cmu_12_01_walk.bvh").string(), "walk.bvh", {"--smooth", "6"});
+  // Two steps, in which the body comes back to its pose.
+  constexpr int kFirst = 174, kSteps = 152, kSeam = 36;
+  limber::Motion cycle = limber::read_bvh(walk);
+  cycle.values.erase(cycle.values.begin() + (kFirst + kSteps + 1) * cycle.channel_count, cycle.values.end());
+  cycle.values.erase(cycle.values.begin(), cycle.values.begin() + kFirst * cycle.channel_count);
+  cycle.frame_count = kSteps + 1;
+  limber::write_bvh(cycle, folder / "cycle.bvh");
+  const std::string mirrored = made((folder / "cycle.bvh").string(), "mirrored.bvh", {"--mirror"}),
+                    twice = made(mirrored, "twice.bvh", {"--mirror"}),
+                    fast = made((folder / "cycle.bvh").string(), "fast.bvh", {"--speed", "2"}),
+                    loop = made((folder / "cycle.bvh").string(), "loop.bvh", {"--loop", "3", "--seam", "36"}),
+                    spot = made((folder / "cycle.bvh").string(), "spot.bvh", {"--loop", "3", "--on-the-spot"});
+  const auto apart = [](const auto& a, const auto& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); };
+  for (const char* bone : {"Pelvis", "LeftFoot", "RightFoot", "LeftHand", "RightShank"}) {
+    CAPTURE(bone);
+    const Places take = track(rig, (folder / "cycle.bvh").string(), bone, "tail"),
+                 again = track(rig, twice, bone, "tail"), faster = track(rig, fast, bone, "tail"),
+                 looped = track(rig, loop, bone, "tail");
+    REQUIRE(take.size() == kSteps + 1);
+    REQUIRE(faster.size() == kSteps / 2 + 1);
+    REQUIRE(looped.size() == 3 * kSteps + 1);
+    for (std::size_t f = 0; f < take.size(); ++f) CHECK(apart(take[f], again[f]) < 0.01);
+    for (std::size_t f = 0; f < faster.size(); ++f) CHECK(apart(take[2 * f], faster[f]) < 0.01);
+    const auto fastest = [&](const Places& places, int from, int to) {
+      double most = 0;
+      for (int f = from; f < to; ++f) most = std::max(most, apart(places[f], places[f + 1]));
+      return most;
+    };
+    const double sides = std::max(fastest(take, 0, kSeam / 2), fastest(take, kSteps - kSeam / 2, kSteps));
+    for (const int seam : {kSteps, 2 * kSteps}) {
+      CHECK(fastest(looped, seam - kSeam / 2, seam + kSeam / 2) < 1.5 * sides);
+      const double before = apart(looped[seam - 1], looped[seam]), after = apart(looped[seam], looped[seam + 1]);
+      CHECK(std::abs(after - before) < 0.5);  // mm per frame; the take itself has 2
+    }
+    CHECK(apart(looped[kSteps], looped[2 * kSteps]) == doctest::Approx(apart(looped[0], looped[kSteps])).epsilon(0.02));
+    const Places still = track(rig, spot, bone, "tail");
+    for (std::size_t f = 0; f + kSteps < still.size(); ++f) CHECK(apart(still[f], still[f + kSteps]) < 0.01);
+  }
+  // The left foot of the mirrored walk steps as the right one did, but for what differs between the legs.
+  const Places left = track(rig, mirrored, "LeftFoot", "position"),
+               right = track(rig, (folder / "cycle.bvh").string(), "RightFoot", "position");
+  double most = 0, lifted = 0;
+  for (std::size_t f = 0; f < left.size(); ++f) {
+    most = std::max(most, std::abs(left[f][2] - right[f][2]));
+    lifted = std::max(lifted, left[f][2] - left[0][2]);
+  }
+  CHECK(most < 10);
+  CHECK(lifted > 50);
+}
+
 TEST_CASE("clean-motion command: what cannot be cleaned is one clear line, and no file is left") {
   const TemporaryFolder folder;
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
@@ -113,6 +179,7 @@ TEST_CASE("clean-motion command: what cannot be cleaned is one clear line, and n
   refused({}, "nothing to clean");
   refused({"--smooth", "1e6"}, "cutoff frequency");
   refused({"--plant-feet"}, "no leg");
+  refused({"--loop", "2", "--seam", "100000"}, "the seam cannot be blended");
   refused({"--hold", "tail@0-1"}, "no limb of this name");
   refused({"--hold", "hand"}, "a hold is not understood");
   for (const char* value : {"hand=1,2@0-1", "hand=1,2,nan@0-1", "hand@0", "hand@0-", "hand@0.5-1", "hand=@0-1",
