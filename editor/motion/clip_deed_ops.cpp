@@ -85,6 +85,7 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
   const Clip* clip = shown_clip(editor);
   if (!clip) throw Error("there is no clip any more", "speed", "open this again");
   const double factor = factor_of(*clip, fields);
+  if (factor == 1) throw NotYet{"The clip has this speed already."};
   const double steps = double(clip->range_end) - clip->range_start;
   if (factor < kSlowest || factor > kFastest)
     throw Error("this length cannot be reached", frames_text(static_cast<int>(fields[2].value)),
@@ -123,16 +124,14 @@ void ask_speed(Editor& editor) {
 // ---- Loop
 
 void tell_of_loop(Editor& editor, const LoopedPoses& loop, int repeats) {
-  char text[200];
-  std::snprintf(text, sizeof text, "The seam closes a gap of up to %.1f\u00b0%s%.60s", loop.gap_degrees,
+  char text[160];
+  std::snprintf(text, sizeof text, "The seam closes a gap of up to %.1f\u00b0%s%.40s", loop.gap_degrees,
                 loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str());
-  std::string detail = text;
+  const std::string detail = text;
   const std::string line = std::to_string(repeats) + (repeats == 1 ? " repeat, " : " repeats, ") +
                            frames_text(static_cast<int>(loop.poses.size()));
   if (loop.haste <= kHasty) return editor.messages.ok(line, detail);
-  std::snprintf(text, sizeof text,
-                "; bones turn up to %.1f times as fast there: set the range to a whole cycle, or blend more frames",
-                loop.haste);
+  std::snprintf(text, sizeof text, "; bones hurry %.1f times: loop a whole cycle, or blend longer", loop.haste);
   editor.messages.warn(line, detail + text);
 }
 
