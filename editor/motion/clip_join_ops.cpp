@@ -19,6 +19,7 @@ namespace limber::editor {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames of the joined clip
+constexpr double kSlides = 10;             // mm: a standing foot that slides further is warned of
 
 // A take that was read from a file, before the user says how it is joined.
 struct NextTake {
@@ -96,11 +97,10 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
   double slides = 0;
   for (const Plant& plant : made.plants) slides = std::max(slides, error_of(plant, *rig, limbs, made.poses).slide);
   result.detail = made.plants.empty() ? "No foot was found to stand in the cross-fade"
-                                      : "Feet that stand in the cross-fade slide by up to " + mm_text(slides);
-  result.is_doubtful = slides > 10 || made.foot_gap > 0;
+                                      : "Feet that stand there slide by up to " + mm_text(slides);
+  result.is_doubtful = slides > kSlides || made.foot_gap > 0;
   if (made.foot_gap > 0)
-    result.detail += "; a foot goes " + mm_text(made.foot_gap) +
-                     " without being lifted: join the takes at frames in which the same foot steps";
+    result.detail += "; a foot goes " + mm_text(made.foot_gap) + " unlifted: join where the same foot steps";
   return result;
 }
 

@@ -127,6 +127,35 @@ TEST_CASE("joined poses: whatever the phases are, planted feet stay and the body
   CHECK(stood > 80);
 }
 
+TEST_CASE("joined poses: a foot that would have to go far without a step is told of") {
+  const Armature rig = walker();
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
+  // The body stands with both feet before it, and then with both behind it.
+  const auto standing = [&](double angle) {
+    Pose pose = rest_pose(rig);
+    for (const int thigh : {1, 4}) pose.rotation[thigh] = glm::angleAxis(angle, glm::dvec3(1, 0, 0));
+    return std::vector<Pose>(60, pose);
+  };
+  const auto joined_at = [&](double before, double after) {
+    return joined(rig, limbs, standing(before), standing(after), kRate, {.fade = 20, .keeps_feet = true});
+  };
+  const double far = joined_at(-0.3, 0.3).foot_gap;
+  const PlantedLimb& left = limbs[0];
+  const double joint = glm::distance(place_of(left, PlantPoint::Joint, rig, standing(-0.3)[0]),
+                                     place_of(left, PlantPoint::Joint, rig, standing(0.3)[0]));
+  CHECK(far >= joint - 1);
+  CHECK(far < joint + 100);
+  // What is near enough is made one place, where the foot stays.
+  const JoinedPoses near = joined_at(-0.03, 0.03);
+  CHECK(near.foot_gap == 0);
+  REQUIRE(near.plants.size() >= 2);
+  for (const Plant& plant : near.plants) {
+    CHECK(plant.first == 0);
+    CHECK(plant.last == 99);
+    CHECK(error_of(plant, rig, limbs, near.poses).slide < 1);
+  }
+}
+
 TEST_CASE("joined poses: a fade that is too long is refused") {
   const Armature rig = walker();
   const std::vector<Pose> take = sliding_steps(rig, 20), shorter = sliding_steps(rig, 5);
