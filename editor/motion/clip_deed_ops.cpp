@@ -131,7 +131,7 @@ void tell_of_loop(Editor& editor, const LoopedPoses& loop, int repeats) {
   const std::string line = std::to_string(repeats) + (repeats == 1 ? " repeat, " : " repeats, ") +
                            frames_text(static_cast<int>(loop.poses.size()));
   if (loop.haste <= kHasty) return editor.messages.ok(line, detail);
-  std::snprintf(text, sizeof text, "; bones hurry %.1f times: loop a whole cycle, or blend longer", loop.haste);
+  std::snprintf(text, sizeof text, "; bones turn %.1f times as fast: loop a whole cycle, or blend longer", loop.haste);
   editor.messages.warn(line, detail + text);
 }
 
