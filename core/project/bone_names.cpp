@@ -136,9 +136,14 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     pose.rotation[bone] = plane.rotation(pose.rotation[bone]);
     document.pose = std::make_shared<const Pose>(std::move(pose));
   }
+  std::set<std::string> taken;
+  for (const auto& [name, now] : gone_over) taken.insert(now);
+  // What a removed bone left under a name that a mirrored bone takes is dropped, or the bone would inherit a part of
+  // it.
   const auto carry = [&](auto& by_bone, const auto& in_the_mirror) {
     std::remove_reference_t<decltype(by_bone)> next;
     for (const auto& [bone, value] : by_bone) {
+      if (taken.contains(bone) && !gone_over.contains(bone)) continue;
       const auto now = gone_over.find(bone);
       next[now == gone_over.end() ? bone : now->second] = now == gone_over.end() ? value : in_the_mirror(value);
     }

@@ -130,6 +130,27 @@ TEST_CASE("bone names: the curve of a mirrored bone is the mirror image of its c
   }
 }
 
+TEST_CASE("bone names: a mirrored bone inherits nothing of a removed bone whose name it takes") {
+  Document document;
+  Armature rig;
+  rig.bones = {{"Trunk", -1, {0, 0, 0}, {0, 0, 100}}, {"Arm.L", 0, {20, 0, 90}, {60, 5, 90}}};
+  document.armature = std::make_shared<const Armature>(rig);
+  Clip clip{.name = "keys"};
+  clip.keys.bones["Arm.L"] = {{5, {1, 0, 0, 0}}, {20, {0, 1, 0, 0}}};
+  set_shape(clip.keys, "Arm.L", 20, {.next = Interpolation::Bezier});
+  clip.keys.bones["Arm.R"] = {{3, {0, 0, 0, 1}}};
+  document.clips = {std::make_shared<const Clip>(clip)};
+  Armature mirrored = rig;
+  mirrored.bones[1] = mirror_image(rig.bones[1], mirror_plane(rig));
+  mirrored.bones[1].name = "Arm.R";
+  follow_mirrored(document, rig, mirrored, {1});
+  const Keys& keys = document.clips[0]->keys;
+  CHECK(!keys.bones.contains("Arm.L"));
+  REQUIRE(keys.bones.contains("Arm.R"));
+  CHECK(frames_of(keys) == std::set<int>{5, 20});
+  CHECK(shapes_of(keys, "Arm.R").contains(20));
+}
+
 TEST_CASE("bone names: a bone does not inherit the keys of a removed one whose name it takes") {
   Document document = small_document();
   Clip clip = *document.clips[0];
