@@ -23,6 +23,9 @@
 
 namespace limber {
 
+// Bounds of what a project's file may hold: the body's shift in mm, and a tangent's components per frame.
+constexpr double kFarthestShift = 1e7, kSteepestTangent = 1e6;
+
 // Returns the rotation vector of a unit quaternion, with an angle in [0, 2 pi): q and -q differ by a turn.
 glm::dvec3 rotation_vector(const glm::dquat& q);
 // Returns the rotation vector of the shorter turn from one rotation to another, in the parent's frame.

@@ -7,6 +7,7 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/motion/key_curve.h"
 #include "core/platform/memory.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
@@ -21,12 +22,21 @@ constexpr std::int64_t kMostFrames = 1 << 28;
 constexpr std::int32_t kLongestAxis = 1 << 20;
 constexpr std::int64_t kBatch = 32;  // number of leaves that are unpacked in parallel
 
+bool is_finite(const glm::dquat& q) {
+  return std::isfinite(q.w) && std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z);
+}
 bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 glm::dvec3 get_vector(ByteReader& in) {
   glm::dvec3 v;
   for (int i = 0; i < 3; ++i) v[i] = in.get<double>();
   return v;
+}
+// Reads a vector of finite numbers and brings its components into [-most, most].
+glm::dvec3 get_within(ByteReader& in, double most) {
+  const glm::dvec3 v = get_vector(in);
+  in.require(is_finite(v));
+  return glm::clamp(v, -most, most);
 }
 glm::dquat get_rotation(ByteReader& in) {
   glm::dquat q;
@@ -126,27 +136,28 @@ void get(ByteReader& in, Keys& keys) {
     for (std::size_t count = in.count(36); count > 0; --count) {
       const auto frame = get_frame(in);
       track[frame] = get_rotation(in);
+      in.require(is_finite(track[frame]));
     }
     in.require(!track.empty());
   }
   for (std::size_t count = in.count(28); count > 0; --count) {
     const auto frame = get_frame(in);
-    keys.root[frame] = get_vector(in);
+    keys.root[frame] = get_within(in, kFarthestShift);
   }
 }
 
-// Reads the shapes of the keys of one bone, or of the body's shift.
+// Reads the shapes of the keys of one bone, or of the body's shift. Leaves out the shape of a key that does not exist.
 template <class Track>
 void get(ByteReader& in, KeyShapes& shapes, const Track& track) {
   for (std::size_t count = in.count(54); count > 0; --count) {
     const auto frame = get_frame(in);
-    in.require(track.contains(frame));
-    KeyShape& shape = shapes[frame];
+    KeyShape shape;
     shape.next = static_cast<Interpolation>(in.get_below<std::uint8_t>(static_cast<int>(Interpolation::Bezier) + 1));
     shape.handles = static_cast<HandleKind>(in.get_below<std::uint8_t>(static_cast<int>(HandleKind::Flat) + 1));
-    shape.in = get_vector(in);
-    shape.out = get_vector(in);
-    in.require(is_finite(shape.in) && is_finite(shape.out) && shape != KeyShape{});
+    shape.in = get_within(in, kSteepestTangent);
+    shape.out = get_within(in, kSteepestTangent);
+    in.require(shape != KeyShape{});
+    if (track.contains(frame)) shapes[frame] = shape;
   }
 }
 
@@ -154,9 +165,9 @@ void get_shapes(ByteReader& in, Keys& keys) {
   for (std::size_t bones = in.count(62); bones > 0; --bones) {
     const std::string bone = in.text();
     const auto track = keys.bones.find(bone);
-    in.require(track != keys.bones.end());
-    get(in, keys.shapes[bone], track->second);
-    in.require(!keys.shapes[bone].empty());
+    KeyShapes shapes;
+    get(in, shapes, track == keys.bones.end() ? std::map<int, glm::dquat>{} : track->second);
+    if (!shapes.empty()) keys.shapes[bone] = std::move(shapes);
   }
   get(in, keys.root_shapes, keys.root);
 }

@@ -168,7 +168,7 @@ Clip keyed_clip() {
   clip.range_end = 99;
   clip.keys.bones["Lower"] = {{-5, {1, 0, 0, 0}}, {12, {0.1, 0.2, 0.3, 0.4}}};
   clip.keys.root[12] = {1e-300, -0.0, 7};
-  set_shape(clip.keys, "Lower", -5, {Interpolation::Bezier, HandleKind::Free, {1e-9, 0, -2}, {0.5, 1e200, 0}});
+  set_shape(clip.keys, "Lower", -5, {Interpolation::Bezier, HandleKind::Free, {1e-9, 0, -2}, {0.5, 1e5, 0}});
   set_root_shape(clip.keys, 12, {Interpolation::Constant, HandleKind::Flat});
   clip.markers = {{3, "step"}, {3, ""}};
   return clip;

@@ -8,6 +8,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "core/motion/key_curve.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"
@@ -204,13 +205,36 @@ TEST_CASE("project: a document of the tenth layout opens, its keys without shape
   CHECK(warnings.empty());
 }
 
-TEST_CASE("project: shapes of keys that do not exist, or with tangents that are no numbers, are refused") {
+TEST_CASE("project: shapes of keys that do not exist are left out, and what is too far is brought near") {
+  Document now;
+  Clip clip{.name = "keys"};
+  clip.keys.bones["Arm"] = {{3, {1, 0, 0, 0}}, {9, {0, 1, 0, 0}}};
+  clip.keys.root = {{0, {1e17, 5, 0}}};
+  clip.keys.shapes["Arm"][3] = {Interpolation::Bezier, HandleKind::Free, {0, -1e308, 1}, {1e308, 0, 2}};
+  Clip stray = clip;
+  stray.keys.shapes["Arm"][4] = {.next = Interpolation::Bezier};
+  stray.keys.shapes["Leg"][3] = {.next = Interpolation::Bezier};
+  now.clips = {std::make_shared<const Clip>(stray)};
+  Chunks chunks;
+  DocumentWriter writer;
+  std::vector<std::string> warnings;
+  const Document back = read_document(writer.write(now, chunks, Packing::Quick), chunks, "new.limber", warnings);
+  clip.keys.root[0].x = 1e7;
+  clip.keys.shapes["Arm"][3] = {Interpolation::Bezier, HandleKind::Free, {0, -1e6, 1}, {1e6, 0, 2}};
+  CHECK(back.clips[0]->keys == clip.keys);
+  for (int frame = 0; frame <= 12; ++frame) {
+    const glm::dquat q = value_at(back.clips[0]->keys.bones.at("Arm"), back.clips[0]->keys.shapes.at("Arm"), frame);
+    CHECK(std::abs(glm::length(q) - 1) < 1e-9);
+  }
+}
+
+TEST_CASE("project: keys and tangents that are no numbers are refused") {
   for (const int wrong : {0, 1, 2}) {
     Document now;
     Clip clip{.name = "keys"};
     clip.keys.bones["Arm"] = {{3, {1, 0, 0, 0}}};
-    if (wrong == 0) clip.keys.shapes["Arm"][4] = {.next = Interpolation::Bezier};
-    if (wrong == 1) clip.keys.shapes["Leg"][3] = {.next = Interpolation::Bezier};
+    if (wrong == 0) clip.keys.bones["Arm"][3].x = NAN;
+    if (wrong == 1) clip.keys.root[3] = {0, INFINITY, 0};
     if (wrong == 2) clip.keys.shapes["Arm"][3] = {.next = Interpolation::Bezier, .out = {NAN, 0, 0}};
     now.clips = {std::make_shared<const Clip>(clip)};
     Chunks chunks;
