@@ -34,20 +34,24 @@ struct SplineKey {
   int frame = 0;
   glm::dvec3 speed{0};
 };
+using Curve = std::vector<SplineKey>;
 
 // A curve through some of the recorded values. Keys are counted by their place in `keys`.
 template <class Value>
 class Spline {
  public:
-  Spline(const std::vector<Value>& recorded, double error) : recorded_(recorded), error_(error) {}
+  Spline(const std::vector<Value>& recorded, double error, Progress& progress)
+      : recorded_(recorded),
+        error_(error),
+        progress_(progress) {}
 
-  std::vector<SplineKey> fitted() {
+  Curve fitted() {
     const int last = static_cast<int>(recorded_.size()) - 1;
     keys_ = {{0}, {last, {}}};
     keys_[0].speed = difference_at(0);
     keys_[1].speed = difference_at(last);
-    fit(0, 1);
-    while (part_spans()) fit(0, static_cast<int>(keys_.size()) - 1);
+    fit(keys_, 0, 1);
+    while (part_spans()) fit(keys_, 0, static_cast<int>(keys_.size()) - 1);
     remove_needless();
     return keys_;
   }
@@ -64,26 +68,27 @@ class Spline {
     return way_from(recorded_[before], recorded_[after]) / static_cast<double>(after - before);
   }
 
-  Value value(int span, int frame) const {
-    const SplineKey &a = keys_[span], &b = keys_[span + 1];
+  Value value(const Curve& keys, int span, int frame) const {
+    const SplineKey &a = keys[span], &b = keys[span + 1];
     const double frames = b.frame - a.frame;
     return bezier_at(recorded_[a.frame], a.speed, recorded_[b.frame], b.speed, frames, (frame - a.frame) / frames);
   }
 
-  Worst worst_of(int span) const {
+  Worst worst_of(const Curve& keys, int span) const {
+    if (progress_.cancelled()) throw Cancelled();
     Worst worst;
-    for (int frame = keys_[span].frame + 1; frame < keys_[span + 1].frame; ++frame)
-      if (const double error = size_of_error(recorded_[frame], value(span, frame)); error > worst.error)
+    for (int frame = keys[span].frame + 1; frame < keys[span + 1].frame; ++frame)
+      if (const double error = size_of_error(recorded_[frame], value(keys, span, frame)); error > worst.error)
         worst = {frame, error};
     return worst;
   }
 
   // Inserts a key in each span that is too far from some frame. Returns false if there is none.
   bool part_spans() {
-    std::vector<SplineKey> parted;
+    Curve parted;
     for (int span = 0; span + 1 < std::ssize(keys_); ++span) {
       parted.push_back(keys_[span]);
-      if (const Worst worst = worst_of(span); worst.error > error_)
+      if (const Worst worst = worst_of(keys_, span); worst.error > error_)
         parted.push_back({worst.frame, difference_at(worst.frame)});
     }
     parted.push_back(keys_.back());
@@ -94,21 +99,21 @@ class Spline {
 
   // Fits the speeds of the keys `low` to `high` to the frames of the spans beside them. A change of a key's speed moves
   // the curve, to first order, by the cubic Hermite functions of the two spans at the key.
-  void fit(int low, int high) {
+  void fit(Curve& keys, int low, int high) const {
     const int count = high - low + 1;
     std::vector<double> own(count), with_next(count);
     std::vector<glm::dvec3> wanted(count);
     for (int step = 0; step < kSteps; ++step) {
       std::fill(own.begin(), own.end(), kPull);
       std::fill(with_next.begin(), with_next.end(), 0.0);
-      for (int i = 0; i < count; ++i) wanted[i] = kPull * (difference_at(keys_[low + i].frame) - keys_[low + i].speed);
-      for (int span = std::max(0, low - 1); span <= high && span + 1 < std::ssize(keys_); ++span) {
-        const double frames = keys_[span + 1].frame - keys_[span].frame;
+      for (int i = 0; i < count; ++i) wanted[i] = kPull * (difference_at(keys[low + i].frame) - keys[low + i].speed);
+      for (int span = std::max(0, low - 1); span <= high && span + 1 < std::ssize(keys); ++span) {
+        const double frames = keys[span + 1].frame - keys[span].frame;
         const int i = span - low;
-        for (int frame = keys_[span].frame + 1; frame < keys_[span + 1].frame; ++frame) {
-          const double t = (frame - keys_[span].frame) / frames, first = frames * t * (1 - t) * (1 - t),
+        for (int frame = keys[span].frame + 1; frame < keys[span + 1].frame; ++frame) {
+          const double t = (frame - keys[span].frame) / frames, first = frames * t * (1 - t) * (1 - t),
                        second = -frames * t * t * (1 - t);
-          const glm::dvec3 off = way_from(value(span, frame), recorded_[frame]);
+          const glm::dvec3 off = way_from(value(keys, span, frame), recorded_[frame]);
           if (i >= 0) {
             own[i] += first * first;
             wanted[i] += first * off;
@@ -128,41 +133,35 @@ class Spline {
       for (int i = count - 1; i >= 0; --i) {
         if (i + 1 < count) wanted[i] -= with_next[i] * wanted[i + 1];
         wanted[i] /= own[i];
-        keys_[low + i].speed += wanted[i];
+        keys[low + i].speed += wanted[i];
       }
     }
   }
 
-  // Fits the speeds around a key again. Returns whether the spans there stay within the error; if not, restores
-  // `before`.
-  bool keeps_within(int key, const std::vector<SplineKey>& before) {
-    const int last = static_cast<int>(keys_.size()) - 1, low = std::max(0, key - kNear),
-              high = std::min(last, key + kNear - 1);
-    fit(low, high);
-    for (int span = std::max(0, low - 1); span <= high && span < last; ++span)
-      if (worst_of(span).error > error_) {
-        keys_ = before;
-        return false;
-      }
-    return true;
-  }
-
-  bool remove(int key) {
-    const std::vector<SplineKey> before = keys_;
+  // Removes a key, if `fresh` is empty, or puts the one key of `fresh` in place of it and the next one. Fits the speeds
+  // around again. Returns whether the spans there stay within the error; if not, changes nothing. Works on a copy of
+  // the keys nearby, because a long recording has very many.
+  bool replace(int key, const Curve& fresh) {
+    const int last = static_cast<int>(keys_.size()) - 2, low = std::max(0, key - kNear),
+              high = std::min(last, key + kNear - 1), begin = std::max(0, low - 1), end = std::min(last, high + 1) + 2;
+    Curve near(keys_.begin() + begin, keys_.begin() + key);
+    near.insert(near.end(), fresh.begin(), fresh.end());
+    near.insert(near.end(), keys_.begin() + key + 1 + std::ssize(fresh), keys_.begin() + end);
+    fit(near, low - begin, high - begin);
+    for (int span = 0; span + 1 < std::ssize(near); ++span)
+      if (worst_of(near, span).error > error_) return false;
     keys_.erase(keys_.begin() + key);
-    return keeps_within(key, before);
+    std::copy(near.begin(), near.end(), keys_.begin() + begin);
+    return true;
   }
 
   // Puts one key between a key and the next one in place of both.
   bool merge(int key) {
-    const std::vector<SplineKey> before = keys_;
-    const int from = before[key].frame, to = before[key + 1].frame;
+    const SplineKey from = keys_[key], to = keys_[key + 1];
     for (const double share : {0.5, 0.25, 0.75}) {
-      const int frame = from + static_cast<int>(std::lround(share * (to - from)));
-      if (frame == from || frame == to) continue;
-      keys_.erase(keys_.begin() + key);
-      keys_[key] = {frame, (before[key].speed + before[key + 1].speed) / 2.0};
-      if (keeps_within(key, before)) return true;
+      const int frame = from.frame + static_cast<int>(std::lround(share * (to.frame - from.frame)));
+      if (frame != from.frame && frame != to.frame && replace(key, {{frame, (from.speed + to.speed) / 2.0}}))
+        return true;
     }
     return false;
   }
@@ -172,7 +171,7 @@ class Spline {
     for (bool any = true; any;) {
       any = false;
       for (int key = 1; key + 1 < std::ssize(keys_); ++key)
-        if (remove(key)) {
+        if (replace(key, {})) {
           any = true;
           --key;
         }
@@ -182,7 +181,8 @@ class Spline {
 
   const std::vector<Value>& recorded_;
   double error_;
-  std::vector<SplineKey> keys_;
+  Progress& progress_;
+  Curve keys_;
 };
 
 // The keys of one bone, or of the shift, and how far they are off the recorded values.
@@ -195,7 +195,8 @@ struct ReducedTrack {
 
 // Returns the keys of the recorded values. A track that is `rest` at every frame has none.
 template <class Value>
-ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start, double error) {
+ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start, double error,
+                            Progress& progress) {
   ReducedTrack<Value> track;
   const auto all_are = [&](const Value& value) {
     return std::all_of(recorded.begin(), recorded.end(),
@@ -206,7 +207,7 @@ ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& res
     track.keys[start] = recorded[0];
     return track;
   }
-  for (const SplineKey& key : Spline<Value>(recorded, error).fitted()) {
+  for (const SplineKey& key : Spline<Value>(recorded, error, progress).fitted()) {
     track.keys[start + key.frame] = recorded[key.frame];
     track.shapes[start + key.frame] = {Interpolation::Bezier, HandleKind::Aligned, key.speed, key.speed};
   }
@@ -229,7 +230,7 @@ ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& p
       if (progress.cancelled()) throw Cancelled();
       std::vector<glm::dquat> recorded;
       for (const Pose& pose : poses) recorded.push_back(pose.rotation[bone]);
-      tracks[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start, settings.degrees);
+      tracks[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start, settings.degrees, progress);
     }
   });
   for (std::size_t bone = 0; bone < tracks.size(); ++bone) {
@@ -245,7 +246,7 @@ ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& p
   }
   std::vector<glm::dvec3> shift;
   for (const Pose& pose : poses) shift.push_back(pose.root_translation);
-  ReducedTrack<glm::dvec3> root = reduced(shift, glm::dvec3(0), start, settings.mm);
+  ReducedTrack<glm::dvec3> root = reduced(shift, glm::dvec3(0), start, settings.mm, progress);
   result.count += std::ssize(root.keys);
   result.most_mm = root.error;
   result.keys.root = std::move(root.keys);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/motion/reduce_keys.h"
 
+#include <atomic>
+
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
@@ -48,7 +50,32 @@ double degrees_apart(const glm::dquat& a, const glm::dquat& b) {
   return glm::degrees(std::atan2(glm::length(axis), turn[0][0] + turn[1][1] + turn[2][2] - 1));
 }
 
+// Is cancelled when it has been asked a number of times.
+class CancelledLater final : public Progress {
+ public:
+  explicit CancelledLater(int times) : left_(times) {}
+  bool cancelled() const override { return --left_ < 0; }
+
+ private:
+  mutable std::atomic<int> left_;
+};
+
 }  // namespace
+
+TEST_CASE("reducing keys: a cancel takes effect within a bone, while its keys are inserted and while they go") {
+  Armature armature = arm();
+  armature.bones.resize(1);
+  std::vector<Pose> poses;
+  for (Pose pose : recorded(241)) {
+    pose.rotation.resize(1);
+    pose.root_translation = {0, 0, 0};
+    poses.push_back(pose);
+  }
+  for (const int times : {2, 200}) {
+    CancelledLater progress(times);
+    CHECK_THROWS_AS(reduced_to_keys(armature, poses, 0, {.degrees = 0.05, .mm = 1}, progress), Cancelled);
+  }
+}
 
 TEST_CASE("reducing keys: every played frame stays within the error, with far fewer keys than frames") {
   const Armature armature = arm();
