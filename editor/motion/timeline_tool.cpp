@@ -11,7 +11,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFurthest = 1e7;  // largest absolute value of a frame number
+constexpr double kFurthest = 1e7;     // largest absolute value of a frame number
+constexpr double kLeastScale = 0.01;  // smallest absolute value of a factor of time
 
 void show_under_pointer(Editor& editor) {
   const double frame =
@@ -35,7 +36,38 @@ std::optional<int> key_under_pointer(const Editor& editor) {
   return nearest;
 }
 
-void commit_change(Editor& editor, KeyChange change) {
+// Returns the shapes of a track's keys when time is scaled by a factor: the slopes go with it, and backwards the way to
+// the key before becomes the way to the next one.
+template <class Track>
+KeyShapes scaled_shapes(const Track& track, const KeyShapes& shapes, const std::map<int, int>& frame_of,
+                        double factor) {
+  KeyShapes scaled;
+  std::optional<Interpolation> before;
+  for (const auto& [frame, to] : frame_of) {
+    if (!track.contains(frame)) continue;
+    KeyShape shape = shape_at(shapes, frame);
+    shape.in /= factor;
+    shape.out /= factor;
+    if (factor < 0) {
+      std::swap(shape.in, shape.out);
+      std::swap(shape.next, before ? *before : before.emplace(shape.next));
+    }
+    scaled[frame] = shape;
+  }
+  if (before) scaled.begin()->second.next = *before;
+  return scaled;
+}
+
+void scale_keys(Keys& keys, const std::map<int, int>& frame_of, double factor) {
+  for (const auto& [bone, track] : keys.bones)
+    for (const auto& [frame, shape] : scaled_shapes(track, shapes_of(keys, bone), frame_of, factor))
+      set_shape(keys, bone, frame, shape);
+  for (const auto& [frame, shape] : scaled_shapes(keys.root, keys.root_shapes, frame_of, factor))
+    set_root_shape(keys, frame, shape);
+  move_keys(keys, frame_of);
+}
+
+void commit_change(Editor& editor, KeyChange change, double factor = 1) {
   const std::map<int, int> frame_of = std::exchange(editor.timeline->moving, {});
   const bool any =
       std::any_of(frame_of.begin(), frame_of.end(), [](const auto& key) { return key.first != key.second; });
@@ -44,7 +76,11 @@ void commit_change(Editor& editor, KeyChange change) {
   editor.timeline->chosen.clear();
   for (const auto& [from, to] : frame_of) editor.timeline->chosen.insert(to);
   edit_clip(editor, kLabels[static_cast<int>(change)], PoseThen::FromClip, [&](Clip& clip) {
-    change == KeyChange::Duplicate ? copy_keys(clip.keys, frame_of) : move_keys(clip.keys, frame_of);
+    switch (change) {
+      case KeyChange::Move: return move_keys(clip.keys, frame_of);
+      case KeyChange::Scale: return scale_keys(clip.keys, frame_of, factor);
+      case KeyChange::Duplicate: return copy_keys(clip.keys, frame_of);
+    }
   });
 }
 
@@ -93,6 +129,8 @@ class ChangingKeys final : public Modal {
       value_ = number_.typed() ? std::round(number_.value()) : std::round(frames);
     }
     value_ = std::clamp(value_, -kFurthest, kFurthest);
+    // Keys that fell on one another would be lost, and their slopes be infinite.
+    if (change_ == KeyChange::Scale) value_ = std::copysign(std::max(std::abs(value_), kLeastScale), value_);
     auto& moving = editor.timeline->moving;
     moving.clear();
     for (int frame : chosen_) {
@@ -103,7 +141,7 @@ class ChangingKeys final : public Modal {
     return true;
   }
   bool confirm(Editor& editor) {
-    commit_change(editor, change_);
+    commit_change(editor, change_, value_);
     return false;
   }
   bool drop(Editor& editor) {
