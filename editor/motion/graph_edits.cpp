@@ -28,8 +28,11 @@ KeyShape shape_of(const Keys& keys, const GraphTrack& track, int frame) {
   return shape_at(track.is_shift ? keys.root_shapes : shapes_of(keys, track.bone), frame);
 }
 void put_shape(Keys& keys, const GraphTrack& track, int frame, const KeyShape& shape) {
-  if (track.is_shift) set_root_shape(keys, frame, shape);
-  else set_shape(keys, track.bone, frame, shape);
+  const glm::dvec3 most(kSteepestTangent);
+  const KeyShape within{shape.next, shape.handles, glm::clamp(shape.in, -most, most),
+                        glm::clamp(shape.out, -most, most)};
+  if (track.is_shift) set_root_shape(keys, frame, within);
+  else set_shape(keys, track.bone, frame, within);
 }
 
 Tangents tangents_of(const GraphCurves& curves, const GraphTrack& track, int frame) {
@@ -45,18 +48,38 @@ KeyShape freed(const GraphCurves& curves, const GraphTrack& track, int frame, Ke
   return {shape.next, HandleKind::Free, tangents.in, tangents.out};
 }
 
+// Returns the tangent at other angles that gives the angles the old speeds, times a factor for each. What no speeds
+// give in gimbal lock stays.
+//   before, after  degrees
+glm::dvec3 tangent_at_angles(const glm::dvec3& tangent, const glm::dvec3& before, const glm::dvec3& after,
+                             const glm::dvec3& factors) {
+  const glm::dvec3 speeds = channel_speeds(glm::radians(before), tangent);
+  const glm::dvec3 left = tangent - velocity_of_channels(glm::radians(before), speeds);
+  return velocity_of_channels(glm::radians(after), factors * speeds) + left;
+}
+
+// Changes the value of some channels of a key. Tangents that are set by hand are scaled with the values.
 void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track, int frame, const glm::bvec3& channels,
                   const GraphMap& value) {
-  glm::dvec3 values = graph_values(curves, track, frame);
-  for (int axis = 0; axis < 3; ++axis)
-    if (channels[axis]) values[axis] = value.at(values[axis]);
-  if (track.is_shift) {
-    keys.root[frame] = values;
-    return;
+  const glm::dvec3 before = graph_values(curves, track, frame);
+  glm::dvec3 after = before, factors(1);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!channels[axis]) continue;
+    after[axis] = value.at(before[axis]);
+    factors[axis] = value.scale;
   }
-  glm::dquat& rotation = keys.bones[track.bone][frame];
-  const glm::dquat turned = rotation_of_channels(glm::radians(values));
-  rotation = glm::dot(turned, rotation) < 0 ? -turned : turned;
+  KeyShape shape = shape_of(keys, track, frame);
+  if (track.is_shift) {
+    keys.root[frame] = glm::clamp(after, -kFarthestShift, kFarthestShift);
+    shape.in *= factors;
+    shape.out *= factors;
+  } else {
+    glm::dquat& rotation = keys.bones[track.bone][frame];
+    const glm::dquat turned = rotation_of_channels(glm::radians(after));
+    rotation = glm::dot(turned, rotation) < 0 ? -turned : turned;
+    for (glm::dvec3* tangent : {&shape.in, &shape.out}) *tangent = tangent_at_angles(*tangent, before, after, factors);
+  }
+  if (shape.handles == HandleKind::Aligned || shape.handles == HandleKind::Free) put_shape(keys, track, frame, shape);
 }
 
 // Returns the straight way from a key to the next one, and its number of frames. Returns nothing for the last key.

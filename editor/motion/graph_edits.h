@@ -15,7 +15,7 @@ struct GraphMap {
   bool operator==(const GraphMap&) const = default;
 };
 // Moves or scales keys in time and in value. Only the channels among the keys change their value; in time all channels
-// of a bone's key go together. Tangents that are set by hand keep their shape in time.
+// of a bone's key go together. Tangents that are set by hand keep their shape in time and value.
 //   time   of frames; its scale is positive
 //   value  of degrees, or mm for a shift
 Keys with_keys_changed(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed,

@@ -80,6 +80,32 @@ struct KeyEditor : SmallEditor {
 
 }  // namespace
 
+TEST_CASE("graph: values scaled to nothing lie still between their keys, whatever their slopes were") {
+  const Keys keys = shaped_keys();
+  const Keys flat = with_keys_changed(curves_of(keys), keys, channel_keys(keys, 0), {}, {0, 0});
+  for (double frame = 10; frame <= 50; frame += 0.5) CHECK(std::abs(angle_at(flat, frame, 0)) < 1e-9);
+  const Keys doubled = with_keys_changed(curves_of(keys), keys, channel_keys(keys, 0), {}, {2, 0});
+  for (double frame = 10; frame <= 50; frame += 0.5)
+    CHECK(angle_at(doubled, frame, 0) == doctest::Approx(2 * angle_at(keys, frame, 0)).epsilon(1e-9));
+}
+
+TEST_CASE("graph: a key that is turned about one axis keeps the slopes of its angles") {
+  Keys keys;
+  keys.bones["Fore"] = {{0, turned(-20, 0, 0)}, {20, turned(30, 10, 0)}, {40, turned(60, 0, 0)}};
+  for (const int frame : {0, 20, 40})
+    set_shape(keys, "Fore", frame, {Interpolation::Bezier, HandleKind::Free, {0.03, 0.01, 0}, {0.05, -0.01, 0.02}});
+  const auto slopes = [](const Keys& of, double from, double to) {
+    return glm::dvec3(angle_at(of, to, 0) - angle_at(of, from, 0), angle_at(of, to, 1) - angle_at(of, from, 1),
+                      angle_at(of, to, 2) - angle_at(of, from, 2)) /
+           (to - from);
+  };
+  const Keys after = with_keys_changed(curves_of(keys), keys, {{{kFore, 2}, 20}}, {}, {1, 70});
+  CHECK(angle_at(after, 20, 2) == doctest::Approx(70));
+  // By differences over small steps, from the curves that play.
+  CHECK(glm::distance(slopes(after, 20 - 1e-4, 20), slopes(keys, 20 - 1e-4, 20)) < 1e-3);
+  CHECK(glm::distance(slopes(after, 20, 20 + 1e-4), slopes(keys, 20, 20 + 1e-4)) < 1e-3);
+}
+
 TEST_CASE("timeline: scaled keys play the same curve slower, and backwards with a negative factor") {
   KeyEditor test;
   const auto played = [&] { return ClipOnRig(test.editor->document().clips[0], test.editor->document().armature); };
