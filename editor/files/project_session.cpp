@@ -2,6 +2,7 @@
 #include "editor/files/project_session.h"
 
 #include <ctime>
+#include <utility>
 
 #include "core/base/error.h"
 #include "editor/context/document_edits.h"
@@ -131,6 +132,13 @@ void autosave(Editor& editor) {
   save_project(editor);
 }
 
+// What the pointer does began in the project that closes, and must not go on in the next one.
+void end_gestures(Editor& editor) {
+  if (const auto modal = std::exchange(editor.modal, nullptr)) modal->cancel(editor);
+  if (const auto drag = std::exchange(editor.drag, std::nullopt); drag && drag->cancelled) drag->cancelled(editor);
+  editor.pending_press.reset();
+}
+
 }  // namespace
 
 void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
@@ -141,6 +149,7 @@ void replace_project(Editor& editor, std::shared_ptr<Opened> opened) {
       opened->agreed = e.history.revision();
       replace_project(e, opened);
     });
+  end_gestures(editor);
   if (editor.life.session) editor.life.session->discard();
   ProjectLife life;
   life.session = opened->session;
