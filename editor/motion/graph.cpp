@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "core/motion/euler_channels.h"
 #include "core/motion/key_curve.h"
@@ -19,39 +20,49 @@ constexpr float kHeight = 300;                 // height of the bottom area for 
 constexpr double kRoom = 0.12;                 // room above and below the curves, as a share of their height
 
 glm::dquat motion_rotation(const GraphCurves& curves, int bone, double frame) {
-  if (!curves.has_motion || curves.motion.empty()) return {1, 0, 0, 0};
-  const double place = std::clamp(frame - curves.range.low, 0.0, static_cast<double>(curves.motion.size() - 1));
+  if (!curves.has_motion || curves.motion->empty()) return {1, 0, 0, 0};
+  const double place = std::clamp(frame - curves.range.low, 0.0, static_cast<double>(curves.motion->size() - 1));
   const auto before = static_cast<std::size_t>(place);
   const double share = place - static_cast<double>(before);
-  const glm::dquat& q = curves.motion[before].rotation[bone];
-  return share == 0 ? q : glm::normalize(glm::slerp(q, curves.motion[before + 1].rotation[bone], share));
+  const glm::dquat& q = (*curves.motion)[before].rotation[bone];
+  return share == 0 ? q : glm::normalize(glm::slerp(q, (*curves.motion)[before + 1].rotation[bone], share));
 }
 glm::dvec3 motion_shift(const GraphCurves& curves, double frame) {
-  if (!curves.has_motion || curves.motion.empty()) return glm::dvec3(0);
-  const double place = std::clamp(frame - curves.range.low, 0.0, static_cast<double>(curves.motion.size() - 1));
+  if (!curves.has_motion || curves.motion->empty()) return glm::dvec3(0);
+  const double place = std::clamp(frame - curves.range.low, 0.0, static_cast<double>(curves.motion->size() - 1));
   const auto before = static_cast<std::size_t>(place);
   const double share = place - static_cast<double>(before);
-  const glm::dvec3& p = curves.motion[before].root_translation;
-  return share == 0 ? p : glm::mix(p, curves.motion[before + 1].root_translation, share);
+  const glm::dvec3& p = (*curves.motion)[before].root_translation;
+  return share == 0 ? p : glm::mix(p, (*curves.motion)[before + 1].root_translation, share);
 }
 
 glm::dvec3 angles_near(const glm::dquat& q, const glm::dvec3& degrees) {
   return glm::degrees(channel_angles(q, glm::radians(degrees)));
 }
 
+// Returns the key at a frame; nullptr if there is none.
+template <class Value>
+const Value* key_at(const std::map<int, Value>& keys, double frame) {
+  const auto found = keys.find(static_cast<int>(std::floor(frame)));
+  return found != keys.end() && found->first == frame ? &found->second : nullptr;
+}
+
+// At a key's frame these are the key's own values, which hold where the motion is not sampled too.
 glm::dvec3 values_near(const GraphCurves& curves, const GraphTrack& track, const GraphCurve& curve, double frame,
                        const glm::dvec3& near) {
   if (track.is_shift) {
+    if (const glm::dvec3* shift = key_at(curve.places, frame)) return *shift;
     const glm::dvec3 base = motion_shift(curves, frame);
     return curve.shifts.empty() ? base : value_at(curve.shifts, curve.shapes, frame) + base;
   }
+  if (const glm::dquat* rotation = key_at(curve.rotations, frame)) return angles_near(*rotation, near);
   const glm::dquat base = motion_rotation(curves, curve.bone, frame);
   return angles_near(curve.turns.empty() ? base : value_at(curve.turns, curve.shapes, frame) * base, near);
 }
 
 // Adds the values of frames whose motion is known.
 void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curve) {
-  const auto known = static_cast<std::size_t>(curves.has_motion ? std::ssize(curves.motion)
+  const auto known = static_cast<std::size_t>(curves.has_motion ? std::ssize(*curves.motion)
                                                                 : curves.range.high - curves.range.low + 1);
   while (curve.values.size() < known) {
     const int frame = curves.range.low + static_cast<int>(curve.values.size());
@@ -89,35 +100,61 @@ bool same_motion(const Clip& a, const Clip& b) {
          a.retarget == b.retarget;
 }
 
+// Selects the keys again that were selected in a clip which undo or redo shows.
+void meet_clip(Graph& graph, const std::shared_ptr<const Clip>& clip) {
+  if (graph.met_clip.lock() == clip) return;
+  graph.met_clip = clip;
+  for (const auto& [known, chosen] : graph.chosen_of_clips)
+    if (known.lock() == clip) graph.chosen = chosen;
+}
+
+// Returns the poses of `range` that are known: all of them if the range only grew at its end, or shrank.
+std::shared_ptr<std::vector<Pose>> known_motion(const GraphCurves& curves, const FrameRange& range) {
+  if (range.low < curves.range.low) return std::make_shared<std::vector<Pose>>();
+  const auto wanted = static_cast<std::size_t>(range.high - range.low + 1);
+  if (range.low == curves.range.low && curves.motion->size() <= wanted) return curves.motion;
+  const auto size = std::ssize(*curves.motion);
+  const auto first = curves.motion->begin() + std::min<std::ptrdiff_t>(range.low - curves.range.low, size);
+  const auto count = std::min<std::ptrdiff_t>(std::ssize(*curves.motion) - (first - curves.motion->begin()),
+                                              static_cast<std::ptrdiff_t>(wanted));
+  return std::make_shared<std::vector<Pose>>(first, first + count);
+}
+
 // Begins anew if the clip's motion, the rig or the range of frames has changed.
 void meet_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
   FrameRange range = range_of(*on_rig.clip(), graph_keys(editor));
-  range.high = std::min(range.high, range.low + kMostFrames - 1);
   const bool same = curves.clip && curves.rig == on_rig.armature() && same_motion(*curves.clip, *on_rig.clip());
+  // While keys are dragged the range does not shrink, nor begin elsewhere, or each step would sample the motion again.
+  if (same && graph_of(editor).preview) range = {curves.range.low, std::max(range.high, curves.range.high)};
+  range.high = std::min(range.high, range.low + kMostFrames - 1);
   if (same && curves.range.low == range.low && curves.range.high == range.high) return;
-  // A range that only grew at its end, or shrank, keeps the poses that are known.
-  std::vector<Pose> known;
-  if (same && curves.range.low == range.low) known = std::move(curves.motion);
-  known.resize(std::min(known.size(), static_cast<std::size_t>(range.high - range.low + 1)));
+  std::shared_ptr<std::vector<Pose>> known = same ? known_motion(curves, range) : std::make_shared<std::vector<Pose>>();
   curves = {on_rig.clip(), on_rig.armature(), on_rig.retarget() != nullptr, range, std::move(known), {}};
 }
 
 void sample_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
   const auto began = std::chrono::steady_clock::now();
   while (!curves.complete() && std::chrono::steady_clock::now() - began < kTime)
-    curves.motion.push_back(on_rig.base_at(curves.range.low + static_cast<int>(curves.motion.size())));
+    curves.motion->push_back(on_rig.base_at(curves.range.low + static_cast<int>(curves.motion->size())));
   if (!curves.complete()) editor.touch();
 }
 
+// Returns the motion's pose at a frame. A sampled pose is taken, as to retarget one takes long.
+Pose motion_pose(const GraphCurves& curves, const ClipOnRig& on_rig, int frame) {
+  const std::int64_t place = std::int64_t{frame} - curves.range.low;
+  return place >= 0 && place < std::ssize(*curves.motion) ? (*curves.motion)[static_cast<std::size_t>(place)]
+                                                          : on_rig.base_at(frame);
+}
+
 // Returns the track's keys as corrections of the motion.
-GraphCurve keyed(const ClipOnRig& on_rig, const Keys& keys, const GraphTrack& track) {
+GraphCurve keyed(const GraphCurves& curves, const ClipOnRig& on_rig, const Keys& keys, const GraphTrack& track) {
   GraphCurve curve;
   curve.bone = on_rig.armature()->find(track.bone).value_or(-1);
   if (track.is_shift) {
     curve.places = curve.shifts = keys.root;
     curve.shapes = keys.root_shapes;
     if (on_rig.retarget())
-      for (auto& [frame, shift] : curve.shifts) shift -= on_rig.base_at(frame).root_translation;
+      for (auto& [frame, shift] : curve.shifts) shift -= motion_pose(curves, on_rig, frame).root_translation;
     return curve;
   }
   if (const auto found = keys.bones.find(track.bone); found != keys.bones.end())
@@ -125,7 +162,7 @@ GraphCurve keyed(const ClipOnRig& on_rig, const Keys& keys, const GraphTrack& tr
   curve.shapes = shapes_of(keys, track.bone);
   if (on_rig.retarget())
     for (auto& [frame, turn] : curve.turns)
-      turn = glm::normalize(turn * glm::conjugate(on_rig.base_at(frame).rotation[curve.bone]));
+      turn = glm::normalize(turn * glm::conjugate(motion_pose(curves, on_rig, frame).rotation[curve.bone]));
   return curve;
 }
 
@@ -160,7 +197,24 @@ Graph& graph_of(Editor& editor) {
 
 const Keys& graph_keys(const Editor& editor) {
   const auto& graph = editor.timeline->graph;
-  return graph && graph->preview ? *graph->preview : shown_clip(editor)->keys;
+  const Clip* clip = shown_clip(editor);
+  return graph && graph->preview && graph->previewed.get() == clip ? *graph->preview : clip->keys;
+}
+
+bool graph_is_shown(const Editor& editor) {
+  return editor.timeline->shows_graph && editor.arrangement().timeline && !editor.arrangement().console;
+}
+
+std::shared_ptr<const Clip> graph_clip(const Editor& editor) {
+  const Document& document = editor.document();
+  return document.clips.empty() ? nullptr : document.clips[static_cast<std::size_t>(document.clip)];
+}
+
+void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, const std::set<GraphKey>& chosen) {
+  std::erase_if(graph.chosen_of_clips,
+                [&](const auto& one) { return one.first.expired() || one.first.lock() == clip; });
+  graph.chosen_of_clips.emplace_back(clip, chosen);
+  graph.met_clip = clip;
 }
 
 GraphTracks graph_tracks(const Editor& editor) {
@@ -169,6 +223,7 @@ GraphTracks graph_tracks(const Editor& editor) {
   const Clip* clip = shown_clip(editor);
   if (!rig || !clip) return found;
   std::size_t bones = 0;
+  bool shift_listed = false;
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
     const Bone& b = rig->bones[bone];
     const bool wanted =
@@ -179,7 +234,8 @@ GraphTracks graph_tracks(const Editor& editor) {
       continue;
     }
     found.tracks.push_back({b.name, false});
-    if (b.parent < 0) found.tracks.push_back({b.name, true});
+    // The body has one shift, however many root bones there are.
+    if (b.parent < 0 && !std::exchange(shift_listed, true)) found.tracks.push_back({b.name, true});
   }
   return found;
 }
@@ -208,6 +264,7 @@ void update_curves(Editor& editor) {
   GraphCurves& curves = graph_of(editor).curves;
   const ClipOnRig* on_rig = clip_on_rig(editor);
   if (!on_rig) return;
+  meet_clip(graph_of(editor), on_rig->clip());
   meet_motion(editor, curves, *on_rig);
   sample_motion(editor, curves, *on_rig);
   const Keys& keys = graph_keys(editor);
@@ -218,7 +275,7 @@ void update_curves(Editor& editor) {
       for (int axis = 0; axis < 3; ++axis) graph_of(editor).hidden.insert({track, axis});
     const auto before = curves.tracks.find(track);
     const bool same = before != curves.tracks.end() && is_of(before->second, keys, track);
-    GraphCurve curve = same ? std::move(before->second) : keyed(*on_rig, keys, track);
+    GraphCurve curve = same ? std::move(before->second) : keyed(curves, *on_rig, keys, track);
     if (!same && before != curves.tracks.end()) curve.motion = std::move(before->second.motion);
     extend(curves, track, curve);
     tracks.emplace(track, std::move(curve));
@@ -264,14 +321,21 @@ std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack&
 void show_graph(Editor& editor, bool on) {
   Graph& graph = graph_of(editor);
   editor.timeline->shows_graph = on;
-  Arrangement& arrangement = editor.arrangement();
   if (on) {
+    Arrangement& arrangement = editor.arrangement();
     arrangement.timeline = true;
-    graph.height_before = arrangement.bottom_height;
-    arrangement.bottom_height = std::max(arrangement.bottom_height, kHeight);
+    arrangement.console = false;
+    editor.timeline->chosen.clear();  // keys in rows that are not seen must not be changed
     graph.fitted.clear();
-  } else if (arrangement.bottom_height == kHeight && graph.height_before > 0) {
-    arrangement.bottom_height = graph.height_before;  // the user has not dragged it since
+    if (arrangement.bottom_height < kHeight)
+      graph.heights_before[static_cast<std::size_t>(editor.workspace)] =
+          std::exchange(arrangement.bottom_height, kHeight);
+  } else {
+    for (std::size_t i = 0; i < editor.arrangements.size(); ++i) {
+      const float before = std::exchange(graph.heights_before[i], 0.0f);
+      float& height = editor.arrangements[i].bottom_height;
+      if (before > 0 && height == kHeight) height = before;  // the user has not dragged it since
+    }
   }
   editor.touch();
 }
@@ -289,7 +353,8 @@ void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys) {
           for (const auto* values : {&curve.values, &curve.motion})
             for (const glm::dvec3& value : *values) take(value[axis]);
   if (low > high) low = high = 0;
-  const double room = std::max(1.0, kRoom * (high - low));
+  // The last bound keeps the edges apart where doubles are coarse.
+  const double room = std::max({1.0, kRoom * (high - low), 1e-6 * std::max(std::abs(low), std::abs(high))});
   graph.low = low - room;
   graph.high = high + room;
   editor.touch();

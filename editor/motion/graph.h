@@ -8,6 +8,7 @@
 // the motion's own poses are sampled a few milliseconds' worth per drawn frame, until all are known.
 #pragma once
 
+#include <array>
 #include <compare>
 
 #include "editor/motion/timeline.h"
@@ -52,27 +53,38 @@ struct GraphCurves {
   std::shared_ptr<const Armature> rig;  // null: nothing is sampled
   bool has_motion = false;
   FrameRange range{0, -1};
-  std::vector<Pose> motion;  // the motion's poses at the range's frames, as far as they are sampled
+  // The motion's poses at the range's frames, as far as they are sampled. Copies of the curves share them.
+  std::shared_ptr<std::vector<Pose>> motion = std::make_shared<std::vector<Pose>>();
   std::map<GraphTrack, GraphCurve> tracks;
 
-  bool complete() const { return !has_motion || std::ssize(motion) == range.high - range.low + 1; }
+  bool complete() const { return !has_motion || std::ssize(*motion) == range.high - range.low + 1; }
 };
 
 struct Graph {
   std::set<GraphChannel> hidden;
   std::set<GraphTrack> met_shifts;  // shifts that were listed before
   std::set<GraphKey> chosen;
-  double low = -10, high = 10;  // the values at the plot's lower and upper edge
-  std::string fitted;           // names what the values were fitted to
-  std::optional<Keys> preview;  // the keys while they are dragged
-  std::optional<Rect> box;      // the rectangle that the user draws around keys
-  float height_before = 0;      // of the bottom area, before it was made higher for the graph
-  Rect plot;                    // where curves are drawn
+  double low = -10, high = 10;            // the values at the plot's lower and upper edge
+  std::string fitted;                     // names what the values were fitted to
+  std::optional<Keys> preview;            // the keys while they are dragged
+  std::shared_ptr<const Clip> previewed;  // the clip whose keys `preview` replaces
+  // The keys that were selected when a change of a clip began, and when it ended, so that undo and redo select them
+  // again; and the clip whose selection is shown.
+  std::vector<std::pair<std::weak_ptr<const Clip>, std::set<GraphKey>>> chosen_of_clips;
+  std::weak_ptr<const Clip> met_clip;
+  std::optional<Rect> box;  // the rectangle that the user draws around keys
+  // For each workspace, the height of the bottom area before it was made higher for the graph; 0: it was not.
+  std::array<float, std::tuple_size_v<Arrangements>> heights_before{};
+  Rect plot;  // where curves are drawn
   GraphCurves curves;
 };
 
 Graph& graph_of(Editor& editor);               // creates the state if there is none
 const Keys& graph_keys(const Editor& editor);  // the keys as they are shown; the clip exists
+bool graph_is_shown(const Editor& editor);
+std::shared_ptr<const Clip> graph_clip(const Editor& editor);  // the shown clip; null: none
+// Stores which keys are selected in a clip, for undo.
+void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, const std::set<GraphKey>& chosen);
 
 // ---- Tracks and curves
 struct GraphTracks {

@@ -113,6 +113,22 @@ Keys with_keys_changed(const GraphCurves& curves, const Keys& keys, const std::s
   return next;
 }
 
+Keys with_keys_copied(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& copied,
+                      const GraphMap& time, const GraphMap& value) {
+  Keys next = with_keys_changed(curves, keys, copied, time, value);
+  for (const auto& [track, channels_at] : by_track(copied)) {
+    std::set<int> taken;
+    for (const auto& [frame, channels] : channels_at) taken.insert(mapped_frame(time, frame));
+    for (const auto& [frame, channels] : channels_at) {
+      if (taken.contains(frame)) continue;
+      if (track.is_shift) next.root[frame] = keys.root.at(frame);
+      else next.bones[track.bone][frame] = keys.bones.at(track.bone).at(frame);
+      put_shape(next, track, frame, shape_of(keys, track, frame));
+    }
+  }
+  return next;
+}
+
 int mapped_frame(const GraphMap& time, int frame) {
   return static_cast<int>(std::lround(std::clamp(time.at(frame), -kFurthest, kFurthest)));
 }

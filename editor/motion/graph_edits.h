@@ -20,6 +20,9 @@ struct GraphMap {
 //   value  of degrees, or mm for a shift
 Keys with_keys_changed(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed,
                        const GraphMap& time, const GraphMap& value);
+// The same with copies of the keys. A key stays as it is unless a copy falls on it.
+Keys with_keys_copied(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& copied,
+                      const GraphMap& time, const GraphMap& value);
 int mapped_frame(const GraphMap& time, int frame);
 std::set<GraphKey> mapped_keys(const GraphMap& time, const std::set<GraphKey>& keys);
 Keys with_keys_deleted(const Keys& keys, const std::set<GraphKey>& deleted);

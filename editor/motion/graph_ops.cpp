@@ -15,7 +15,7 @@ namespace {
 std::string needs_graph(const Editor& editor) {
   if (!shown_clip(editor)) return "Import a motion first, or insert a key";
   if (!editor.document().armature) return "Import a rig first";
-  return editor.timeline->shows_graph && editor.arrangement().timeline ? "" : "Show the graph editor first";
+  return graph_is_shown(editor) ? "" : "Show the graph editor first";
 }
 std::string needs_graph_keys(const Editor& editor) {
   if (const std::string why = needs_graph(editor); !why.empty()) return why;
@@ -114,9 +114,8 @@ std::vector<Operator> graph_operators() {
   return {
       {"graph.show", "Graph editor", icon::kReport, "Motion",
        "Show the clip as curves in place of the timeline's rows, or the rows again.",
-       [](Editor& e) { show_graph(e, !e.timeline->shows_graph || !e.arrangement().timeline); },
-       [](const Editor& e) { return shown_clip(e) ? "" : "Import a motion first, or insert a key"; },
-       [](const Editor& e) { return e.timeline->shows_graph && e.arrangement().timeline; }},
+       [](Editor& e) { show_graph(e, !graph_is_shown(e)); },
+       [](const Editor& e) { return shown_clip(e) ? "" : "Import a motion first, or insert a key"; }, graph_is_shown},
       {"graph.select", "Select in the graph", "", "Motion",
        "Select and drag keys and their handles. Away from keys, draw a rectangle that selects.", press_graph,
        needs_graph},
@@ -146,6 +145,9 @@ std::vector<Operator> graph_operators() {
       {"graph.scale", "Scale keys in the graph", icon::kScale, "Motion",
        "Scale the selected keys in time about the play head, and in value about their middle.",
        [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Scale); }, needs_graph_keys},
+      {"graph.duplicate", "Duplicate keys in the graph", icon::kDuplicate, "Motion",
+       "Copy the selected keys of the curves and move the copies with the pointer, or by a typed number.",
+       [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Duplicate); }, needs_graph_keys},
       {"graph.delete", "Delete keys in the graph", icon::kTrash, "Motion",
        "Delete the selected keys. A bone's key is deleted with all of its three channels.",
        [](Editor& e) {

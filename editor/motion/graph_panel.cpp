@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 
 #include "editor/motion/graph_tool.h"
@@ -17,7 +16,8 @@ namespace {
 
 constexpr float kList = 176, kValues = 62, kButton = 20;  // widths: list, values beside the plot, a channel's button
 constexpr float kLeastValues = 26;  // smallest distance between two values beside the plot, pixels at scale 1
-constexpr float kFine = 5;          // with more pixels from frame to frame, curves are drawn between frames too
+constexpr int kMostTicks = 1000;
+constexpr float kFine = 5;  // with more pixels from frame to frame, curves are drawn between frames too
 constexpr float kKeyRadius = 4, kHandleRadius = 3.5f;
 constexpr const char* kAxes[] = {"X", "Y", "Z"};
 
@@ -94,12 +94,13 @@ void draw_values(Editor& editor) {
   const double per_pixel = (graph.high - graph.low) / std::max(1.0f, graph.plot.height());
   const double step = round_step(look.px(kLeastValues) * per_pixel);
   const char* unit = unit_of(graph);
-  for (auto i = static_cast<std::int64_t>(std::ceil(graph.low / step)); static_cast<double>(i) * step <= graph.high;
-       ++i) {
-    const double value = static_cast<double>(i) * step;
+  // Counted by doubles, which do not overflow, and up to a limit, because where doubles are coarse steps may not count.
+  const double first = std::ceil(graph.low / step);
+  for (int i = 0; i < kMostTicks && (first + i) * step <= graph.high; ++i) {
+    const double value = (first + i) * step;
     const float y = std::round(graph_y(graph, value));
     fill({{graph.plot.low.x, y}, {graph.plot.high.x, y + look.line()}},
-         i == 0 ? look.theme.line2 : with_alpha(look.theme.line, 0.6f));
+         value == 0 ? look.theme.line2 : with_alpha(look.theme.line, 0.6f));
     char text[32];
     std::snprintf(text, sizeof text, step >= 1 ? "%.0f%s" : "%.3g%s", value, unit);
     const float half = look.px(8);

@@ -20,6 +20,7 @@ constexpr float kStart = 3;       // the pointer moves this far before a press o
 constexpr float kLeastThird = 2;  // least width of a handle that is drawn, pixels at scale 1
 constexpr double kStep = 1.25, kMostFrames = 1e7;         // zoom factor per wheel step; largest number of frames shown
 constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // smallest and largest range of values shown
+constexpr double kFurthestMove = 1e7;                     // of keys, in frames or in values
 
 // Shows the keys in place of the clip's, in the graph and by the body's pose.
 void preview(Editor& editor, Keys keys) {
@@ -33,40 +34,55 @@ void preview(Editor& editor, Keys keys) {
         ClipOnRig(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig).at(shown_frame(editor)));
   }
   graph.preview = std::move(keys);
+  graph.previewed = graph_clip(editor);
   editor.touch();
 }
 
 void drop_preview(Editor& editor) {
-  graph_of(editor).preview.reset();
+  Graph& graph = graph_of(editor);
+  graph.preview.reset();
+  graph.previewed.reset();
   drop_shown_pose(editor);
   editor.touch();
 }
 
-void commit_preview(Editor& editor, const std::string& label) {
-  const std::optional<Keys> keys = std::exchange(graph_of(editor).preview, std::nullopt);
-  drop_shown_pose(editor);
-  if (keys && *keys != shown_clip(editor)->keys)
-    edit_clip(editor, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = *keys; });
-}
-
-// A change of selected keys by the pointer, as the keys and curves were when it began.
+// A change of selected keys by the pointer, as the keys and curves were when it began. A job that ends in the meantime
+// may show another clip, or none; then the change is dropped.
 struct Moving {
+  std::shared_ptr<const Clip> clip;
   Keys keys;
   GraphCurves curves;
   std::set<GraphKey> chosen;
 
   explicit Moving(Editor& editor)
-      : keys(shown_clip(editor)->keys),
+      : clip(graph_clip(editor)),
+        keys(clip->keys),
         curves(graph_of(editor).curves),
         chosen(chosen_graph_keys(editor)) {}
 
-  void show(Editor& editor, const GraphMap& time, const GraphMap& value) const {
-    preview(editor, with_keys_changed(curves, keys, chosen, time, value));
+  bool is_shown(const Editor& editor) const { return clip.get() == shown_clip(editor); }
+
+  void show(Editor& editor, const Keys& changed) const {
+    if (is_shown(editor)) preview(editor, changed);
+    else drop_preview(editor);
+  }
+  void show(Editor& editor, GraphChange change, const GraphMap& time, const GraphMap& value) const {
+    show(editor, change == GraphChange::Duplicate ? with_keys_copied(curves, keys, chosen, time, value)
+                                                  : with_keys_changed(curves, keys, chosen, time, value));
     graph_of(editor).chosen = mapped_keys(time, chosen);
   }
   void cancel(Editor& editor) const {
     drop_preview(editor);
     graph_of(editor).chosen = chosen;
+  }
+  void commit(Editor& editor, const std::string& label) const {
+    Graph& graph = graph_of(editor);
+    const std::optional<Keys> changed = std::exchange(graph.preview, std::nullopt);
+    drop_preview(editor);
+    if (!changed || !is_shown(editor) || *changed == keys) return;
+    remember_chosen(graph, clip, chosen);
+    edit_clip(editor, label, PoseThen::FromClip, [&](Clip& next) { next.keys = *changed; });
+    remember_chosen(graph, graph_clip(editor), graph.chosen);
   }
 };
 
@@ -77,12 +93,13 @@ double value_of_pixels(const Graph& graph, float pixels) {
   return -pixels / std::max(1.0f, graph.plot.height()) * (graph.high - graph.low);
 }
 
-constexpr const char* kChanges[] = {"Move keys in the graph", "Scale keys in the graph"};
+constexpr const char* kChanges[] = {"Move keys in the graph", "Scale keys in the graph", "Duplicate keys in the graph"};
 
 class ChangingGraphKeys final : public Modal {
  public:
   ChangingGraphKeys(Editor& editor, GraphChange change)
       : moving_(editor),
+        change_(change),
         scales_(change == GraphChange::Scale),
         pivot_frame_(shown_frame(editor)) {
     double low = INFINITY, high = -INFINITY;
@@ -115,6 +132,7 @@ class ChangingGraphKeys final : public Modal {
     if (number_.key(event.key)) show(editor);
     return true;
   }
+  bool frame(Editor& editor, double) override { return moving_.is_shown(editor) || drop(editor); }
   void cancel(Editor& editor) override { moving_.cancel(editor); }
   std::vector<KeyHint> hints(const Editor&) const override {
     return {{{}, words()},          {{"X"}, "Time only"}, {{"Y"}, "Value only"}, {{"0-9"}, "Type a number"},
@@ -155,18 +173,18 @@ class ChangingGraphKeys final : public Modal {
       frames = number_.value();
       value = lock_ == Lock::Value ? number_.value() : 0;
     }
-    time_ = {1, lock_ == Lock::Value ? 0 : std::round(std::clamp(frames, -1e7, 1e7))};
-    value_ = {1, lock_ == Lock::Time ? 0 : value};
+    time_ = {1, lock_ == Lock::Value ? 0 : std::round(std::clamp(frames, -kFurthestMove, kFurthestMove))};
+    value_ = {1, lock_ == Lock::Time ? 0 : std::clamp(value, -kFurthestMove, kFurthestMove)};
   }
 
   bool show(Editor& editor) {
     if (scales_) scale();
     else move(editor);
-    moving_.show(editor, time_, value_);
+    moving_.show(editor, change_, time_, value_);
     return true;
   }
   bool confirm(Editor& editor) {
-    commit_preview(editor, kChanges[scales_]);
+    moving_.commit(editor, kChanges[static_cast<int>(change_)]);
     return false;
   }
   bool drop(Editor& editor) {
@@ -175,6 +193,7 @@ class ChangingGraphKeys final : public Modal {
   }
 
   Moving moving_;
+  GraphChange change_;
   bool scales_;
   int pivot_frame_;
   double pivot_value_ = 0;
@@ -214,9 +233,9 @@ void drag_handle(Editor& editor, const GraphHandle& handle) {
     const double frames =
         std::max(0.1 * whole, side * frames_of_pixels(*e.timeline, e.input.pointer.x - handle.key_point.x));
     const double value = value_of_pixels(graph, e.input.pointer.y - handle.key_point.y);
-    preview(e, with_slope(begun->curves, begun->keys, handle.key, handle.side, side * value / frames));
+    begun->show(e, with_slope(begun->curves, begun->keys, handle.key, handle.side, side * value / frames));
   };
-  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_preview(e, "Move handle"); },
+  editor.drag = Drag{MouseButton::Left, moved, [begun](Editor& e) { begun->commit(e, "Move handle"); },
                      [begun](Editor& e) { begun->cancel(e); }};
 }
 
@@ -233,9 +252,10 @@ void drag_key(Editor& editor, const GraphKey& key) {
   const auto moved = [begun, from = editor.input.pointer](Editor& e, const glm::vec2&) {
     const glm::vec2 way = e.input.pointer - from;
     if (!graph_of(e).preview && glm::length(way) < e.look.px(kStart)) return;
-    begun->show(e, {1, std::round(frames_of_pixels(*e.timeline, way.x))}, {1, value_of_pixels(graph_of(e), way.y)});
+    begun->show(e, GraphChange::Move, {1, std::round(frames_of_pixels(*e.timeline, way.x))},
+                {1, value_of_pixels(graph_of(e), way.y)});
   };
-  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_preview(e, kChanges[0]); },
+  editor.drag = Drag{MouseButton::Left, moved, [begun](Editor& e) { begun->commit(e, kChanges[0]); },
                      [begun](Editor& e) { begun->cancel(e); }};
 }
 
@@ -299,6 +319,7 @@ std::vector<GraphHandle> graph_handles(const Editor& editor) {
 void press_graph(Editor& editor) {
   stop_playing(editor);
   settle_frame(editor);
+  update_curves(editor);
   const std::vector<GraphHandle> handles = graph_handles(editor);
   const auto nearest = std::min_element(handles.begin(), handles.end(), [&](const auto& a, const auto& b) {
     return glm::distance(a.point, editor.input.pointer) < glm::distance(b.point, editor.input.pointer);
@@ -312,6 +333,7 @@ void press_graph(Editor& editor) {
 void begin_changing_graph_keys(Editor& editor, GraphChange change) {
   stop_playing(editor);
   settle_frame(editor);
+  update_curves(editor);  // they may be older than the keys, if the graph was not drawn since
   editor.modal = std::make_shared<ChangingGraphKeys>(editor, change);
   editor.modal_wrap = {};
 }

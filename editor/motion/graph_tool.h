@@ -19,9 +19,9 @@ std::vector<GraphHandle> graph_handles(const Editor& editor);
 // Handles a press of the left button in the graph. On a handle, drags it. On a key, selects it (Shift: adds it to the
 // selection or removes it) and drags the selected keys. Elsewhere, begins a rectangle that selects the keys inside.
 void press_graph(Editor& editor);
-// Begins a modal tool that moves the selected keys, or scales them about the play head and the middle of their values,
-// by the pointer or a typed number.
-enum class GraphChange { Move, Scale };
+// Begins a modal tool that moves the selected keys or copies of them, or scales the keys about the play head and the
+// middle of their values, by the pointer or a typed number.
+enum class GraphChange { Move, Scale, Duplicate };
 void begin_changing_graph_keys(Editor& editor, GraphChange change);
 void pan_graph(Editor& editor);
 // Zooms about the pointer by the motion of the mouse wheel.

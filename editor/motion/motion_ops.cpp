@@ -103,7 +103,12 @@ void add_marker(Editor& editor) {
   });
 }
 
+// The keys of the timeline's rows cannot be seen while the graph editor is shown in their place.
+std::string needs_rows(const Editor& editor) {
+  return editor.timeline->shows_graph ? "The graph editor is shown: select keys in its curves" : needs_keys(editor);
+}
 std::string needs_chosen_keys(const Editor& editor) {
+  if (editor.timeline->shows_graph) return needs_rows(editor);
   return editor.timeline->chosen.empty() ? "Select keys in the timeline first" : "";
 }
 
@@ -291,9 +296,9 @@ std::vector<Operator> motion_operators() {
       {"motion.delete_marker", "Delete marker", "", "Motion",
        "Delete the marker at this frame, or the last one before it.", delete_marker, needs_marker},
       {"motion.box_keys", "Box select keys", "", "Motion", "Select the keys inside a rectangle that you draw.",
-       box_keys, needs_keys},
+       box_keys, needs_rows},
       {"motion.choose_all_keys", "Select all keys", "", "Motion", "Select every key of the clip.",
-       [](Editor& e) { choose_keys(e, true); }, needs_keys},
+       [](Editor& e) { choose_keys(e, true); }, needs_rows},
       {"motion.choose_no_keys", "Deselect keys", "", "Motion", "Deselect all keys of the clip.",
        [](Editor& e) { choose_keys(e, false); }, needs_chosen_keys},
       {"motion.move_keys", "Move keys", icon::kMove, "Motion",

@@ -184,7 +184,7 @@ std::vector<Menu> menus() {
         "motion.move_keys", "motion.scale_keys", "motion.duplicate_keys", "motion.delete_keys", "-",
         "pose.blend_neighbour", "pose.propagate", "<",
         "> Curves", "graph.show", "graph.view_all", "graph.view_selected", "-",
-        "graph.select_all", "graph.select_none", "graph.move", "graph.scale", "graph.delete", "-",
+        "graph.select_all", "graph.select_none", "graph.move", "graph.scale", "graph.duplicate", "graph.delete", "-",
         "> Interpolation", "graph.constant", "graph.linear", "graph.bezier", "-",
         "graph.ease_in", "graph.ease_out", "graph.ease_in_out", "<",
         "> Handles", "graph.handles_automatic", "graph.handles_clamped", "graph.handles_aligned",

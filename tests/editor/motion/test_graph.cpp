@@ -154,6 +154,8 @@ std::vector<Proof> proofs_of_curves() {
       {"graph.move", "key G\n key 5\n key Return", frames_are({10, 35, 50}), Shows::Nothing, "", in_graph({30})},
       {"graph.scale", "key S\n key X\n key 2\n key Return", frames_are({20, 30, 100}), Shows::Nothing, "",
        in_graph({10, 50})},
+      {"graph.duplicate", "key Shift+D\n key 5\n key Return", frames_are({10, 30, 35, 50}), Shows::Nothing, "",
+       in_graph({30})},
       {"graph.delete", "key X", frames_are({10, 50}), Shows::Nothing, "", in_graph({30})},
       {"graph.interpolation_menu", "key T",
        [](Stage& s, const Seen&) { return s.editor().shown_popup == "Interpolation"; }, Shows::Nothing, "",

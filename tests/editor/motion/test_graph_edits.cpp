@@ -106,6 +106,18 @@ TEST_CASE("graph: a key that is turned about one axis keeps the slopes of its an
   CHECK(glm::distance(slopes(after, 20, 20 + 1e-4), slopes(keys, 20, 20 + 1e-4)) < 1e-3);
 }
 
+TEST_CASE("graph: keys are copied with their slopes, and the keys themselves stay") {
+  const Keys keys = shaped_keys();
+  const Keys more = with_keys_copied(curves_of(keys), keys, channel_keys(keys, 0), {1, 100}, {1, 5});
+  REQUIRE(more.bones.at("Fore").size() == 6);
+  for (const int frame : {10, 30, 50}) {
+    CHECK(more.bones.at("Fore").at(frame) == keys.bones.at("Fore").at(frame));
+    CHECK(shape_at(shapes_of(more, "Fore"), frame) == shape_at(shapes_of(keys, "Fore"), frame));
+    CHECK(angle_at(more, frame + 100, 0) == doctest::Approx(angle_at(keys, frame, 0) + 5));
+    CHECK(shape_at(shapes_of(more, "Fore"), frame + 100).next == shape_at(shapes_of(keys, "Fore"), frame).next);
+  }
+}
+
 TEST_CASE("timeline: scaled keys play the same curve slower, and backwards with a negative factor") {
   KeyEditor test;
   const auto played = [&] { return ClipOnRig(test.editor->document().clips[0], test.editor->document().armature); };
@@ -122,6 +134,165 @@ TEST_CASE("timeline: scaled keys play the same curve slower, and backwards with 
     }
     test.play("key Ctrl+Z\n wait-idle");
   }
+}
+
+TEST_CASE("graph: a key beyond the sampled part of a motion is moved by exactly so many degrees") {
+  KeyEditor test;
+  Document document = bending_limb();
+  Clip clip = *document.clips[0];
+  clip.start = 25'000;
+  clip.range_start = 0;
+  clip.range_end = 26'000;
+  clip.keys.bones["Fore"] = {{100, turned(0, 0, 0)}, {25'040, turned(10, 0, 0)}};
+  document.clips = {std::make_shared<const Clip>(clip)};
+  test.open(std::move(document), true);
+  graph_of(*test.editor).chosen = {{{kFore, 0}, 25'040}};
+  test.play("key G\n key Y\n key 5\n key Return\n wait-idle");
+  CHECK(glm::degrees(channel_angles(test.keys().bones.at("Fore").at(25'040))).x == doctest::Approx(15));
+}
+
+TEST_CASE("graph: a tool in use ends when another clip is shown, or none, and changes neither") {
+  for (const bool none : {false, true}) {
+    KeyEditor test;
+    test.show(shaped_keys(), true);
+    graph_of(*test.editor).chosen = {{{kFore, 0}, 30}};
+    test.play("key G\n key 5\n wait-idle");
+    REQUIRE(test.editor->modal);
+    Document next = test.editor->document();
+    if (none) next.clips.clear();
+    else add_clip(next, Clip{.name = "other"});
+    test.editor->history.commit("Make a clip", next);
+    test.player.settle();
+    CHECK(!test.editor->modal);
+    CHECK(!graph_of(*test.editor).preview);
+    CHECK(test.editor->document() == next);
+  }
+}
+
+TEST_CASE("graph: a drag ends without a change when another clip is shown") {
+  KeyEditor test;
+  test.show(shaped_keys(), true);
+  const glm::vec2 key = graph_point(*test.editor, {{kFore, 0}, 30});
+  test.host->events.push(PointerMoved{key});
+  test.player.step();
+  test.host->events.push(ButtonChanged{MouseButton::Left, true});
+  test.player.step();
+  test.host->events.push(PointerMoved{key + glm::vec2(60, 10)});
+  test.player.step();
+  REQUIRE(graph_of(*test.editor).preview);
+  Document next = test.editor->document();
+  add_clip(next, Clip{.name = "other"});
+  test.editor->history.commit("Make a clip", next);
+  test.host->events.push(PointerMoved{key + glm::vec2(80, 10)});
+  test.player.step();
+  test.host->events.push(ButtonChanged{MouseButton::Left, false});
+  test.player.settle();
+  CHECK(test.editor->document() == next);
+}
+
+TEST_CASE("project: what the pointer does ends when another project opens") {
+  KeyEditor test;
+  test.show(shaped_keys(), true);
+  graph_of(*test.editor).chosen = {{{kFore, 0}, 30}};
+  test.play("key G\n key 5\n wait-idle");
+  REQUIRE(test.editor->modal);
+  const auto opened = std::make_shared<Opened>();
+  opened->label = "New project";
+  opened->agreed = test.editor->history.revision();
+  replace_project(*test.editor, opened);
+  CHECK(!test.editor->modal);
+  CHECK(!graph_of(*test.editor).preview);
+  test.player.settle();
+  CHECK(test.editor->document().clips.empty());
+}
+
+TEST_CASE("graph: undo and redo of a move select the moved keys where they are") {
+  KeyEditor test;
+  test.show(shaped_keys(), true);
+  const std::set<GraphKey> before = {{{kFore, 0}, 30}}, after = {{{kFore, 0}, 36}};
+  graph_of(*test.editor).chosen = before;
+  test.play("key G\n key 6\n key Return\n wait-idle");
+  CHECK(chosen_graph_keys(*test.editor) == after);
+  test.play("key Ctrl+Z\n wait-idle");
+  CHECK(chosen_graph_keys(*test.editor) == before);
+  test.play("key Shift+Ctrl+Z\n wait-idle");
+  CHECK(chosen_graph_keys(*test.editor) == after);
+}
+
+TEST_CASE("graph: a body with two root bones has one shift, which is moved once") {
+  KeyEditor test;
+  Document document = bending_limb();
+  Armature rig = *document.armature;
+  rig.bones.push_back({"Other", -1, {0, 0, 0}, {0, 0, 10}});
+  document.armature = std::make_shared<const Armature>(rig);
+  document.volume = nullptr;
+  document.weights = nullptr;
+  Clip clip{.name = "keys", .range_end = 60};
+  clip.keys.root = {{10, {1, 2, 3}}, {20, {4, 5, 6}}};
+  document.clips = {std::make_shared<const Clip>(clip)};
+  document.pose = nullptr;
+  test.open(std::move(document), true);
+  test.editor->selection.bones = {0, 2};
+  test.player.settle();
+  graph_of(*test.editor).hidden.clear();
+  run(*test.editor, "graph.select_all");
+  test.play("key G\n key X\n key 1\n key 0\n key Return\n wait-idle");
+  CHECK(test.keys().root == std::map<int, glm::dvec3>{{20, {1, 2, 3}}, {30, {4, 5, 6}}});
+}
+
+TEST_CASE("graph: keys of the rows that it hides are not changed by the timeline's keys") {
+  KeyEditor test;
+  test.play("move keys\n key A\n wait-idle");
+  CHECK(test.editor->timeline->chosen.size() == 3);
+  const Keys keys = test.keys();
+  run(*test.editor, "graph.show");
+  test.player.settle();
+  CHECK(test.editor->timeline->chosen.empty());
+  test.play("move ruler\n key A\n wait-idle\n key X\n wait-idle");
+  CHECK(test.keys() == keys);
+}
+
+TEST_CASE("graph: the area below gets its height back in the workspace in which the graph was shown") {
+  KeyEditor test;
+  const Arrangements before = test.editor->arrangements;
+  run(*test.editor, "graph.show");
+  test.player.settle();
+  CHECK(test.editor->arrangement().bottom_height > before[2].bottom_height);
+  test.play("key Ctrl+1\n wait-idle");
+  run(*test.editor, "graph.show");  // here the timeline is hidden, so it shows the graph
+  run(*test.editor, "graph.show");
+  test.player.settle();
+  for (std::size_t i = 0; i < before.size(); ++i)
+    CHECK(test.editor->arrangements[i].bottom_height == before[i].bottom_height);
+}
+
+TEST_CASE("graph: the console hides it, and its tools refuse until it is shown again") {
+  KeyEditor test;
+  test.show(shaped_keys(), true);
+  graph_of(*test.editor).chosen = {{{kFore, 0}, 30}};
+  test.editor->arrangement().console = true;
+  test.player.settle();
+  const auto why = [&] { return disabled_reason(*test.editor, *find_operator(*test.editor, "graph.move")); };
+  CHECK(why() == "Show the graph editor first");
+  run(*test.editor, "graph.show");
+  CHECK(!test.editor->arrangement().console);
+  CHECK(why().empty());
+}
+
+TEST_CASE("graph: a shift of 1e17 mm is drawn") {
+  KeyEditor test;
+  Keys keys;
+  keys.root = {{10, {1e17, 0, 0}}};
+  test.show(keys, false);
+  test.editor->selection.bones = {0};
+  run(*test.editor, "graph.show");
+  test.player.settle();
+  const std::string bone = test.editor->document().armature->bones[0].name;
+  graph_of(*test.editor).hidden = {
+      {{bone, false}, 0}, {{bone, false}, 1}, {{bone, false}, 2}, {{bone, true}, 1}, {{bone, true}, 2}};
+  fit_graph_values(*test.editor);
+  test.player.settle();
+  CHECK(graph_of(*test.editor).high > graph_of(*test.editor).low);
 }
 
 }  // namespace limber::test
