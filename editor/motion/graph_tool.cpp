@@ -277,6 +277,7 @@ void draw_box(Editor& editor) {
   };
   const auto ended = [](Editor& e) {
     const std::optional<Rect> box = std::exchange(graph_of(e).box, std::nullopt);
+    if (!shown_clip(e)) return;
     if (box) choose_in_box(e, *box);
     else if (!e.input.modifiers().shift) graph_of(e).chosen.clear();
   };

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/motion/graph.h"
 #include "editor/viewport/numeric_input.h"
 
 namespace limber::editor {
@@ -67,19 +68,21 @@ void scale_keys(Keys& keys, const std::map<int, int>& frame_of, double factor) {
   move_keys(keys, frame_of);
 }
 
-void commit_change(Editor& editor, KeyChange change, double factor = 1) {
+//   clip  the shown clip when the change began; if a job shows another one by now, nothing is changed
+void commit_change(Editor& editor, const std::shared_ptr<const Clip>& clip, KeyChange change, double factor = 1) {
   const std::map<int, int> frame_of = std::exchange(editor.timeline->moving, {});
+  if (clip != graph_clip(editor)) return;
   const bool any =
       std::any_of(frame_of.begin(), frame_of.end(), [](const auto& key) { return key.first != key.second; });
   if (!any) return;
   constexpr const char* kLabels[] = {"Move keys", "Scale keys", "Duplicate keys"};
   editor.timeline->chosen.clear();
   for (const auto& [from, to] : frame_of) editor.timeline->chosen.insert(to);
-  edit_clip(editor, kLabels[static_cast<int>(change)], PoseThen::FromClip, [&](Clip& clip) {
+  edit_clip(editor, kLabels[static_cast<int>(change)], PoseThen::FromClip, [&](Clip& next) {
     switch (change) {
-      case KeyChange::Move: return move_keys(clip.keys, frame_of);
-      case KeyChange::Scale: return scale_keys(clip.keys, frame_of, factor);
-      case KeyChange::Duplicate: return copy_keys(clip.keys, frame_of);
+      case KeyChange::Move: return move_keys(next.keys, frame_of);
+      case KeyChange::Scale: return scale_keys(next.keys, frame_of, factor);
+      case KeyChange::Duplicate: return copy_keys(next.keys, frame_of);
     }
   });
 }
@@ -87,7 +90,8 @@ void commit_change(Editor& editor, KeyChange change, double factor = 1) {
 class ChangingKeys final : public Modal {
  public:
   ChangingKeys(Editor& editor, KeyChange change)
-      : change_(change),
+      : clip_(graph_clip(editor)),
+        change_(change),
         chosen_(editor.timeline->chosen),
         pivot_(shown_frame(editor)),
         began_(editor.input.pointer.x) {}
@@ -107,6 +111,7 @@ class ChangingKeys final : public Modal {
     if (number_.key(event.key)) show(editor);
     return true;
   }
+  bool frame(Editor& editor, double) override { return clip_ == graph_clip(editor) || drop(editor); }
   void cancel(Editor& editor) override { editor.timeline->moving.clear(); }
   std::vector<KeyHint> hints(const Editor&) const override {
     char text[48];
@@ -141,7 +146,7 @@ class ChangingKeys final : public Modal {
     return true;
   }
   bool confirm(Editor& editor) {
-    commit_change(editor, change_, value_);
+    commit_change(editor, clip_, change_, value_);
     return false;
   }
   bool drop(Editor& editor) {
@@ -149,6 +154,7 @@ class ChangingKeys final : public Modal {
     return false;
   }
 
+  std::shared_ptr<const Clip> clip_;
   KeyChange change_;
   std::set<int> chosen_;
   int pivot_;
@@ -175,7 +181,8 @@ void drag_keys(Editor& editor, int frame) {
     t.moving.clear();
     for (int key : t.chosen) t.moving[key] = key + by;
   };
-  editor.drag = Drag{MouseButton::Left, moved, [](Editor& e) { commit_change(e, KeyChange::Move); },
+  editor.drag = Drag{MouseButton::Left, moved,
+                     [clip = graph_clip(editor)](Editor& e) { commit_change(e, clip, KeyChange::Move); },
                      [](Editor& e) { e.timeline->moving.clear(); }};
 }
 
@@ -230,7 +237,7 @@ void box_keys(Editor& editor) {
   };
   const auto ended = [](Editor& e) {
     Timeline& timeline = *e.timeline;
-    if (!timeline.box) return;
+    if (!timeline.box || !shown_clip(e)) return;
     const Rect box = *std::exchange(timeline.box, std::nullopt);
     if (!e.input.modifiers().shift) timeline.chosen.clear();
     for (int frame : frames_of(shown_clip(e)->keys))

@@ -169,6 +169,25 @@ TEST_CASE("graph: a tool in use ends when another clip is shown, or none, and ch
   }
 }
 
+TEST_CASE("timeline: a tool in use ends when another clip is shown, or none, and changes neither") {
+  for (const bool none : {false, true}) {
+    KeyEditor test;
+    test.editor->timeline->chosen = {30};
+    test.play("move keys\n key G\n key 5\n wait-idle");
+    REQUIRE(!test.editor->timeline->moving.empty());
+    Document next = test.editor->document();
+    Clip other{.name = "other"};
+    other.keys = shaped_keys();
+    if (none) next.clips.clear();
+    else add_clip(next, other);
+    test.editor->history.commit("Make a clip", next);
+    test.play("key Return\n wait-idle");
+    CHECK(!test.editor->modal);
+    CHECK(test.editor->timeline->moving.empty());
+    CHECK(test.editor->document() == next);
+  }
+}
+
 TEST_CASE("graph: a drag ends without a change when another clip is shown") {
   KeyEditor test;
   test.show(shaped_keys(), true);
