@@ -16,8 +16,8 @@ namespace limber::editor {
 namespace {
 
 constexpr std::pair<const char*, const char*> kContexts[] = {
-    {"global", "Everywhere"}, {"view3d", "3D view"},   {"slice", "Slices"}, {"sidebar", "Sidebar"},
-    {"select", "Selection"},  {"rig", "Rig"},          {"skin", "Skin"},    {"pose", "Pose"},
+    {"global", "Everywhere"}, {"view3d", "3D view"},    {"slice", "Slices"}, {"sidebar", "Sidebar"},
+    {"select", "Selection"},  {"rig", "Rig"},           {"skin", "Skin"},    {"pose", "Pose"},
     {"resample", "Resample"}, {"timeline", "Timeline"}, {"graph", "Graph"}};
 
 const Clash* clash_of(const std::vector<Clash>& clashes, const std::string& context, const std::string& id) {
