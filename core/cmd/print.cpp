@@ -5,33 +5,13 @@
 #include <cstdio>
 #include <functional>
 
+#include "core/base/utf8.h"
 #include "core/platform/terminal.h"
 
 namespace limber::cmd {
 
 namespace {
 constexpr const char* kEraseLine = "\r\033[K";
-
-// Returns the number of bytes of the UTF-8 character at the start of `text`; 0 if `text` does not start with a valid
-// one.
-std::size_t character_size(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  const std::size_t size = first < 0x80   ? 1
-                           : first < 0xc2 ? 0
-                           : first < 0xe0 ? 2
-                           : first < 0xf0 ? 3
-                           : first < 0xf5 ? 4
-                                          : 0;
-  if (size > text.size()) return 0;
-  for (std::size_t i = 1; i < size; ++i)
-    if (byte(i) >> 6 != 2) return 0;
-  // Refuses overlong encodings, halves of surrogate pairs, and code points above U+10FFFF.
-  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) || (first == 0xf0 && byte(1) < 0x90) ||
-      (first == 0xf4 && byte(1) > 0x8f))
-    return 0;
-  return size;
-}
 
 // Returns the code of a control character, or -1 for any other character.
 int control_of(std::string_view character) {
@@ -47,7 +27,7 @@ std::string cleaned(std::string_view text, const std::function<std::string(int c
   std::string clean;
   clean.reserve(text.size());
   while (!text.empty()) {
-    const std::size_t size = character_size(text);
+    const std::size_t size = utf8_size(text);
     const int control = size == 0 ? -1 : control_of(text.substr(0, size));
     if (size == 0 || control >= 0) clean += instead(control);
     else clean += text.substr(0, size);

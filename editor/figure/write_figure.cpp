@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/base/utf8.h"
 #include "core/study/text.h"
 #include "render/tiff.h"
 
@@ -97,7 +98,7 @@ std::string figure_svg(const FigureLayout& layout, const render::Image& picture)
                   "fill=\"%s\">",
                   line.left_base.x, line.left_base.y, line.size, line.bold ? 600 : 400, line.width,
                   options.paper == Paper::Black ? "#ffffff" : "#000000");
-    svg += text + escaped(line.text) + "</text>\n";
+    svg += text + escaped(valid_utf8(line.text)) + "</text>\n";
   }
   return svg + "</svg>\n";
 }

@@ -137,6 +137,27 @@ TEST_CASE("figure file: an SVG drawn by librsvg is the figure, with real text an
   }
 }
 
+TEST_CASE("figure file: names that are not UTF-8 leave an SVG that other programs read") {
+  NEEDS_PROGRAM("rsvg-convert");
+  const TemporaryFolder folder;
+  const Lettering lettering;
+  FigureSource source;
+  source.legend = [](const glm::ivec2&) {
+    return std::vector<LegendEntry>{
+        {"Gr\xf6\xdf"
+         "e",
+         glm::vec3(0.5f)}};
+  };
+  source.millimetres_per_pixel = [](const glm::ivec2&) { return 0.5; };
+  const FigureLayout layout = figure_layout({.size = {60, 50}, .dots_per_inch = 100}, source, lettering);
+  write_figure(layout, disc(layout.picture_pixels), lettering, folder / "figure.svg");
+  CHECK(read_file(folder / "figure.svg").find(">Gr\ufffd\ufffde</text>") != std::string::npos);
+  const auto run =
+      run_program("rsvg-convert", {(folder / "figure.svg").string(), "-o", (folder / "figure.png").string()});
+  INFO(run.err);
+  CHECK(run.exit_code == 0);
+}
+
 TEST_CASE("figure file: another ending is refused in one line") {
   CHECK_THROWS_AS(check_figure_path("figure.jpg"), Error);
   CHECK_THROWS_AS(check_figure_path("figure"), Error);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Texts from files by unknown authors may hold bytes that are not UTF-8, as Latin-1 has them.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace limber {
+
+// Returns the number of bytes of the UTF-8 character at the start of `text`; 0 if `text` does not start with a valid
+// one.
+std::size_t utf8_size(std::string_view text);
+// Returns the text with U+FFFD in the place of each byte that is not UTF-8.
+std::string valid_utf8(std::string_view text);
+
+}  // namespace limber
