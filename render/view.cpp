@@ -435,8 +435,12 @@ struct View3D::Impl {
       next_image.clear();
     }
     if (!with_light) return;
-    for (size_t layer = 0; layer < source.layers.size(); ++layer)
+    // Light and outlines are looked up some pixels away, also beyond the rectangle that is drawn, where hits of other
+    // pictures would remain.
+    for (size_t layer = 0; layer < source.layers.size(); ++layer) {
+      jittered[layer].forget_hits();
       light[layer].resize(jittered[layer], source.pose ? 2 : 1);
+    }
     clear_body(jittered);
   }
 

@@ -102,6 +102,13 @@ void GBuffer::resize(const glm::ivec2& size, bool places) {
   gl::check_gl("the buffers of a picture");
 }
 
+void GBuffer::forget_hits() {
+  glBindFramebuffer(GL_FRAMEBUFFER, march_target.name());
+  glDisable(GL_SCISSOR_TEST);
+  const float nothing[4] = {0, 0, 0, 0};
+  glClearBufferfv(GL_COLOR, 1, nothing);
+}
+
 VolumePass::VolumePass(int atlases, Space space)
     : hull_("hull.vert", "hull.frag"),
       march_(gl::kWholePicture, "march.frag", march_defines(atlases, space)),

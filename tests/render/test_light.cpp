@@ -207,3 +207,28 @@ TEST_CASE("fine light: sheets and threads of one voxel do not vanish from a cut 
     CHECK(has_green({8 * x + 4, 319 - (8 * static_cast<int>(std::round(8 + 0.4 * x)) + 4)}));
   CHECK_FALSE(has_green({8 * 20 + 4, 319 - (8 * 30 + 4)}));
 }
+
+TEST_CASE("fine light: a picture is the same whatever the view showed before, up to the body's edges") {
+  Studio studio;
+  studio.renderer.light_at_rest(Light::Fine);
+  // A cut face of tissue 1 around tissue 2: seen from near it is all 2, from afar 1 lies at its edges.
+  Scene scene = scene_of(painted(grid_of({40, 40, 40}), [](const glm::dvec3& p) -> Label {
+    return std::abs(p.x - 19.5) < 8 && std::abs(p.z - 19.5) < 8 ? 2 : 1;
+  }));
+  scene.clip.plane = {glm::dvec3(20, 20.5, 20), glm::dvec3(0, -1, 0)};
+  scene.line_scale = 20;
+  Camera camera = looking_from(StandardView::Front, {});
+  camera.projection = Projection::Orthographic;
+  camera.centre = glm::dvec3(19.5);
+  camera.distance = 30 / std::tan(camera.field_of_view / 2);
+  const Camera near = zoomed(camera, 0.2);
+  const glm::ivec2 size(160, 160);
+  double now = 0;
+  View3D fresh(studio.renderer), used(studio.renderer);
+  const Image expected = rested(fresh, scene, camera, size, now);
+  // Moves until the view draws in full resolution while it moves, so that its buffers keep their size and contents.
+  for (int i = 0; i < 20 && used.scale() != 1; ++i)
+    used.draw(scene, zoomed(near, 1 + 0.001 * i), size, now += 1.0 / 60);
+  rested(used, scene, near, size, now);
+  CHECK(rested(used, scene, camera, size, now).rgba == expected.rgba);
+}
