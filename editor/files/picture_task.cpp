@@ -2,6 +2,7 @@
 #include "editor/files/picture_task.h"
 
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 
 namespace limber::editor {
@@ -13,16 +14,18 @@ struct Board {
   std::mutex mutex;
   std::condition_variable changed;
   std::optional<render::Image> picture;
-  bool over = false;  // the task has ended, or was cancelled
+  std::exception_ptr failure;  // why no further picture could be drawn
 };
 
-// Waits for the next picture.
+// Waits for the next picture. Throws what was thrown while it was drawn.
 render::Image next_picture(Board& board, int number, int count, Progress& progress) {
   for (;;) {
     progress.update("pictures", static_cast<double>(number) / count);
     std::unique_lock lock(board.mutex);
-    if (!board.changed.wait_for(lock, std::chrono::milliseconds(50), [&] { return board.picture.has_value(); }))
+    if (!board.changed.wait_for(lock, std::chrono::milliseconds(50),
+                                [&] { return board.picture.has_value() || board.failure; }))
       continue;
+    if (!board.picture) std::rethrow_exception(board.failure);
     render::Image image = std::move(*board.picture);
     board.picture.reset();
     return image;
@@ -33,6 +36,7 @@ render::Image next_picture(Board& board, int number, int count, Progress& progre
 struct Drawing {
   std::unique_ptr<render::View3D> view;
   int picture = 0;
+  bool drawn = false;  // the picture is complete, and waits until the task has taken the one before
   double time = 0;
 };
 
@@ -45,38 +49,45 @@ bool draw_share(Drawing& drawing, const PictureTask& task) {
   return true;
 }
 
+// Draws a share of a picture, or passes a drawn one to the task. Returns false after the last picture.
+bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board& board) {
+  const auto taken = [&] {
+    const std::lock_guard lock(board.mutex);
+    return !board.picture;
+  };
+  if (drawing.drawn && !taken()) return true;  // the task's progress wakes the editor again
+  editor.touch();
+  if (!drawing.drawn) drawing.drawn = draw_share(drawing, task);
+  if (!drawing.drawn || !taken()) return true;
+  render::Image image = drawing.view->read();
+  const std::lock_guard lock(board.mutex);
+  board.picture = std::move(image);
+  board.changed.notify_all();
+  drawing.drawn = false;
+  return ++drawing.picture < task.pictures;
+}
+
 }  // namespace
 
 void start_picture_task(Editor& editor, PictureTask wanted) {
   auto task = std::make_shared<const PictureTask>(std::move(wanted));
   auto board = std::make_shared<Board>();
-  start_task(editor, task->label, [task, board](Progress& progress) -> Finish {
-    struct Over {
-      Board& board;
-      ~Over() {
-        const std::lock_guard lock(board.mutex);
-        board.over = true;
-      }
-    } over{*board};
+  auto drawing = std::make_shared<Drawing>();
+  drawing->view = std::make_unique<render::View3D>(editor.views->renderer);
+  const int id = start_task(editor, task->label, [task, board](Progress& progress) -> Finish {
     for (int i = 0; i < task->pictures; ++i) task->take(i, next_picture(*board, i, task->pictures, progress), progress);
     return task->finish(progress);
   });
-
-  auto drawing = std::make_shared<Drawing>();
-  drawing->view = std::make_unique<render::View3D>(editor.views->renderer);
-  editor.each_frame.push_back([board, task, drawing](Editor& e) {
-    {
+  editor.each_frame.push_back([id, board, task, drawing](Editor& e) {
+    if (!e.tasks.contains(id)) return false;  // the job has ended, perhaps before it began
+    try {
+      return draw_next(e, *drawing, *task, *board);
+    } catch (...) {  // becomes the failure of the job, whose thread throws it again
       const std::lock_guard lock(board->mutex);
-      if (board->over || drawing->picture >= task->pictures) return false;
-      e.touch();
-      if (board->picture) return true;
+      board->failure = std::current_exception();
+      board->changed.notify_all();
+      return false;
     }
-    if (!draw_share(*drawing, *task)) return true;
-    const std::lock_guard lock(board->mutex);
-    board->picture = drawing->view->read();
-    ++drawing->picture;
-    board->changed.notify_all();
-    return true;
   });
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "editor/figure/figure_source.h"
 #include "editor/files/export.h"
+#include "editor/files/picture_task.h"
 #include "render/image_io.h"
 #include "tests/editor/small_editor.h"
 #include "tests/support/program.h"
@@ -69,6 +70,49 @@ TEST_CASE("export figure: lines are as wide on the page as on a screen, whatever
       CHECK(points(dots, height) <= 0.7501);
     }
   CHECK(points(300, 1400) == doctest::Approx(points(600, 2800)));
+}
+
+TEST_CASE("export picture: cancelled before its job began, it ends, and while it waits the editor is at rest") {
+  SmallEditor test({320, 240});
+  Editor& editor = *test.editor;
+  editor.jobs.set_at_once(0);
+  bool taken = false;
+  start_picture_task(editor, {.label = "Export three pictures",
+                              .scene = editor.views->scene,
+                              .size = {64, 48},
+                              .pictures = 3,
+                              .camera = [camera = editor.views->body.camera](int) { return camera; },
+                              .take = [&](int, const render::Image&, Progress&) { taken = true; },
+                              .finish = [](Progress&) -> Finish { return {}; }});
+  for (int i = 0; i < 100 && editor.rest() == 0; ++i) test.player.step();
+  CHECK(editor.rest() > 0);
+  CHECK(editor.each_frame.size() == 1);
+  editor.jobs.cancel_all();
+  for (int i = 0; i < 10; ++i) test.player.step();
+  CHECK(editor.each_frame.empty());
+  CHECK(editor.at_rest());
+  CHECK_FALSE(taken);
+}
+
+TEST_CASE("export picture: what OpenGL cannot draw fails the job with its message, and the editor lives on") {
+  SmallEditor test({320, 240});
+  Editor& editor = *test.editor;
+  bool taken = false;
+  start_picture_task(editor, {.label = "Export wide.png",
+                              .scene = editor.views->scene,
+                              .size = {200000, 8},
+                              .camera = [camera = editor.views->body.camera](int) { return camera; },
+                              .take = [&](int, const render::Image&, Progress&) { taken = true; },
+                              .finish = [](Progress&) -> Finish { return {}; }});
+  test.play("wait-job\n wait-idle");
+  CHECK_FALSE(taken);
+  CHECK(editor.each_frame.empty());
+  CHECK(test.fact("error") == "The graphics driver reports an invalid value");
+  const TemporaryFolder folder;
+  editor.messages.errors.clear();
+  export_picture(editor, folder / "picture.png");
+  test.play("wait-job");
+  CHECK(std::filesystem::exists(folder / "picture.png"));
 }
 
 TEST_CASE(
