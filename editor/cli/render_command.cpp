@@ -281,10 +281,14 @@ SliceCameraAt slice_camera_of(const PosedScene& posed, const Options& options) {
   };
 }
 
+SliceDisplay slice_display(const Options& options) {
+  return options.outline ? SliceDisplay::Outline : SliceDisplay::Labels;
+}
+
 Image picture_slice(Renderer& renderer, const Scene& scene, const Options& options, const SliceCamera& camera,
                     const glm::ivec2& size) {
   SliceView view(renderer);
-  view.draw(scene, camera, options.outline ? SliceDisplay::Outline : SliceDisplay::Labels, size);
+  view.draw(scene, camera, slice_display(options), size);
   return view.read();
 }
 
@@ -311,8 +315,10 @@ void draw_figure(Renderer& renderer, const PosedScene& posed, const Options& opt
     return write_figure(layout, picture_3d(renderer, scene, camera(size), size), lettering, options.output);
   }
   const SliceCameraAt camera = slice_camera_of(posed, options);
-  const FigureLayout layout = figure_layout(wanted, slice_source(scene, camera, tissues), lettering);
+  const FigureLayout layout =
+      figure_layout(wanted, slice_source(scene, camera, slice_display(options), tissues), lettering);
   const glm::ivec2& size = layout.picture_pixels;
+  scene.line_scale = figure_line_scale(layout);
   write_figure(layout, picture_slice(renderer, scene, options, camera(size), size), lettering, options.output);
 }
 

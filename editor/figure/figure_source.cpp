@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
 #include "core/deform/preview_map.h"
 
 namespace limber::editor {
@@ -15,6 +16,14 @@ namespace {
 constexpr double kScreenHeight = 700, kScreenResolution = 96, kFinestLines = 288;
 // A tissue is in the legend if it covers more than this share of the picture: less cannot be recognized.
 constexpr double kSmallestShare = 1.0 / 20000;
+constexpr double kLegendPixels = 1e6;  // most pixels of the picture in which tissues are counted for the legend
+constexpr int kRows = 16;              // of a slice that one thread looks up together
+
+// Returns the size of the picture in which the tissues of a picture of this size are counted.
+glm::ivec2 legend_size(const glm::ivec2& size) {
+  const double shrink = std::min(1.0, std::sqrt(kLegendPixels / (double(size.x) * size.y)));
+  return glm::max(glm::ivec2(glm::dvec2(size) * shrink), glm::ivec2(1));
+}
 
 int least_pixels(const glm::ivec2& size) { return std::max(1, static_cast<int>(kSmallestShare * size.x * size.y)); }
 
@@ -50,8 +59,9 @@ double millimetres_per_pixel(const render::Camera& camera, const glm::ivec2& siz
 FigureSource body_source(render::Renderer& renderer, const render::Scene& scene, const CameraAt& camera,
                          const std::shared_ptr<const TissueTable>& tissues) {
   FigureSource source;
-  source.legend = [&renderer, scene, camera, tissues](const glm::ivec2& size) {
+  source.legend = [&renderer, scene, camera, tissues](const glm::ivec2& whole) {
     if (scene.weights || !scene.volume) return std::vector<LegendEntry>{};
+    const glm::ivec2 size = legend_size(whole);
     render::View3D view(renderer);
     view.draw(scene, camera(size), size, 0, 1);
     return legend_of(view.shown_labels(least_pixels(size)), scene, *tissues);
@@ -61,11 +71,15 @@ FigureSource body_source(render::Renderer& renderer, const render::Scene& scene,
   return source;
 }
 
-FigureSource slice_source(const render::Scene& scene, const SliceCameraAt& camera,
+FigureSource slice_source(const render::Scene& scene, const SliceCameraAt& camera, render::SliceDisplay display,
                           const std::shared_ptr<const TissueTable>& tissues) {
   FigureSource source;
-  source.legend = [scene, camera, tissues](const glm::ivec2& size) {
-    if (scene.weights || !scene.volume) return std::vector<LegendEntry>{};
+  // Over an image that nothing covers, tissues show at most by their outlines.
+  const bool hidden =
+      scene.grey && scene.grey->image && scene.grey->tissues == 0 && display != render::SliceDisplay::Outline;
+  source.legend = [scene, camera, tissues, hidden](const glm::ivec2& whole) {
+    if (scene.weights || !scene.volume || hidden) return std::vector<LegendEntry>{};
+    const glm::ivec2 size = legend_size(whole);
     return legend_of(labels_of_slice(scene, camera(size), size, least_pixels(size)), scene, *tissues);
   };
   source.millimetres_per_pixel = [camera](const glm::ivec2& size) { return camera(size).millimetres_per_pixel; };
@@ -76,15 +90,21 @@ std::vector<Label> labels_of_slice(const render::Scene& scene, const render::Sli
                                    const glm::ivec2& size, int pixels) {
   const render::SliceFrame frame = render::frame_of(camera.axis);
   const AffineTransform to_voxel = voxel_from_world(scene.volume->grid);
+  std::vector<Label> shown(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  parallel_for(size.y, kRows, [&](std::int64_t begin, std::int64_t end) {
+    auto label = shown.begin() + begin * size.x;
+    for (int y = static_cast<int>(begin); y < end; ++y)
+      for (int x = 0; x < size.x; ++x, ++label) {
+        const glm::dvec3 world =
+            camera.centre + camera.millimetres_per_pixel *
+                                ((x + 0.5 - size.x / 2.0) * frame.right + (y + 0.5 - size.y / 2.0) * frame.down);
+        std::optional<glm::dvec3> voxel = to_voxel * world;
+        if (scene.pose) voxel = scene.pose->rest_at(*voxel);
+        if (voxel) *label = scene.volume->at_or_air(glm::ivec3(glm::floor(*voxel + 0.5)));
+      }
+  });
   std::vector<int> counts(65536);
-  for (int y = 0; y < size.y; ++y)
-    for (int x = 0; x < size.x; ++x) {
-      const glm::dvec3 world = camera.centre + camera.millimetres_per_pixel * ((x + 0.5 - size.x / 2.0) * frame.right +
-                                                                               (y + 0.5 - size.y / 2.0) * frame.down);
-      std::optional<glm::dvec3> voxel = to_voxel * world;
-      if (scene.pose) voxel = scene.pose->rest_at(*voxel);
-      if (voxel) ++counts[scene.volume->at_or_air(glm::ivec3(glm::floor(*voxel + 0.5)))];
-    }
+  for (const Label label : shown) ++counts[label];
   std::vector<Label> labels;
   for (std::size_t label = 1; label < counts.size(); ++label)
     if (counts[label] >= pixels && label < scene.looks->size() && (*scene.looks)[label].visible)

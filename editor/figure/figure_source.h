@@ -18,11 +18,12 @@ using CameraAt = std::function<render::Camera(const glm::ivec2& size)>;
 using SliceCameraAt = std::function<render::SliceCamera(const glm::ivec2& size)>;
 
 // These functions return the source of a figure. The legend lists the tissues by label, and is empty where the colours
-// are those of weights or of a grey image. The renderer must outlive the source.
+// are those of weights or of a grey image. It is that of a smaller picture where the figure's own has more than a
+// million pixels. The renderer must outlive the source.
 //   camera  for a picture of a given size in pixels
 FigureSource body_source(render::Renderer& renderer, const render::Scene& scene, const CameraAt& camera,
                          const std::shared_ptr<const TissueTable>& tissues);
-FigureSource slice_source(const render::Scene& scene, const SliceCameraAt& camera,
+FigureSource slice_source(const render::Scene& scene, const SliceCameraAt& camera, render::SliceDisplay display,
                           const std::shared_ptr<const TissueTable>& tissues);
 
 // Returns the labels that a slice shows on at least `pixels` of its pixels, in ascending order.

@@ -15,6 +15,8 @@ namespace {
 
 using Paper = FigureOptions::Paper;
 
+constexpr double kUploadTime = 1;  // time in which what a slice shows is uploaded between two checks, seconds
+
 bool shows_slice(const Editor& editor) {
   return editor.views->active != ViewId::Body && editor.layout.place_of(editor.views->active);
 }
@@ -50,6 +52,12 @@ FigureOptions options_of(const std::vector<FormField>& fields) {
   options.legend = fields[6].chosen == 0;
   options.scale_bar = fields[7].chosen == 0;
   return options;
+}
+
+// Returns the scene with lines as wide as the figure needs them, whatever the scale of the editor's own pictures.
+render::Scene for_page(render::Scene scene, const FigureLayout& layout) {
+  scene.line_scale = figure_line_scale(layout);
+  return scene;
 }
 
 void finish_export(Editor& editor, const Path& path) {
@@ -113,7 +121,7 @@ void export_figure(Editor& editor, const FigureOptions& options, const Path& pat
     const FigureLayout layout = figure_layout(options, body_source(views.renderer, scene, camera, tissues), *lettering);
     return start_picture_task(
         editor, {.label = label,
-                 .scene = scene,
+                 .scene = for_page(std::move(scene), layout),
                  .size = layout.picture_pixels,
                  .camera = [at = camera(layout.picture_pixels)](int) { return at; },
                  .take = [layout, lettering, path](int, const render::Image& image,
@@ -121,10 +129,14 @@ void export_figure(Editor& editor, const FigureOptions& options, const Path& pat
                  .finish = done});
   }
   const SliceCameraAt camera = slice_camera_for(editor);
-  const FigureLayout layout = figure_layout(options, slice_source(scene, camera, tissues), *lettering);
+  const FigureLayout layout =
+      figure_layout(options, slice_source(scene, camera, views.slice_display, tissues), *lettering);
+  scene = for_page(std::move(scene), layout);
   render::SliceView view(views.renderer);
-  do view.draw(scene, camera(layout.picture_pixels), views.slice_display, layout.picture_pixels);
-  while (!view.complete());
+  do {
+    views.renderer.begin_frame(kUploadTime);
+    view.draw(scene, camera(layout.picture_pixels), views.slice_display, layout.picture_pixels);
+  } while (!view.complete());
   start_task(editor, label, [layout, lettering, path, done, image = view.read()](Progress& progress) -> Finish {
     write_figure(layout, image, *lettering, path);
     return done(progress);

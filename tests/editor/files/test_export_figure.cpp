@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/base/error.h"
+#include "core/volume/grey_levels.h"
 #include "editor/figure/figure_source.h"
 #include "editor/files/export.h"
 #include "editor/files/picture_task.h"
@@ -70,6 +71,67 @@ TEST_CASE("export figure: lines are as wide on the page as on a screen, whatever
       CHECK(points(dots, height) <= 0.7501);
     }
   CHECK(points(300, 1400) == doctest::Approx(points(600, 2800)));
+}
+
+TEST_CASE("export figure: its lines do not depend on how large the editor draws its own") {
+  SmallEditor test;
+  const TemporaryFolder folder;
+  auto armature = std::make_shared<Armature>();
+  armature->bones.push_back({.name = "Bone", .head = {0, 0, -40}, .tail = {0, 0, 40}});
+  render::Scene& scene = test.editor->views->scene;
+  const auto drawn = [&](const char* name, float scale) {
+    scene.armature = armature;
+    scene.bone_shape = render::BoneShape::Stick;
+    scene.bones_in_front = true;
+    scene.line_scale = scale;
+    return exported(test, {.size = {40, 30}, .dots_per_inch = 200}, folder / name);
+  };
+  const std::string small = drawn("small.png", 1), large = drawn("large.png", 4);
+  CHECK(small == large);
+  armature.reset();
+  CHECK(drawn("bare.png", 1) != small);
+}
+
+TEST_CASE("export figure: a slice is written with its whole image, and its legend lists what the image leaves seen") {
+  SmallEditor test;
+  const TemporaryFolder folder;
+  test.play("key Ctrl+Alt+Q\n wait-idle");
+  Views& views = *test.editor->views;
+  views.active = ViewId::Axial;
+  const auto legend = [&](float opacity, render::SliceDisplay display, const char* name) {
+    Grid grid = test.editor->document().volume->grid;
+    grid.size = {256, 256, 128};
+    const std::vector<float> values(static_cast<std::size_t>(grid.voxel_count()), 100.0f);
+    views.scene.grey =
+        render::ShownGrey{.image = std::make_shared<const GreyLevels>(grey_levels(grid, values)), .tissues = opacity};
+    views.slice_display = display;
+    views.renderer.begin_frame(0);  // this frame has no time left
+    const std::string svg = exported(test, {.size = {60, 50}, .dots_per_inch = 100}, folder / name);
+    CHECK(has(svg, " mm</text>"));
+    return has(svg, ">Muscle</text>");
+  };
+  CHECK(legend(0.35f, render::SliceDisplay::Labels, "both.svg"));
+  CHECK_FALSE(legend(0, render::SliceDisplay::Labels, "image.svg"));
+  CHECK(legend(0, render::SliceDisplay::Outline, "outlines.svg"));
+}
+
+TEST_CASE("export figure: the legend of a large figure is that of a picture of a million pixels") {
+  SmallEditor test;
+  Views& views = *test.editor->views;
+  glm::ivec2 asked(0);
+  const SliceCameraAt camera = [&](const glm::ivec2& size) {
+    asked = size;
+    return render::SliceCamera{.axis = render::SliceAxis::Axial, .millimetres_per_pixel = 120.0 / size.x};
+  };
+  const FigureSource source =
+      slice_source(views.scene, camera, render::SliceDisplay::Labels, test.editor->document().tissues);
+  const std::vector<LegendEntry> large = source.legend({8000, 4000});
+  CHECK(asked.x * asked.y <= 1'000'000);
+  CHECK(asked.x == doctest::Approx(2 * asked.y).epsilon(0.01));
+  REQUIRE(large.size() == 4);
+  CHECK(large[0].name == "Muscle");
+  CHECK(large == source.legend({800, 400}));
+  CHECK(asked == glm::ivec2(800, 400));
 }
 
 TEST_CASE("export picture: cancelled before its job began, it ends, and while it waits the editor is at rest") {
