@@ -364,6 +364,9 @@ void check_output(const Options& options, bool figure) {
   if (!is_video(output)) return;
   if (!options.turntable || !options.slice.empty())
     throw Error("a video shows the body from all around", options.output, "add --turntable N, without --slice");
+  if (options.transparent)
+    throw Error("a video has a background", options.output,
+                "leave out --transparent, or use a name that ends in .png for numbered pictures");
   require_ffmpeg(output);
 }
 

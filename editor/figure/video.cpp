@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/text_parse.h"
 #include "core/platform/child_program.h"
 #include "core/platform/module.h"
 #include "core/platform/pipe.h"
@@ -16,6 +17,8 @@ namespace {
 
 constexpr int kPollMilliseconds = 50;
 constexpr std::size_t kMostComplaint = 4000;  // bytes of ffmpeg's messages that are kept
+
+std::string ending_of_video(const Path& path) { return lower_case(path.extension().string()); }
 
 // Returns the arguments of ffmpeg for raw pictures from its standard input. Sides are padded to even numbers of pixels,
 // which the colours of both formats (4:2:0) need.
@@ -57,7 +60,10 @@ Path ffmpeg_for(const Path& path) {
 
 }  // namespace
 
-bool is_video(const Path& path) { return path.extension() == ".mp4" || path.extension() == ".webm"; }
+bool is_video(const Path& path) {
+  const std::string ending = ending_of_video(path);
+  return ending == ".mp4" || ending == ".webm";
+}
 
 void require_ffmpeg(const Path& path) { ffmpeg_for(path); }
 
@@ -66,7 +72,7 @@ struct Video::Encoder {
   glm::ivec2 size;
   Progress& progress;
   ScratchFolder folder;
-  Path made = folder.path() / ("video" + path.extension().string());
+  Path made = folder.path() / ("video" + ending_of_video(path));
   FileChannel pictures;
   Pipe errors;
   std::unique_ptr<ChildProgram> program;

@@ -138,7 +138,13 @@ TEST_CASE("render figure: what cannot be made is refused in one line, and leaves
   fails("figure.png", {"--figure", "800x800", "--dpi", "1200"}, 1);
   fails("figure.png", {"--figure", "80x80", "--size", "100x100"}, 2);
   fails("figure.png", {"--title", "without a figure"}, 2);
-  fails("turn.mp4", {}, 1);
+  for (const char* video : {"turn.mp4", "turn.MP4", "turn.WebM"}) {
+    const auto names = [&](const std::vector<std::string>& more, const char* word) {
+      return fails(video, more, 1).find(word) != std::string::npos;
+    };
+    CHECK(names({}, "add --turntable N"));
+    CHECK(names({"--turntable", "6", "--transparent"}, "leave out --transparent"));
+  }
 }
 
 TEST_CASE("render video: a turntable becomes a video through ffmpeg, and without it one line says so") {
