@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/motion/motion_edit.h"
@@ -11,11 +13,18 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostFrame = 1e9;  // frame numbers must stay integers
+constexpr double kMostFrame = 1 << 28;  // projects hold no frame beyond this one
+constexpr double kMostFrames = 1e6;     // upper limit on the frames of a motion that is slowed down
 
 void require_speed(double factor) {
   if (!(factor >= kSlowest && factor <= kFastest))
     throw Error("this speed cannot be used", std::to_string(factor) + " times as fast", "choose one from 0.05 to 20");
+}
+
+void require_frames(double frames) {
+  if (frames > kMostFrames)
+    throw Error("the motion would become too long", std::to_string(static_cast<std::int64_t>(frames)) + " frames",
+                "choose a higher speed");
 }
 
 // Gives the clip `ratio` times as many frames.
@@ -56,6 +65,7 @@ Clip at_rate(const Clip& clip, double rate) {
 
 Clip at_speed(const Clip& clip, double factor) {
   require_speed(factor);
+  if (clip.motion) require_frames(clip.motion->frame_count / factor);
   Clip changed = clip;
   // A rate that the motion could be resampled to, whatever the clip's own rate is.
   const double rate = std::clamp(clip.rate, 1.0, 1000.0);
@@ -67,6 +77,7 @@ std::vector<Pose> at_speed(const std::vector<Pose>& poses, double factor) {
   require_speed(factor);
   std::vector<Pose> out;
   if (poses.empty()) return out;
+  require_frames(double(poses.size()) / factor);
   const int last = static_cast<int>(poses.size()) - 1;
   const int frames = static_cast<int>(std::floor(last / factor + 1e-6)) + 1;
   for (int frame = 0; frame < frames; ++frame) {

@@ -11,6 +11,7 @@
 #include "core/motion/mirror_clip.h"
 #include "core/motion/recorded_clip.h"
 #include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/ui/icons.h"
@@ -64,7 +65,7 @@ void bake(Editor& editor) {
   start_task(editor, "Bake clip", [source, rig = editor.document().armature](Progress&) -> Finish {
     const auto baked = std::make_shared<const Clip>(baked_clip(source, rig));
     return [=](Editor& e) {
-      take_in_clip(e, source, "Bake clip", *baked, false);
+      take_in_clip(e, source, rig, "Bake clip", *baked, false);
       e.messages.ok(frames_text(baked->motion->frame_count) + " baked",
                     "Keys and retargeting are part of the motion, which is the rig's own now");
     };
@@ -73,17 +74,22 @@ void bake(Editor& editor) {
 
 // ---- Speed
 
+const Clip& require_clip(const Editor& editor) {
+  const Clip* clip = shown_clip(editor);
+  if (!clip) throw Error("there is no clip any more", "speed", "open this again");
+  return *clip;
+}
+
 // The factor that the fields ask for: the speed, or what gives the playing range the wanted length.
 double factor_of(const Clip& clip, const std::vector<FormField>& fields) {
   if (fields[0].chosen == 0) return fields[1].value;
   const int steps = clip.range_end - clip.range_start, wanted = static_cast<int>(std::lround(fields[2].value)) - 1;
-  if (steps < 1) throw NotYet{"The clip plays a single frame, which has no length to change."};
+  if (steps < 1) throw Error("the clip plays a single frame", "its length", "set the speed, or a longer range");
   return double(steps) / wanted;
 }
 
 std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fields) {
-  const Clip* clip = shown_clip(editor);
-  if (!clip) throw Error("there is no clip any more", "speed", "open this again");
+  const Clip* clip = &require_clip(editor);
   const double factor = factor_of(*clip, fields);
   if (factor == 1) throw NotYet{"The clip has this speed already."};
   const double steps = double(clip->range_end) - clip->range_start;
@@ -103,6 +109,21 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
                      : std::string());
 }
 
+// The play head stays at its place in the motion.
+void change_speed(Editor& editor, double factor) {
+  settle_frame(editor);
+  Document next = editor.document();
+  auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
+  const Clip changed = at_speed(*shown, factor);
+  const double moment = changed.start + std::round((double(next.frame) - changed.start) / factor);
+  const double last = std::max(changed.range_end, changed.range_start);
+  next.frame = static_cast<int>(std::clamp(moment, double(changed.range_start), last));
+  shown = std::make_shared<const Clip>(changed);
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  editor.timeline->chosen.clear();
+  commit(editor, "Change speed", std::move(next));
+}
+
 void ask_speed(Editor& editor) {
   const auto [low, high] = playing_range(editor);
   editor.open_dialog(make_form(
@@ -111,13 +132,12 @@ void ask_speed(Editor& editor) {
        "Change",
        {choice_of("Set", "Whether the speed or the length is set.", {"Speed", "Length"}),
         number_of("Speed", "2 plays twice as fast, 0.5 half as fast.", 1, kSlowest, kFastest, "%.3f", "times"),
-        number_of("Length", "Number of frames that then play.", high - low + 1, 2, 1e6, "%.0f", "frames")},
+        number_of("Length", "Number of frames that then play.", std::clamp<double>(double(high) - low + 1, 2, 1e6), 2,
+                  1e6, "%.0f", "frames")},
        speed_outcome,
        [](Editor& e, const std::vector<FormField>& fields) {
          stop_playing(e);
-         edit_clip(e, "Change speed", PoseThen::FromClip,
-                   [&](Clip& clip) { clip = at_speed(clip, factor_of(clip, fields)); });
-         e.timeline->chosen.clear();
+         change_speed(e, factor_of(require_clip(e), fields));
        }}));
 }
 
@@ -151,7 +171,7 @@ void start_looping(Editor& editor, const LoopSettings& settings, bool is_new) {
     auto made = std::make_shared<Clip>(clip_of_poses(*source, *rig, loop->poses, first));
     if (is_new) made->name += " loop";
     return [=](Editor& e) {
-      take_in_clip(e, source, "Loop clip", *made, is_new);
+      take_in_clip(e, source, rig, "Loop clip", *made, is_new);
       tell_of_loop(e, *loop, settings.repeats);
     };
   });

@@ -39,10 +39,19 @@ std::string needs_clip_and_rig(const Editor& editor) {
   return editor.document().armature ? "" : "Import a rig first";
 }
 
+// Whether the take has the rate of the clip, which counts to a thousandth.
+bool is_at_rate(const Motion& motion, double rate) { return std::abs(1 / motion.frame_time - rate) <= 1e-3; }
+
 // The number of frames that the take has at the rate of the clip.
 std::int64_t frames_at_rate(const Motion& motion, double rate) {
-  return static_cast<std::int64_t>(std::floor(std::max(0, motion.frame_count - 1) * motion.frame_time * rate + 1e-6)) +
-         1;
+  if (is_at_rate(motion, rate)) return motion.frame_count;
+  const double steps = std::floor(std::max(0, motion.frame_count - 1) * motion.frame_time * rate + 1e-6);
+  return static_cast<std::int64_t>(std::min(steps, 1e9)) + 1;
+}
+
+bool has_joints_of(const Motion& a, const Motion& b) {
+  return std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), b.joints.end(),
+                    [](const BvhJoint& one, const BvhJoint& other) { return one.name == other.name; });
 }
 
 std::vector<Pose> poses_of(const ClipOnRig& clip, int first, int last, Progress& progress) {
@@ -55,13 +64,18 @@ std::vector<Pose> poses_of(const ClipOnRig& clip, int first, int last, Progress&
   return poses;
 }
 
-// Returns the poses of the second take at the rate of the first one, retargeted as an import is, with the root motion
-// of the first one.
+// Returns the poses of the second take at the rate of the first one, with the root motion of the first one. A take of
+// the same skeleton is retargeted as the first one is, any other as an import is.
 std::vector<Pose> poses_of_next(const Clip& source, const std::shared_ptr<const Armature>& rig, const NextTake& next,
                                 UpAxis up, Progress& progress) {
   Motion motion = up == UpAxis::Z ? y_up_from_z_up(*next.motion) : *next.motion;
-  if (std::abs(1 / motion.frame_time - source.rate) > 1e-3) motion = resampled(motion, source.rate);
+  if (!is_at_rate(motion, source.rate)) motion = resampled(motion, source.rate);
   Clip clip = clip_of(std::make_shared<const Motion>(std::move(motion)), next.name);
+  if (source.motion && has_joints_of(*source.motion, *clip.motion)) {
+    clip.map = source.map;
+    clip.retarget.scale = source.retarget.scale;
+    clip.retarget.reference = source.retarget.reference;
+  }
   clip.retarget.travel = source.motion ? source.retarget.travel : Travel::Free;
   const int last = clip.last;
   return poses_of(ClipOnRig(std::make_shared<const Clip>(std::move(clip)), rig), 0, last, progress);
@@ -111,7 +125,7 @@ void start_joining(Editor& editor, const NextTake& next, const JoinWish& wish) {
     auto result = std::make_shared<JoinResult>(join(source, rig, next, wish, progress));
     if (wish.is_new) result->clip.name += " + " + next.name;
     return [=](Editor& e) {
-      take_in_clip(e, source, "Join clip", result->clip, wish.is_new);
+      take_in_clip(e, source, rig, "Join clip", result->clip, wish.is_new);
       if (result->is_doubtful) e.messages.warn(result->line, result->detail);
       else e.messages.ok(result->line, result->detail);
     };

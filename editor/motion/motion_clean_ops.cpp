@@ -132,11 +132,11 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
 }
 
 void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, int first, const Cleaning& cleaning,
-             const Armature& rig, const Result& result) {
+             const std::shared_ptr<const Armature>& rig, const Result& result) {
   const bool is_new = cleaning.becomes == Becomes::NewClip;
-  Clip clip = clip_of_poses(*source, rig, result.poses, first);
+  Clip clip = clip_of_poses(*source, *rig, result.poses, first);
   if (is_new) clip.name += cleaning.made;
-  take_in_clip(editor, source, cleaning.label, std::move(clip), is_new);
+  take_in_clip(editor, source, rig, cleaning.label, std::move(clip), is_new);
   if (result.is_short) editor.messages.warn(result.line, result.detail);
   else editor.messages.ok(result.line, result.detail);
 }
@@ -151,7 +151,7 @@ void start_cleaning(Editor& editor, const Cleaning& cleaning) {
                const ClipOnRig clip(source, rig);
                if (!clip.problem().empty()) throw Error("the clip cannot be cleaned", source->name, clip.problem());
                const auto result = std::make_shared<const Result>(clean(clip, first, last, cleaning, progress));
-               return [=](Editor& e) { take_in(e, source, first, cleaning, *rig, *result); };
+               return [=](Editor& e) { take_in(e, source, first, cleaning, rig, *result); };
              });
 }
 

@@ -170,13 +170,13 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
   return clip;
 }
 
-void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::string& label, Clip clip,
-                  bool is_new) {
+void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
+                  const std::string& label, Clip clip, bool is_new) {
   settle_frame(editor);
   Document next = editor.document();
   const auto place = std::find(next.clips.begin(), next.clips.end(), source);
-  if (place == next.clips.end() || !next.armature)
-    throw Error("the clip was changed meanwhile", source->name, "do this again: " + label);
+  if (place == next.clips.end() || next.armature != rig)
+    throw Error("the clip or the rig was changed meanwhile", source->name, "do this again: " + label);
   const int frame = std::clamp(next.frame, clip.range_start, std::max(clip.range_start, clip.range_end));
   if (is_new) {
     add_clip(next, std::move(clip));

@@ -173,3 +173,22 @@ TEST_CASE("whole clips: a length is set, and what cannot be reached is said") {
     CHECK(glm::length(turn_between(after[f].rotation[1], before[2 * f].rotation[1])) < 1e-6);
   test.undo_and_redo(old);
 }
+
+TEST_CASE("whole clips: the play head stays at its place in the motion when the speed changes") {
+  DeedEditor test;
+  go_to_frame(*test.editor, kStart + 40);
+  test.play("wait-idle");
+  const glm::dquat spine = test.editor->document().pose->rotation[1];
+  test.deed("Change speed...", "double-click Speed/value\n key Ctrl+A\n type 2\n key Tab\n wait-idle\n click Change");
+  CHECK(test.editor->document().frame == kStart + 20);
+  CHECK(glm::length(turn_between(test.editor->document().pose->rotation[1], spine)) < 1e-6);
+}
+
+TEST_CASE("whole clips: what was computed for another rig is refused") {
+  DeedEditor test;
+  const std::shared_ptr<const Clip> source = test.editor->document().clips[0];
+  const auto other = std::make_shared<const Armature>(test.rig);
+  CHECK_THROWS_WITH_AS(take_in_clip(*test.editor, source, other, "Bake clip", *source, false),
+                       doctest::Contains("rig was changed"), Error);
+  CHECK(test.editor->document().clips[0] == source);
+}

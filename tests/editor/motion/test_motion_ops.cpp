@@ -381,7 +381,7 @@ std::vector<Proof> proofs_of_clips() {
          return edit_is("Change speed")(s, b) && shown_clip(s.editor())->range_end == 30 &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(15)) - 30) < 1e-3;
        },
-       Shows::InBody, "", stand_at(20)},
+       Shows::Nothing, "", stand_at(20)},
       {"motion.bake", "click \"Motion/Clip/Whole clip/Bake clip\"\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
          return edit_is("Bake clip")(s, b) && shown_clip(s.editor())->keys.empty() &&
