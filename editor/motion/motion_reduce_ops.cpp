@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/motion/reduce_keys.h"
 #include "editor/context/background_task.h"
-#include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
+#include "editor/motion/motion_clip_edits.h"
 #include "editor/motion/timeline.h"
 
 namespace limber::editor {
@@ -42,25 +42,11 @@ Clip keyed_clip(const Clip& source, const ReducedKeys& reduced, int first, int l
   return clip;
 }
 
-void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, const FrameRange& range, bool is_new,
-             const ReducedKeys& reduced) {
-  settle_frame(editor);
-  Document next = editor.document();
-  const auto place = std::find(next.clips.begin(), next.clips.end(), source);
-  if (place == next.clips.end() || !next.armature)
-    throw Error("the clip was changed while it was reduced", source->name, "reduce it again");
-  Clip clip = keyed_clip(*source, reduced, range.low, range.high, is_new ? source->name + " keys" : source->name);
-  const int frame = std::clamp(next.frame, range.low, range.high);
-  if (is_new) {
-    add_clip(next, std::move(clip));
-  } else {
-    next.clip = static_cast<int>(place - next.clips.begin());
-    next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
-  }
-  next.frame = frame;
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  editor.timeline->chosen.clear();
-  commit(editor, "Reduce to keys", std::move(next));
+void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
+             const FrameRange& range, bool is_new, const ReducedKeys& reduced) {
+  take_in_clip(editor, source, rig, "Reduce to keys",
+               keyed_clip(*source, reduced, range.low, range.high, is_new ? source->name + " keys" : source->name),
+               is_new);
   editor.messages.ok(std::to_string(range.high - range.low + 1) + " frames became " + std::to_string(reduced.count) +
                          " keys of " + std::to_string(reduced.keys.bones.size()) +
                          (reduced.keys.bones.size() == 1 ? " bone" : " bones"),
@@ -81,7 +67,7 @@ void start_reducing(Editor& editor, const ReduceSettings& settings, bool is_new)
     }
     const auto reduced =
         std::make_shared<const ReducedKeys>(reduced_to_keys(*rig, poses, range.low, settings, progress));
-    return [=](Editor& e) { take_in(e, source, range, is_new, *reduced); };
+    return [=](Editor& e) { take_in(e, source, rig, range, is_new, *reduced); };
   });
 }
 

@@ -229,6 +229,7 @@ TEST_CASE("fine light: a picture is the same whatever the view showed before, up
   // Moves until the view draws in full resolution while it moves, so that its buffers keep their size and contents.
   for (int i = 0; i < 20 && used.scale() != 1; ++i)
     used.draw(scene, zoomed(near, 1 + 0.001 * i), size, now += 1.0 / 60);
+  if (used.scale() != 1) MESSAGE("too slow to move at full resolution, so that no stale pixels could be met");
   rested(used, scene, near, size, now);
   CHECK(rested(used, scene, camera, size, now).rgba == expected.rgba);
 }
