@@ -25,6 +25,9 @@ constexpr double kStretch = 2;
 // full of tissue around it. With less tissue the stiffness falls in proportion. Flesh yields to flesh: as stiff a
 // spring as that of a bone would tear specks out of a limb that is folded onto another.
 constexpr double kPush = 500, kPart = 40;
+// Furthest shift, in cell edges, to which flesh is drawn out of other flesh. Without a limit, flesh that finds no room
+// grows with each step, and so overlaps ever more.
+constexpr double kMostApart = 2;
 constexpr double kMostlySoft = 0.2;  // in cell volumes: a node with less bone around it counts as soft
 constexpr int kLook = 2;             // number of steps from one search for flesh inside flesh to the next
 // Number of steps. For a sitting body with voxels of 4 mm, the mean volume error of its cells is 2.6, 0.9 and 0.8 %
@@ -282,7 +285,10 @@ class Minimizer {
         for (auto n = first; n < last; ++n) {
           const auto way = cells_.is_fixed[n] ? std::nullopt : contact_->way_apart(static_cast<std::int32_t>(n));
           is_inside_[n] = way.has_value();
-          if (way) apart_[n] = shift_[n] + glm::vec3(*way);
+          if (!way) continue;
+          apart_[n] = shift_[n] + glm::vec3(*way);
+          const float far = glm::length(apart_[n]), most = static_cast<float>(kMostApart * std::sqrt(h2_));
+          if (far > most) apart_[n] *= most / far;
         }
       });
     }

@@ -123,6 +123,15 @@ TEST_CASE("settled flesh: a limb folded onto itself is not pulled out to lumps")
   CHECK(count(&settled, 3) < limb.tissue.size() / 25);
 }
 
+TEST_CASE("settled flesh: a thick limb that is folded beyond its room does not swell") {
+  const Limb limb;
+  for (const double degrees : {110.0, 130.0, 150.0}) {
+    const auto motions = limb.bent(degrees);
+    const SettledFlesh settled = limb.settled(motions);
+    CHECK(std::abs(volume_error(limb, motions, Blend::Mixed, &settled)) < 0.1);
+  }
+}
+
 TEST_CASE("settled flesh: a bent limb keeps its volume where blending does not" * doctest::test_suite("slow")) {
   const Limb limb;
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion, Blend::Mixed})
