@@ -7,13 +7,22 @@
 #include <span>
 #include <string_view>
 
+#include "core/deform/four_points.h"
 #include "core/deform/skinning.h"
 
 namespace limber {
 
+// The weights by which four points follow one bone.
+struct alignas(sizeof(FourNumbers)) FourWeights {
+  int bone;
+  FourNumbers weight;
+};
+
 struct BlendRule {
   using Point = glm::dvec3 (*)(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                                const glm::dvec3& rest_point);
+  using Four = void (*)(std::span<const SkinTransform> bones, std::span<const FourWeights> influences,
+                        FourPoints& points);
 
   const char* word;         // on the command line and in files: "dqs"
   const char* label;        // in lists and columns: "DQ"
@@ -23,6 +32,8 @@ struct BlendRule {
 
   Point point;            // returns the posed point if no bone stretches
   Point stretched_point;  // returns the posed point if bones may stretch
+  // Replace four rest points by the points that `point` returns for each, bit for bit. The second needs AVX2.
+  Four four_points, four_points_wide;
 
   bool sums_displacements;     // blending SkinTransforms needs the sum of the bones' displacements
   bool sums_dual_quaternions;  // blending SkinTransforms needs the sum of the bones' dual quaternions

@@ -66,9 +66,8 @@ Eight lowest_around(const Lines& lines, int i) {
 
 TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing) : tissue_(&tissue) {
   const std::size_t count = tissue.bricks().size() * kBrickVoxels;
-  squared_.reserve(count);
-  want_large_pages(squared_.data(), static_cast<std::int64_t>(count * sizeof(float)));
   squared_.resize(count);
+  want_large_pages(squared_.data(), static_cast<std::int64_t>(count * sizeof(float)));
   pass_along_x(spacing.x);
   pass_across(1, spacing.y);
   pass_across(2, spacing.z);
@@ -93,7 +92,7 @@ void TissueDepth::store_as_steps(double squared_step) {
     }
     if (!same) fits = false;
   });
-  if (fits) std::vector<float>().swap(squared_);
+  if (fits) squared_ = {};
   else steps_ = {};
 }
 

@@ -52,7 +52,7 @@ class TissueDepth {
   const TissueVoxels* tissue_;
   // 512 squared depths per tissue brick. Those of most volumes are whole multiples of a voxel's squared edge: they are
   // stored as these numbers, in half the memory.
-  std::vector<float> squared_;  // mm^2; empty: see steps_
+  ZeroedVector<float> squared_;  // mm^2; empty: see steps_
   ZeroedVector<std::uint16_t> steps_;
   double squared_step_ = 0;  // mm^2
 };

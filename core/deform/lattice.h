@@ -26,6 +26,8 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/deform/corner_poser.h"
+#include "core/deform/output_lattice.h"
 #include "core/deform/skinning.h"
 #include "core/skin/skin_weights.h"
 #include "core/volume/tissue_voxels.h"
@@ -33,9 +35,6 @@
 namespace limber {
 
 class SettledFlesh;
-
-constexpr int kFixedOne = 65536;  // units of fixed point per output voxel
-using FixedPoint = glm::ivec3;    // in units of 1/65536 output voxel
 
 // The box of voxels from `low` to `high`, both included; empty if high < low on any axis.
 struct VoxelRange {
@@ -49,15 +48,6 @@ struct VoxelRange {
 inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) {
   return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
 }
-
-// The transform from rest voxel coordinates to the output lattice: output = (rest + 0.5) * ratio - 0.5 - base.
-struct OutputLattice {
-  glm::dvec3 ratio{1};  // rest spacing / output spacing; exactly 1 where they are equal
-  glm::ivec3 base{0};
-
-  glm::dvec3 from_rest(const glm::dvec3& rest) const { return (rest + 0.5) * ratio - 0.5 - glm::dvec3(base); }
-  glm::dvec3 to_rest(const glm::dvec3& output) const { return (output + glm::dvec3(base) + 0.5) / ratio - 0.5; }
-};
 
 class PosedLattice {
  public:
@@ -104,28 +94,22 @@ class PosedLattice {
   void split_corners(std::int64_t brick, SplitBrick& corners) const;
 
  private:
-  FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences, const glm::dvec3& shift) const;
-  FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
-  [[noreturn]] void throw_torn(int bone) const;
-  FixedPoint posed_by(int bone, const glm::ivec3& corner) const;
   struct BrickBounds {
     FixedBox box;
     bool still;
   };
   BrickBounds compute(std::int64_t brick, Corners& corners) const;
   FixedBox split_bounds(std::int64_t brick) const;
-  template <class Visit, class Posed>
-  BrickBounds compute_by(std::int64_t brick, const Visit& visit, const Posed& posed, Corners& corners) const;
+  class CollectedCorners;
+  void pose_bent(std::int64_t brick, CollectedCorners& corners) const;
   AffineTransform backward(const RigidTransform& posed_from_rest) const;
-  void choose_base();
+  glm::ivec3 base(const RigidTransform& posed_from_rest) const;
 
   const LabelVolume* volume_;
   const TissueVoxels* tissue_;
   const SkinWeights* weights_;
   AffineTransform world_from_voxel_, voxel_from_world_;
-  std::vector<SkinTransform> bones_;
-  std::vector<AffineTransform> shift_;  // for each bone: rest point -> posed - rest, in voxels
-  Blend blend_;
+  CornerPoser poser_;
   const SettledFlesh* settled_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;

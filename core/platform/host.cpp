@@ -14,6 +14,15 @@ SystemName system_name() {
   return {system.sysname, system.release, system.machine};
 }
 
+bool has_avx2() {
+#ifdef __x86_64__
+  static const bool has = __builtin_cpu_supports("avx2");
+  return has;
+#else
+  return false;
+#endif
+}
+
 std::string host_name() {
   char name[256] = {};
   ::gethostname(name, sizeof name - 1);

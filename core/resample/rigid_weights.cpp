@@ -31,6 +31,9 @@ SkinWeights with_rigid_bones(const SkinWeights& weights, const LabelVolume& volu
   }
   SkinWeights rigid = weights;
   for (std::int64_t brick = 0; brick < weights.chunk_count(); ++brick) {
+    bool has_bone = false;
+    tissue.for_each_of(brick, volume, is_bone, [&](std::int64_t, const glm::ivec3&) { has_bone = true; });
+    if (!has_bone) continue;
     SkinWeights::Influences chunk = weights.chunk(brick);
     auto influence = chunk.begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {

@@ -7,13 +7,15 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/base/always_inline.h"
+#include "core/platform/host.h"
+
 namespace limber {
 
 namespace {
 
 // The code below is written once, for four and for eight voxels at a time. Eight are processed if the processor has
-// AVX2. Every helper is inlined, so that it is compiled for the same processor as its caller.
-#define LIMBER_INLINE [[gnu::always_inline]] inline
+// AVX2.
 #pragma GCC diagnostic ignored "-Wpsabi"  // vectors are only passed to inlined functions
 
 static_assert(sizeof(Influence) == 16 && std::endian::native == std::endian::little);
@@ -199,12 +201,7 @@ LIMBER_INLINE void find_all(const Influence* influences, std::size_t count, std:
                                            std::uint16_t* weights) {
   find_all<Eight>(influences, count, bone_key, weights);
 }
-bool has_avx2() {
-  static const bool has = __builtin_cpu_supports("avx2");
-  return has;
-}
 #else
-bool has_avx2() { return false; }
 void set_all_avx2(Influence*, std::size_t, std::int32_t, std::int32_t, const std::uint16_t*) {}
 void find_all_avx2(const Influence*, std::size_t, std::int32_t, std::uint16_t*) {}
 #endif

@@ -31,6 +31,8 @@ enum class Message : std::uint32_t {
   Hello,  // kMessageVersion and the Protection in force
   Header,
   Voxels,  // the next voxels' bytes, in storage order
+  // Where the next voxels' bytes lie in the file of the last Opened message: FileBytes. The program reads them itself.
+  PlainVoxels,
   End,     // the reader's warnings
   Failed,  // an Error's text
   OutOfMemory,
@@ -48,7 +50,7 @@ struct MessageHead {
 };
 
 // Version of the message format. Every change of the format needs a new version.
-constexpr std::uint32_t kMessageVersion = 1;
+constexpr std::uint32_t kMessageVersion = 2;
 
 struct Order {
   VolumeLocation location;

@@ -86,6 +86,11 @@ void deliver(OpenedVolume opened) {
   std::vector<char> chunk(kChunk);
   const std::int64_t bytes = opened.header.grid.voxel_count() * size_of(opened.header.voxel_type);
   for (std::int64_t done = 0; done < bytes;) {
+    if (const std::optional<FileBytes> plain = opened.voxels->pass_plain()) {
+      say(Message::PlainVoxels, {reinterpret_cast<const char*>(&*plain), sizeof *plain});
+      done += plain->bytes;
+      continue;
+    }
     const auto some = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, bytes - done));
     opened.voxels->read(chunk.data(), some);
     say(Message::Voxels, {chunk.data(), some});

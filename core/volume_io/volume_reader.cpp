@@ -141,6 +141,10 @@ class Conversation {
     return bytes;
   }
 
+  void check_cancelled() const {
+    if (progress_.cancelled()) throw Cancelled();
+  }
+
   // Remembers the name of the file that the reader is parsing, for error messages.
   void parses(const std::string& file) { parsed_ = file; }
   const std::string& parsed() const { return parsed_; }
@@ -225,7 +229,8 @@ class ReaderVoxels final : public VoxelSource {
     while (bytes > 0) {
       if (left_ == 0) next_voxels();
       const std::size_t now = std::min(bytes, left_);
-      talk_.read(out, now);
+      if (plain_at_) read_plain(out, now);
+      else talk_.read(out, now);
       out += now;
       bytes -= now;
       left_ -= now;
@@ -243,20 +248,43 @@ class ReaderVoxels final : public VoxelSource {
   }
 
   void next_voxels() {
-    const MessageHead head = next_of(Message::Voxels);
-    talk_.require(head.size > 0 && head.size <= static_cast<std::uint64_t>(promised_));
-    left_ = static_cast<std::size_t>(head.size);
-    promised_ -= static_cast<std::int64_t>(head.size);
+    const MessageHead head = next_of(Message::Voxels, Message::PlainVoxels);
+    FileBytes plain{0, static_cast<std::int64_t>(std::min<std::uint64_t>(head.size, INT64_MAX))};
+    plain_at_.reset();
+    if (head.kind == Message::PlainVoxels) {
+      talk_.require(head.size == sizeof plain && opened_);
+      talk_.read(&plain, sizeof plain);
+      talk_.require(plain.offset >= 0 && plain.bytes <= opened_->size() &&
+                    plain.offset <= opened_->size() - plain.bytes);
+      plain_at_ = plain.offset;
+    }
+    talk_.require(plain.bytes > 0 && plain.bytes <= promised_);
+    left_ = static_cast<std::size_t>(plain.bytes);
+    promised_ -= plain.bytes;
+  }
+
+  // Reads from the opened file itself, a few megabytes at a time, so that the user can cancel.
+  void read_plain(char* to, std::size_t bytes) {
+    constexpr std::size_t kStep = 16 << 20;
+    for (std::size_t done = 0; done < bytes;) {
+      talk_.check_cancelled();
+      const std::size_t now = std::min(kStep, bytes - done);
+      if (opened_->read_at(*plain_at_, to + done, now) < now)
+        throw Error("the file ends earlier than when it was opened", talk_.parsed(), "export or download it again");
+      *plain_at_ += static_cast<std::int64_t>(now);
+      done += now;
+    }
   }
 
   std::string await(Message kind) { return talk_.read_bytes(next_of(kind)); }
 
-  // Waits for a message of kind `kind` and returns its head. Answers the reader's questions until then. Throws Error
-  // for any other message.
-  MessageHead next_of(Message kind) {
+  MessageHead next_of(Message kind) { return next_of(kind, kind); }
+  // Waits for a message of kind `kind` or `other` and returns its head. Answers the reader's questions until then.
+  // Throws Error for any other message.
+  MessageHead next_of(Message kind, Message other) {
     for (;;) {
       const MessageHead head = talk_.read_head();
-      if (head.kind == kind) return head;
+      if (head.kind == kind || head.kind == other) return head;
       const std::string bytes = talk_.read_bytes(head);
       if (head.kind == Message::Failed) throw error_from(bytes, talk_.parsed());
       if (head.kind == Message::OutOfMemory) throw talk_.out_of_memory();
@@ -284,6 +312,7 @@ class ReaderVoxels final : public VoxelSource {
     const VolumeLocation& location = files_.location();
     talk_.parses((header ? location.headers[index] : location.folder() / bytes).string());
     send(*file);
+    opened_ = std::move(file);
   }
   std::size_t index_from(const std::string& bytes) {
     std::uint64_t index = 0;
@@ -301,8 +330,10 @@ class ReaderVoxels final : public VoxelSource {
   const ReaderSettings settings_;
   LocalFiles files_;
   Conversation talk_;
-  std::int64_t promised_ = 0;  // voxel bytes that the header promised and no Voxels message has announced yet
-  std::size_t left_ = 0;       // bytes not yet read of the current Voxels message
+  std::int64_t promised_ = 0;        // voxel bytes that the header promised and no Voxels message has announced yet
+  std::size_t left_ = 0;             // bytes not yet read of the current Voxels or PlainVoxels message
+  std::optional<PlainFile> opened_;  // the file that was sent last
+  std::optional<std::int64_t> plain_at_;  // with PlainVoxels: offset of the next byte in opened_
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@
 
 namespace limber {
 
+// Bytes of a file: `bytes` of them, from `offset` on.
+struct FileBytes {
+  std::int64_t offset = 0, bytes = 0;
+};
+
 class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
@@ -21,6 +27,10 @@ class VoxelSource {
   // Reads exactly the next `bytes` bytes of voxels, in the header's byte order. Throws Error when the data end earlier
   // or are damaged.
   virtual void read(void* to, std::size_t bytes) = 0;
+
+  // Where the next voxels lie in a file as read() returns them, passes over them and returns their bytes in the data
+  // file that was opened last. Returns nothing where voxels have to be decoded.
+  virtual std::optional<FileBytes> pass_plain() { return std::nullopt; }
 
   // Verifies checksums; call it after the last voxel was read. Returns warnings, one line each: for data beyond what
   // the header promises, and for wrong header fields.

@@ -343,6 +343,12 @@ struct VoxelStream::Sources {
     left = bytes_each;
     pass_decoded(header.decoded_skip);
   }
+  void open_next() {
+    close();
+    ++current;
+    if (current == count()) throw Error("more voxels were asked for than promised", source->where(), kExportAgain);
+    open();
+  }
   void pass_decoded(std::int64_t bytes) {
     std::array<unsigned char, 4096> sink;
     while (bytes > 0) {
@@ -379,17 +385,21 @@ VoxelStream::VoxelStream(std::shared_ptr<VolumeFiles> files, const VolumeHeader&
 
 VoxelStream::~VoxelStream() = default;
 
+std::optional<FileBytes> VoxelStream::pass_plain() {
+  Sources& s = *sources_;
+  if (s.header.encoding != Encoding::Raw) return std::nullopt;
+  if (s.left == 0) s.open_next();
+  const FileBytes plain{s.source->place(), s.left};
+  s.source->go_to(plain.offset + plain.bytes);
+  s.left = 0;
+  return plain;
+}
+
 void VoxelStream::read(void* to, std::size_t bytes) {
   auto* out = static_cast<unsigned char*>(to);
   Sources& s = *sources_;
   while (bytes > 0) {
-    if (s.left == 0) {
-      s.close();
-      ++s.current;
-      if (s.current == s.count())
-        throw Error("more voxels were asked for than promised", s.source->where(), kExportAgain);
-      s.open();
-    }
+    if (s.left == 0) s.open_next();
     const std::size_t now = static_cast<std::size_t>(std::min<std::int64_t>(static_cast<std::int64_t>(bytes), s.left));
     const std::size_t got = s.decoder->read(out, now);
     if (got < now)

@@ -23,6 +23,7 @@ class VoxelStream final : public VoxelSource {
   ~VoxelStream() override;
 
   void read(void* to, std::size_t bytes) override;
+  std::optional<FileBytes> pass_plain() override;
   std::vector<std::string> finish() override;
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -72,6 +73,18 @@ class EarlyEnd final : public VoxelSource {
   std::vector<std::string> finish() override { return {}; }
 };
 
+// Voxels that are said to lie at some bytes of the file.
+class PlainLie final : public VoxelSource {
+ public:
+  explicit PlainLie(const FileBytes& bytes) : bytes_(bytes) {}
+  void read(void*, std::size_t) override {}
+  std::optional<FileBytes> pass_plain() override { return bytes_; }
+  std::vector<std::string> finish() override { return {}; }
+
+ private:
+  FileBytes bytes_;
+};
+
 class Crash final : public VoxelSource {
  public:
   void read(void*, std::size_t) override { ::raise(SIGBUS); }
@@ -105,6 +118,13 @@ OpenedVolume misbehave(std::shared_ptr<VolumeFiles> files, Holding holding) {
   if (what == "unknown kind") opened.header.named.tissues.push_back({.kind = static_cast<TissueKind>(99)});
   if (what == "early end") opened.voxels = std::make_unique<EarlyEnd>();
   if (what == "late crash") opened.voxels = std::make_unique<Crash>();
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const std::map<std::string, FileBytes> lies{{"plain beyond", {1 << 20, 8}},
+                                              {"plain overflow", {kMost - 4, 8}},
+                                              {"plain before", {-8, 8}},
+                                              {"plain long", {0, kMost}},
+                                              {"plain negative", {0, -8}}};
+  if (const auto lie = lies.find(what); lie != lies.end()) opened.voxels = std::make_unique<PlainLie>(lie->second);
   return opened;
 }
 

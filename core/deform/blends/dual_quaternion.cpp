@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/deform/blend_kernels.h"
-#include "core/deform/blend_rule.h"
 
 namespace limber {
 
@@ -12,8 +11,10 @@ const BlendRule kDualQuaternionBlend{
     .name = "Dual quaternions",
     .summary = "dual quaternions",
     .description = "Dual quaternions: keeps the thickness of twisted limbs, bulges at shoulders.",
-    .point = blend_dual<false>,
-    .stretched_point = blend_dual<true>,
+    .point = blend_one<DualKernel, false>,
+    .stretched_point = blend_one<DualKernel, true>,
+    .four_points = blend_four<DualKernel>,
+    .four_points_wide = blend_four_wide<DualKernel>,
     .sums_displacements = false,
     .sums_dual_quaternions = true,
     .settles_flesh = false,

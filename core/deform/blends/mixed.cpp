@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/deform/blend_kernels.h"
-#include "core/deform/blend_rule.h"
 
 namespace limber {
 
@@ -8,13 +7,15 @@ extern const BlendRule kMixedBlend;
 
 namespace {
 
-template <bool Stretched>
-glm::dvec3 blend_mixed(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
-                       const glm::dvec3& p) {
-  const glm::dvec3 linear = blend_linear(bones, influences, p) - p,
-                   dual = blend_dual<Stretched>(bones, influences, p) - p;
-  return p + ((1 - kQuaternionShare) * linear + kQuaternionShare * dual);
-}
+struct MixedKernel {
+  template <bool Stretched, class Influence, class Number>
+  LIMBER_INLINE static PointOf<Number> blend(std::span<const SkinTransform> bones,
+                                             std::span<const Influence> influences, const PointOf<Number>& p) {
+    const PointOf<Number> linear = LinearKernel::blend<Stretched>(bones, influences, p) - p,
+                          dual = DualKernel::blend<Stretched>(bones, influences, p) - p;
+    return p + ((1 - kQuaternionShare) * linear + kQuaternionShare * dual);
+  }
+};
 
 }  // namespace
 
@@ -24,8 +25,10 @@ const BlendRule kMixedBlend{
     .name = "Mixed blend",
     .summary = "between linear and dual quaternions, then flesh gets its volume back",
     .description = "Between linear and dual quaternions; in results flesh then gets its volume back.",
-    .point = blend_mixed<false>,
-    .stretched_point = blend_mixed<true>,
+    .point = blend_one<MixedKernel, false>,
+    .stretched_point = blend_one<MixedKernel, true>,
+    .four_points = blend_four<MixedKernel>,
+    .four_points_wide = blend_four_wide<MixedKernel>,
     .sums_displacements = true,
     .sums_dual_quaternions = true,
     .settles_flesh = true,

@@ -167,7 +167,8 @@ TEST_CASE("volume reader: one that crashes, leaves or says what it must not is o
     CHECK(outcome(what).find("made its reader crash") != std::string::npos);
   CHECK(outcome("leave").find("give up (exit code 7)") != std::string::npos);
   for (const char* what : {"long message", "unknown message", "no header", "wrong index", "negative grid", "huge grid",
-                           "no spacing", "unknown type", "unknown kind", "early end", "other file"}) {
+                           "no spacing", "unknown type", "unknown kind", "early end", "other file", "plain beyond",
+                           "plain overflow", "plain before", "plain long", "plain negative"}) {
     CAPTURE(what);
     CHECK(outcome(what) != "");
   }

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Four points at a time, one in each lane of a SIMD register. A lane computes what a single double would, bit for bit.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/always_inline.h"
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are only passed to inlined functions
+
+namespace limber {
+
+using FourNumbers = double __attribute__((vector_size(32)));
+using FourIntegers = std::int32_t __attribute__((vector_size(16)));
+
+// In the structures below the alignment is explicit, since that of FourNumbers depends on the processor for which a
+// function is compiled.
+
+// A point whose coordinates are doubles or FourNumbers.
+template <class Number>
+struct alignas(sizeof(Number)) PointOf {
+  Number x, y, z;
+};
+// An array of doubles or FourNumbers.
+template <class Number, int kCount>
+struct alignas(sizeof(Number)) ArrayOf {
+  Number values[kCount];
+  LIMBER_INLINE Number& operator[](int i) { return values[i]; }
+  LIMBER_INLINE const Number& operator[](int i) const { return values[i]; }
+};
+using FourPoints = PointOf<FourNumbers>;
+
+template <class Number>
+LIMBER_INLINE PointOf<Number> operator+(const PointOf<Number>& a, const PointOf<Number>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class Number>
+LIMBER_INLINE PointOf<Number> operator-(const PointOf<Number>& a, const PointOf<Number>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class Number, class Factor>
+LIMBER_INLINE PointOf<Number> operator*(const Factor& factor, const PointOf<Number>& a) {
+  return {factor * a.x, factor * a.y, factor * a.z};
+}
+template <class Number>
+LIMBER_INLINE PointOf<Number> operator/(const PointOf<Number>& a, const Number& divisor) {
+  return {a.x / divisor, a.y / divisor, a.z / divisor};
+}
+template <class Number>
+LIMBER_INLINE Number dot(const PointOf<Number>& a, const PointOf<Number>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class Number>
+LIMBER_INLINE PointOf<Number> cross(const PointOf<Number>& a, const PointOf<Number>& b) {
+  return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
+}
+// Returns a where the condition holds, else b.
+template <class Condition, class Number>
+LIMBER_INLINE PointOf<Number> select(const Condition& condition, const PointOf<Number>& a, const PointOf<Number>& b) {
+  return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};
+}
+
+}  // namespace limber
