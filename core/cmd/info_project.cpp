@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/cmd/command.h"
+#include "core/motion/constraint.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
 #include "core/skin/weight_layers.h"
@@ -87,6 +88,8 @@ std::string describe_project(const Path& file) {
   for (const auto& clip : document.clips) {
     Json one = {{"name", clip->name}, {"keys", frames_of(clip->keys).size()}};
     if (clip->motion) one.update({{"joints", clip->motion->joints.size()}, {"frames", clip->motion->frame_count}});
+    if (clip->constraints)
+      for (const Constraint& constraint : clip->constraints->list) one["constraints"].push_back(constraint.name);
     json["clips"].push_back(one);
   }
   if (!document.results.empty()) json["results"] = results_of(document);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/motion/constraint_stack.h"
 #include "core/motion/key_curve.h"
 
 namespace limber {
@@ -61,6 +62,12 @@ ClipOnRig::ClipOnRig(std::shared_ptr<const Clip> clip, std::shared_ptr<const Arm
                      const ClipOnRig* before)
     : clip_(std::move(clip)),
       armature_(std::move(armature)) {
+  if (clip_->constraints && !clip_->constraints->list.empty()) {
+    const bool is_known = before && before->constraints_ && before->armature_ == armature_ &&
+                          before->clip_->constraints == clip_->constraints;
+    constraints_ =
+        is_known ? before->constraints_ : std::make_shared<const ConstraintStack>(clip_->constraints, armature_);
+  }
   if (!clip_->motion) return;
   if (before && before->armature_ == armature_ && before->clip_->motion == clip_->motion &&
       before->clip_->map == clip_->map && before->clip_->retarget == clip_->retarget) {
@@ -109,6 +116,11 @@ void ClipOnRig::move_root(Pose& pose, int frame, const std::function<const Pose&
 }
 
 Pose ClipOnRig::at(int frame) const {
+  const Pose pose = unconstrained_at(frame);
+  return constraints_ ? constraints_->constrained(pose, clip_->keys, frame) : pose;
+}
+
+Pose ClipOnRig::unconstrained_at(int frame) const {
   Pose pose = base_at(frame);
   const Keys& keys = clip_->keys;
   if (keys.empty()) return pose;

@@ -5,11 +5,16 @@
 // `last`; frame `first` plays at the clip's frame `start`. Before and after these frames the body holds still. If the
 // clip has no motion, bones without keys stay in the rest pose.
 //
+// The pose of a frame is made in this order: the motion, the keys, the constraints.
+//
 // Keys warp the motion [Witkin & Popovic, Motion Warping, 1995]. At a key's frame the bone has the key's rotation.
 // Between two keys the bone follows the motion, rotated by a correction. At each key the correction is the rotation
 // from the motion to the key; from one key to the next it is interpolated as the key's shape says, by slerp if it has
 // none (core/motion/key_curve.h). It stays constant before the first key and after the last. Without a motion the keys
 // themselves are interpolated.
+//
+// Constraints then change the pose of motion and keys (core/motion/constraint.h): a bone looks at a target, a hand
+// stays in its place.
 #pragma once
 
 #include <functional>
@@ -21,6 +26,9 @@
 #include "core/motion/retarget.h"
 
 namespace limber {
+
+struct Constraints;
+class ConstraintStack;
 
 struct Marker {
   int frame = 0;
@@ -40,8 +48,10 @@ struct Clip {
   int range_start = 0, range_end = 250;  // the frames that play, both included
   Keys keys;
   std::vector<Marker> markers;  // sorted by frame
+  std::shared_ptr<const Constraints> constraints;  // declared in core/motion/constraint.h; null: none
 
-  bool operator==(const Clip&) const = default;     // compares the motion's pointer, not its contents
+  // Compares the pointers of motion and constraints, not their contents.
+  bool operator==(const Clip&) const = default;
   int end() const { return start + last - first; }  // the clip's frame at which the motion ends
 };
 
@@ -62,7 +72,9 @@ class ClipOnRig {
             const ClipOnRig* before = nullptr);
 
   Pose at(int frame) const;
-  Pose base_at(int frame) const;  // returns the pose of the motion alone, without the keys
+  Pose unconstrained_at(int frame) const;  // returns the pose of motion and keys, without the constraints
+  Pose base_at(int frame) const;           // returns the pose of the motion alone, without the keys
+  const ConstraintStack* constraints() const { return constraints_.get(); }  // null: the clip has none
   const std::shared_ptr<const Clip>& clip() const { return clip_; }
   const std::shared_ptr<const Armature>& armature() const { return armature_; }
   const Retarget* retarget() const { return retarget_.get(); }
@@ -75,6 +87,7 @@ class ClipOnRig {
   std::shared_ptr<const Clip> clip_;
   std::shared_ptr<const Armature> armature_;
   std::shared_ptr<const Retarget> retarget_;  // null: the clip has no motion, or there is a problem
+  std::shared_ptr<const ConstraintStack> constraints_;
   std::string problem_;
 };
 

@@ -15,11 +15,14 @@ template <class Act>
 void for_tracks(Keys& keys, const Act& act) {
   for (auto& [bone, track] : keys.bones) act(track, keys.shapes[bone]);
   act(keys.root, keys.root_shapes);
+  for (auto& [constraint, track] : keys.weights) act(track, keys.weight_shapes[constraint]);
 }
 
 void drop_empty(Keys& keys) {
   std::erase_if(keys.bones, [](const auto& bone) { return bone.second.empty(); });
   std::erase_if(keys.shapes, [](const auto& bone) { return bone.second.empty(); });
+  std::erase_if(keys.weights, [](const auto& constraint) { return constraint.second.empty(); });
+  std::erase_if(keys.weight_shapes, [](const auto& constraint) { return constraint.second.empty(); });
 }
 
 template <class Track>
@@ -67,6 +70,8 @@ std::set<int> frames_of(const Keys& keys) {
   for (const auto& [bone, track] : keys.bones)
     for (const auto& [frame, rotation] : track) frames.insert(frame);
   for (const auto& [frame, place] : keys.root) frames.insert(frame);
+  for (const auto& [constraint, track] : keys.weights)
+    for (const auto& [frame, weight] : track) frames.insert(frame);
   return frames;
 }
 
@@ -118,6 +123,26 @@ bool delete_key(Keys& keys, const Armature& armature, const std::vector<int>& bo
     delete_root_keys(keys, {frame});
   }
   return any;
+}
+
+void insert_weight_key(Keys& keys, const std::string& constraint, int frame, double weight) {
+  insert(keys.weights[constraint], keys.weight_shapes[constraint], frame, weight);
+  drop_empty(keys);
+}
+
+bool delete_weight_key(Keys& keys, const std::string& constraint, int frame) {
+  const auto track = keys.weights.find(constraint);
+  if (track == keys.weights.end() || !track->second.contains(frame)) return false;
+  remove(track->second, keys.weight_shapes[constraint], {frame});
+  drop_empty(keys);
+  return true;
+}
+
+void set_weight_interpolation(Keys& keys, const std::string& constraint, Interpolation next) {
+  const auto track = keys.weights.find(constraint);
+  if (track == keys.weights.end()) return;
+  for (const auto& [frame, weight] : track->second) put_shape(keys.weight_shapes[constraint], frame, {.next = next});
+  drop_empty(keys);
 }
 
 void delete_keys(Keys& keys, const std::set<int>& frames) {

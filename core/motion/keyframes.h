@@ -43,9 +43,13 @@ struct Keys {
   // The shapes of keys of `bones` and `root`. No listed bone has an empty map, and no listed shape is KeyShape{}.
   std::map<std::string, KeyShapes> shapes;
   KeyShapes root_shapes;
+  // For each constraint's name (core/motion/constraint.h), its weight at each keyed frame, [0, 1], and the shapes of
+  // these keys. No listed constraint has an empty map.
+  std::map<std::string, std::map<int, double>> weights;
+  std::map<std::string, KeyShapes> weight_shapes;
 
   bool operator==(const Keys&) const = default;
-  bool empty() const { return bones.empty() && root.empty(); }
+  bool empty() const { return bones.empty() && root.empty() && weights.empty(); }
 };
 
 std::set<int> frames_of(const Keys& keys);
@@ -65,6 +69,12 @@ void scale_tangents(Keys& keys, double factor);
 void insert_key(Keys& keys, const Armature& armature, const Pose& pose, const std::vector<int>& bones, int frame);
 // Deletes the keys of the bones at a frame. Returns false if there were no such keys.
 bool delete_key(Keys& keys, const Armature& armature, const std::vector<int>& bones, int frame);
+
+// The same for the weight of a constraint.
+void insert_weight_key(Keys& keys, const std::string& constraint, int frame, double weight);
+bool delete_weight_key(Keys& keys, const std::string& constraint, int frame);
+// Sets how a constraint's weight goes on from each of its keys.
+void set_weight_interpolation(Keys& keys, const std::string& constraint, Interpolation next);
 
 // Delete, move or copy all keys at the given frames, with their shapes. A key moved onto a frame that has a key
 // replaces it.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/constraint.h"
 #include "core/motion/key_curve.h"
 #include "core/rig/mirror.h"
 
@@ -64,6 +65,17 @@ Clip mirrored_clip(const std::shared_ptr<const Clip>& clip, const std::shared_pt
     for (glm::dvec3* tangent : {&shape.in, &shape.out}) *tangent = plane.direction(*tangent);
   mirrored.keys.root = std::move(keys.root);
   mirrored.keys.root_shapes = std::move(keys.root_shapes);
+  mirrored.keys.weights = std::move(keys.weights);
+  mirrored.keys.weight_shapes = std::move(keys.weight_shapes);
+  if (!clip->constraints) return mirrored;
+  Constraints constraints = *clip->constraints;
+  for (Constraint& constraint : constraints.list) {
+    if (const auto bone = armature->find(constraint.bone))
+      constraint = mirror_image(constraint, armature->bones[*bone], armature->bones[pairs[*bone]], plane);
+    constraint.bone = counterpart(constraint.bone);
+    constraint.target = counterpart(constraint.target);
+  }
+  mirrored.constraints = std::make_shared<const Constraints>(std::move(constraints));
   return mirrored;
 }
 

@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/motion/body_frame.h"
+#include "core/motion/limb_bend.h"
+#include "core/motion/posed_rig.h"
 #include "core/rig/joint_names.h"
 
 namespace limber {
@@ -18,39 +20,6 @@ constexpr int kLongestEase = 2000;  // frames
 constexpr double kStretch = 0.999;
 // How far the body sinks at most for a foot's place, as a share of the leg's length.
 constexpr double kDeepest = 0.15;
-
-// A motion of the rig's joints that is changed bone by bone.
-class PosedRig {
- public:
-  PosedRig(const Armature& armature, const Pose& pose)
-      : armature_(armature),
-        pose_(pose),
-        posed_(posed_from_rest(armature, pose)) {}
-
-  const Pose& pose() const { return pose_; }
-  // Goes back towards an earlier pose's rotation of a bone: by all of the way for share 0, not at all for share 1.
-  void mix_back(int bone, const Pose& earlier, double share) {
-    pose_.rotation[bone] = glm::normalize(glm::slerp(earlier.rotation[bone], pose_.rotation[bone], share));
-  }
-  glm::dvec3 head(int bone) const { return posed_[bone] * armature_.bones[bone].head; }
-  glm::dvec3 tail(int bone) const { return posed_[bone] * armature_.bones[bone].tail; }
-  glm::dquat turn(int bone) const { return posed_[bone].rotation; }
-
-  // Turns a bone about its head, in world axes, and all bones that hang on it.
-  void turn_by(int bone, const glm::dquat& rotation) { turn_to(bone, rotation * posed_[bone].rotation); }
-  // Gives a bone this rotation from its rest pose, in world axes.
-  void turn_to(int bone, const glm::dquat& rotation) {
-    const int parent = armature_.bones[bone].parent;
-    const glm::dquat above = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed_[parent].rotation;
-    pose_.rotation[bone] = glm::normalize(glm::conjugate(above) * rotation);
-    posed_ = posed_from_rest(armature_, pose_);
-  }
-
- private:
-  const Armature& armature_;
-  Pose pose_;
-  std::vector<RigidTransform> posed_;
-};
 
 glm::dvec3 joint_of(const PosedRig& rig, const PlantedLimb& limb) {
   return limb.end >= 0 ? rig.head(limb.end) : rig.tail(limb.lower);
@@ -71,23 +40,6 @@ Lengths lengths_of(const PlantedLimb& limb, const Armature& armature) {
   const glm::dvec3 middle = armature.bones[limb.lower].head;
   const glm::dvec3 end = limb.end >= 0 ? armature.bones[limb.end].head : armature.bones[limb.lower].tail;
   return {glm::distance(armature.bones[limb.upper].head, middle), glm::distance(middle, end)};
-}
-
-// Returns the angle about a unit axis by which the lower bone must be turned so that the limb's joint is `wanted` away
-// from its root. Of the two angles that are, it is the one that leaves the limb bent towards positive angles.
-//   upper, lower  vectors from root to middle and from middle to joint
-double bend_for(const glm::dvec3& upper, const glm::dvec3& lower, const glm::dvec3& axis, double wanted) {
-  // dot(upper, turned lower) = across + a cos(angle) + b sin(angle)
-  const double across = glm::dot(upper, axis) * glm::dot(axis, lower);
-  const double a = glm::dot(upper, lower) - across, b = glm::dot(upper, glm::cross(axis, lower));
-  const double c = (wanted * wanted - glm::dot(upper, upper) - glm::dot(lower, lower)) / 2 - across;
-  const double most = std::hypot(a, b);
-  if (most == 0) return 0;
-  const double middle = std::atan2(b, a), half = std::acos(std::clamp(c / most, -1.0, 1.0));
-  const auto bends = [&](double angle) {
-    return glm::dot(axis, glm::cross(upper, glm::angleAxis(angle, axis) * lower)) >= 0;
-  };
-  return std::remainder(bends(middle + half) ? middle + half : middle - half, 2 * std::numbers::pi);
 }
 
 // Bends and turns the limb's two long bones so that its joint comes to `target`, or as near to it as the limb reaches.

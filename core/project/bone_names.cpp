@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "core/base/error.h"
+#include "core/motion/constraint.h"
 #include "core/rig/mirror.h"
 
 namespace limber {
@@ -66,6 +67,24 @@ Retarget prepared(const Clip& clip, const Armature& armature, const RetargetMap&
   return Retarget(*clip.motion, armature, map, settings);
 }
 
+// A constraint whose bone or target was removed, and whose name another bone has taken, goes.
+void follow_constraints(Clip& clip, const Names& names) {
+  if (!clip.constraints) return;
+  Constraints next;
+  for (Constraint constraint : clip.constraints->list) {
+    const auto bone = names.now(constraint.bone), target = names.now(constraint.target);
+    if (bone && target) {
+      constraint.bone = *bone;
+      constraint.target = *target;
+      next.list.push_back(constraint);
+    } else {
+      clip.keys.weights.erase(constraint.name);
+      clip.keys.weight_shapes.erase(constraint.name);
+    }
+  }
+  take(clip.constraints, std::move(next));
+}
+
 void follow_motion(Clip& clip, const Armature& before, const Armature& after, const Names& names) {
   const bool by_names = clip.map.sources.empty();
   RetargetMap old = by_names ? matched(clip, before) : known_part(clip.map, *clip.motion, before);
@@ -100,6 +119,7 @@ void follow_names(Document& document, const Armature& before, const Armature& af
     Clip clip = *part;
     clip.keys.bones = names.follow(clip.keys.bones);
     clip.keys.shapes = names.follow(clip.keys.shapes);
+    follow_constraints(clip, names);
     if (clip.motion && clip.motion->frame_count > 0) follow_motion(clip, before, after, names);
     take(part, std::move(clip));
   }
@@ -150,6 +170,19 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     by_bone = std::move(next);
   };
   const auto turned = [&](const glm::dquat& rotation) { return plane.rotation(rotation); };
+  const auto name_now = [&](const std::string& bone) { return gone_over.contains(bone) ? gone_over.at(bone) : bone; };
+  const auto carry_constraints = [&](Clip& clip) {
+    if (!clip.constraints) return;
+    Constraints next = *clip.constraints;
+    for (Constraint& constraint : next.list) {
+      const auto bone = before.find(constraint.bone);
+      if (bone && gone_over.contains(constraint.bone))
+        constraint = mirror_image(constraint, before.bones[*bone], after.bones[*bone], plane);
+      constraint.bone = name_now(constraint.bone);
+      constraint.target = name_now(constraint.target);
+    }
+    take(clip.constraints, std::move(next));
+  };
   for (auto& part : document.clips) {
     Clip clip = *part;
     carry(clip.keys.bones, [&](std::map<int, glm::dquat> track) {
@@ -163,6 +196,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
       return shapes;
     });
     carry(clip.map.sources, [](const RetargetMap::Source& source) { return RetargetMap::Source{source.joint, {}}; });
+    carry_constraints(clip);
     take(part, std::move(clip));
   }
   for (auto& part : document.poses) {
@@ -172,7 +206,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
   }
   const auto carry_names = [&](std::set<std::string>& bones) {
     std::set<std::string> next;
-    for (const std::string& bone : bones) next.insert(gone_over.contains(bone) ? gone_over.at(bone) : bone);
+    for (const std::string& bone : bones) next.insert(name_now(bone));
     bones = std::move(next);
   };
   if (document.locks) {

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/motion/key_curve.h"
 #include "core/platform/memory.h"
+#include "core/project/constraints_codec.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"
@@ -278,6 +279,7 @@ void get(ByteReader& in, Clip& clip) {
     marker.name = in.text();
   }
   if (!in.at_end()) get_shapes(in, clip.keys);
+  if (!in.at_end()) get_constraints(in, clip);
 }
 
 void get(ByteReader& in, Visibility& visibility) {

@@ -3,6 +3,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/parallel.h"
+#include "core/project/constraints_codec.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
 #include "core/project/seams_codec.h"
@@ -437,8 +438,9 @@ class DocumentWriter::Writing {
       out.put(static_cast<std::int32_t>(marker.frame));
       out.text(marker.name);
     }
-    // A clip whose keys have no shapes has the same bytes as in earlier layouts.
-    if (!clip.keys.shapes.empty() || !clip.keys.root_shapes.empty()) put_shapes(out, clip.keys);
+    // Without shapes of keys and constraints, a clip has the same bytes as in earlier layouts.
+    if (clip.keys.shapes.size() + clip.keys.root_shapes.size() > 0 || has_constraints(clip)) put_shapes(out, clip.keys);
+    if (has_constraints(clip)) put_constraints(out, clip);
   }
 
   template <class Bytes>

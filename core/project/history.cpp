@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/motion/constraint.h"
 #include "core/project/packed_volumes.h"
 #include "core/resample/fem_steps.h"
 #include "core/skin/weight_layers.h"
@@ -68,6 +69,11 @@ std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is c
   for (const auto& [bone, shapes] : clip.keys.shapes)
     bytes += kNode + heap_bytes(bone) + (kNode + 56) * std::ssize(shapes);
   for (const Marker& marker : clip.markers) bytes += heap_bytes(marker.name);
+  for (const auto& [constraint, track] : clip.keys.weights)
+    bytes += kNode + heap_bytes(constraint) + (kNode + 16) * std::ssize(track);
+  for (const auto& [constraint, shapes] : clip.keys.weight_shapes)
+    bytes += kNode + heap_bytes(constraint) + (kNode + 56) * std::ssize(shapes);
+  if (clip.constraints) bytes += heap_bytes(clip.constraints->list);
   return bytes;
 }
 std::int64_t own_bytes(const Anchors& anchors) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pose/inverse_kinematics.h"
+#include "core/rig/inverse_kinematics.h"
 #include "core/rig/mirror.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_tools.h"

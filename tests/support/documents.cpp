@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/motion/constraint.h"
 #include "core/skin/weight_layers.h"
 
 namespace limber::test {
@@ -92,7 +93,9 @@ bool equal(const Clip& a, const Clip& b) {
          a.first == b.first && a.last == b.last && a.map == b.map && a.retarget == b.retarget &&
          a.range_start == b.range_start && a.range_end == b.range_end && a.markers == b.markers &&
          same_track(a.keys.root, b.keys.root) && a.keys.shapes == b.keys.shapes &&
-         a.keys.root_shapes == b.keys.root_shapes &&
+         a.keys.root_shapes == b.keys.root_shapes && a.keys.weights == b.keys.weights &&
+         a.keys.weight_shapes == b.keys.weight_shapes && !a.constraints == !b.constraints &&
+         (!a.constraints || *a.constraints == *b.constraints) &&
          std::equal(a.keys.bones.begin(), a.keys.bones.end(), b.keys.bones.begin(), b.keys.bones.end(), same_bone);
 }
 bool equal(const Result& a, const Result& b) {
@@ -171,6 +174,25 @@ Clip keyed_clip() {
   set_shape(clip.keys, "Lower", -5, {Interpolation::Bezier, HandleKind::Free, {1e-9, 0, -2}, {0.5, 1e5, 0}});
   set_root_shape(clip.keys, 12, {Interpolation::Constant, HandleKind::Flat});
   clip.markers = {{3, "step"}, {3, ""}};
+  Constraint plant{.name = "Plant \xfe", .kind = ConstraintKind::Plant, .bone = "Lower", .target = "Upper"};
+  plant.on = false;
+  plant.weight = 0.75;
+  plant.place = {1, -2.5, 1e-12};
+  plant.point = PlantPoint::Joint;
+  plant.keeps_rotation = false;
+  plant.rotation = {0.5, -0.5, 0.5, -0.5};
+  Constraint limit{.name = "Limit", .kind = ConstraintKind::LimitRotation, .bone = "Upper"};
+  limit.axes = {true, false, true};
+  limit.minimum = {-1, 0.25, 0};
+  limit.maximum = {0.5, 0.25, 3};
+  Constraint ik{.name = "IK", .kind = ConstraintKind::InverseKinematics, .bone = "Lower", .place{7, 8, 9}, .chain = 0};
+  ik.space = RotationSpace::Parent;
+  ik.aim = BoneAxis::MinusZ;
+  ik.keep_limits = false;
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{plant, limit, ik}});
+  clip.keys.weights["IK"] = {{-3, 0}, {40, 0.125}};
+  clip.keys.weights["Limit"] = {{0, 1}};
+  clip.keys.weight_shapes["IK"][-3] = {Interpolation::Bezier, HandleKind::Free, {0.1, 0, 0}, {-0.2, 0, 0}};
   return clip;
 }
 

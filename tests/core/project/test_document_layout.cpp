@@ -8,6 +8,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "core/motion/constraint.h"
 #include "core/motion/key_curve.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
@@ -203,6 +204,61 @@ TEST_CASE("project: a document of the tenth layout opens, its keys without shape
   std::vector<std::string> warnings;
   CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
   CHECK(warnings.empty());
+}
+
+TEST_CASE("project: a document of the eleventh layout opens, its clips without constraints") {
+  Document now = small_document();
+  REQUIRE(now.clips[0]->constraints);
+  for (auto& clip : now.clips) {
+    Clip plain = *clip;
+    plain.constraints = nullptr;
+    plain.keys.weights.clear();
+    plain.keys.weight_shapes.clear();
+    clip = std::make_shared<const Clip>(plain);
+  }
+  Chunks chunks;
+  DocumentWriter writer;
+  Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
+  node.bytes[0] = 11;
+  std::vector<std::string> warnings;
+  CHECK(same_contents(read_document(chunks.add(node), chunks, "old.limber", warnings), now));
+  CHECK(warnings.empty());
+}
+
+TEST_CASE("project: wrong constraints are refused, far ones brought near, and weights of none left out") {
+  Document now;
+  Clip clip{.name = "keys"};
+  Constraint aim{.name = "Aim", .kind = ConstraintKind::Aim, .weight = 7, .bone = "Arm", .place{1e300, -5, 0}};
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{aim}});
+  clip.keys.weights["Aim"] = {{3, -0.5}};
+  clip.keys.weights["Gone"] = {{4, 1}};
+  const auto read = [](const Clip& written) {
+    Document document;
+    document.clips = {std::make_shared<const Clip>(written)};
+    Chunks chunks;
+    DocumentWriter writer;
+    std::vector<std::string> warnings;
+    const ChunkHash root = writer.write(document, chunks, Packing::Quick);
+    return *read_document(root, chunks, "new.limber", warnings).clips[0];
+  };
+  const Clip back = read(clip);
+  aim.weight = 1;
+  aim.place.x = 1e7;
+  CHECK(back.constraints->list == std::vector<Constraint>{aim});
+  CHECK(back.keys.weights == std::map<std::string, std::map<int, double>>{{"Aim", {{3, 0}}}});
+  const auto refused = [&](const auto& change) {
+    Constraint wrong = aim;
+    change(wrong);
+    Clip with = clip;
+    with.constraints = std::make_shared<const Constraints>(Constraints{{wrong, {.name = "Other", .bone = "Arm"}}});
+    CHECK_THROWS_AS(read(with), Error);
+  };
+  refused([](Constraint& c) { c.place.y = NAN; });
+  refused([](Constraint& c) { c.weight = INFINITY; });
+  refused([](Constraint& c) { c.rotation = {0, 0, 0, 0}; });
+  refused([](Constraint& c) { c.chain = -1; });
+  refused([](Constraint& c) { c.kind = static_cast<ConstraintKind>(6); });
+  refused([](Constraint& c) { c.name = "Other"; });
 }
 
 TEST_CASE("project: shapes of keys that do not exist are left out, and what is too far is brought near") {

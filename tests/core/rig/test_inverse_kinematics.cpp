@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "core/pose/inverse_kinematics.h"
+#include "core/rig/inverse_kinematics.h"
 
 #include <chrono>
 #include <cmath>

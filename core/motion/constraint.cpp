@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/constraint.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/key_curve.h"
+
+namespace limber {
+
+namespace {
+
+// Returns the index of the component with the largest size.
+int largest(const glm::dvec3& v) {
+  const glm::dvec3 size = glm::abs(v);
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
+}  // namespace
+
+double weight_at(const Constraint& constraint, const Keys& keys, int frame) {
+  const auto track = keys.weights.find(constraint.name);
+  if (track == keys.weights.end() || track->second.empty()) return std::clamp(constraint.weight, 0.0, 1.0);
+  static const KeyShapes kNone;
+  const auto shapes = keys.weight_shapes.find(constraint.name);
+  std::map<int, glm::dvec3> around;
+  for (const auto& [at, weight] : keys_around(track->second, frame)) around[at] = glm::dvec3(weight, 0, 0);
+  return std::clamp(value_at(around, shapes == keys.weight_shapes.end() ? kNone : shapes->second, frame).x, 0.0, 1.0);
+}
+
+std::string unique_constraint_name(const Constraints& constraints, const std::string& wanted) {
+  const auto taken = [&](const std::string& name) {
+    return std::any_of(constraints.list.begin(), constraints.list.end(),
+                       [&](const Constraint& constraint) { return constraint.name == name; });
+  };
+  std::string name = wanted;
+  for (int number = 2; taken(name); ++number) name = wanted + " " + std::to_string(number);
+  return name;
+}
+
+Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bone& counterpart,
+                        const MirrorPlane& plane) {
+  Constraint mirrored = constraint;
+  mirrored.place = plane.place(constraint.place);
+  mirrored.rotation = plane.rotation(constraint.rotation);
+  const glm::dmat3 own = rest_axes(bone), other = glm::transpose(rest_axes(counterpart));
+  for (int axis = 0; axis < 3; ++axis) {
+    // A rotation vector turns the other way in the mirror. It lies along that axis of the counterpart that is nearest.
+    const glm::dvec3 seen = other * -plane.direction(own[axis]);
+    const int along = largest(seen);
+    mirrored.axes[along] = constraint.axes[axis];
+    mirrored.minimum[along] = seen[along] < 0 ? -constraint.maximum[axis] : constraint.minimum[axis];
+    mirrored.maximum[along] = seen[along] < 0 ? -constraint.minimum[axis] : constraint.maximum[axis];
+  }
+  const int aim = static_cast<int>(constraint.aim);
+  const glm::dvec3 seen = other * plane.direction((aim % 2 == 0 ? 1.0 : -1.0) * own[aim / 2]);
+  const int along = largest(seen);
+  mirrored.aim = static_cast<BoneAxis>(2 * along + (seen[along] < 0 ? 1 : 0));
+  return mirrored;
+}
+
+}  // namespace limber

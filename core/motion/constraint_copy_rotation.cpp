@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Copy rotation: a bone turns from its rest pose as another bone does. With all axes the copy is exact. Otherwise the
+// rotation vectors of both bones are split about the constrained bone's own axes at rest, and the chosen parts copied.
+#include "core/motion/constraint_rule.h"
+#include "core/motion/key_curve.h"
+#include "core/rig/joint_limits.h"
+
+namespace limber {
+
+namespace {
+
+void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
+  const Constraint& constraint = on_rig.constraint;
+  const bool in_world = constraint.space == RotationSpace::World;
+  const auto rotation = [&](int bone) { return in_world ? rig.turn(bone) : rig.pose().rotation[bone]; };
+  glm::dquat copied = rotation(on_rig.target);
+  if (constraint.axes != std::array<bool, 3>{true, true, true}) {
+    const glm::dmat3 axes = rest_axes(rig.armature().bones[on_rig.bone]), back = glm::transpose(axes);
+    const glm::dquat none(1, 0, 0, 0);
+    const glm::dvec3 theirs = back * turn_between(none, copied);
+    glm::dvec3 parts = back * turn_between(none, rotation(on_rig.bone));
+    for (int axis = 0; axis < 3; ++axis)
+      if (constraint.axes[axis]) parts[axis] = theirs[axis];
+    copied = exponential(axes * parts);
+  }
+  if (in_world) rig.turn_to(on_rig.bone, copied);
+  else rig.set(on_rig.bone, copied);
+}
+
+}  // namespace
+
+ConstraintRule copy_rotation_constraint() {
+  return {ConstraintKind::CopyRotation,
+          "copy_rotation",
+          "Copy rotation",
+          "Turn the bone from rest as its target bone turns.",
+          ConstraintTarget::Bone,
+          turned_alone,
+          solve};
+}
+
+}  // namespace limber
