@@ -78,10 +78,10 @@ void change_speed(Editor& editor, int by) {
 void insert_key_here(Editor& editor) {
   settle_frame(editor);
   const std::vector<int> bones = chosen_bones(editor);
-  const Pose pose = pose_of(editor.document());
+  const Pose pose = unconstrained_pose(editor);
   const int frame = editor.document().frame;
   const std::shared_ptr<const Armature> armature = editor.document().armature;
-  edit_clip(editor, "Insert key", PoseThen::Stays,
+  edit_clip(editor, "Insert key", is_constrained(editor.document()) ? PoseThen::FromClip : PoseThen::Stays,
             [&](Clip& clip) { insert_key(clip.keys, *armature, pose, bones, frame); });
 }
 

@@ -22,8 +22,8 @@ std::shared_ptr<const Pose> pose_part(const Armature& armature, Pose pose) {
   return pose == rest_pose(armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
 }
 
-// Returns whether the clip moves the rig, by a retargeted motion or by keys.
-bool moves(const ClipOnRig& clip) { return clip.retarget() || !clip.clip()->keys.empty(); }
+// Returns whether the clip moves the rig, by a retargeted motion, by keys or by constraints.
+bool moves(const ClipOnRig& clip) { return clip.retarget() || !clip.clip()->keys.empty() || clip.constraints(); }
 
 // Returns the frame to show after a playing time, counted from the start of the playing range: 0 to count - 1. Returns
 // nothing when the clip has played to the end of the range and stops there.
@@ -213,6 +213,21 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
   shown = std::make_shared<const Clip>(std::move(clip));
   if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &editor.timeline->prepared);
   commit(editor, label, std::move(next));
+}
+
+bool is_constrained(const Document& document) {
+  return document.shown_clip() && document.shown_clip()->constraints != nullptr;
+}
+
+Pose unconstrained_pose(Editor& editor) {
+  Pose pose = pose_of(editor.document());
+  const ClipOnRig* clip = clip_on_rig(editor);
+  if (!clip || !clip->constraints()) return pose;
+  const int frame = editor.document().frame;
+  const Pose made = clip->at(frame), free = clip->unconstrained_at(frame);
+  for (std::size_t bone = 0; bone < pose.rotation.size(); ++bone)
+    if (pose.rotation[bone] == made.rotation[bone]) pose.rotation[bone] = free.rotation[bone];
+  return pose;
 }
 
 void key_changes(Document& document, const Pose& before, const Pose& pose) {

@@ -68,8 +68,10 @@ void commit_pose(Editor& editor, const std::string& label, Pose pose, Document n
   // change.
   if (editor.workspace == Workspace::Skin) *editor.trial = {.posed = true};
   if (const Pose before = pose_of(next); pose != before) {
-    if (editor.timeline->auto_key) key_changes(next, before, pose);
+    const bool keys = editor.timeline->auto_key;
+    if (keys) key_changes(next, before, pose);
     next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
+    if (keys && is_constrained(next)) next.pose = pose_at_frame(next);  // constraints hold again at once
   }
   if (next != editor.document()) commit(editor, label, std::move(next));
 }

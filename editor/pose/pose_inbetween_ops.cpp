@@ -62,7 +62,7 @@ void propagate(Editor& editor) {
   settle_frame(editor);
   const int now = editor.document().frame;
   const std::shared_ptr<const Armature> armature = editor.document().armature;
-  const Pose pose = pose_of(editor.document());
+  const Pose pose = unconstrained_pose(editor);
   const std::vector<int> bones = chosen_bones(editor);
   edit_clip(editor, "Propagate pose", PoseThen::Stays, [&](Clip& clip) {
     for (const int bone : bones) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/screen/menus.h"
 
+#include "core/motion/constraint_rule.h"
 #include "editor/context/operator_button.h"
 #include "editor/resample/resample_job.h"
 #include "editor/skin/painting.h"
@@ -27,6 +28,16 @@ std::vector<std::string> with_methods(std::vector<std::string> list) {
   const std::vector<std::string> methods = method_operators(Methods::All);
   const auto place = std::find(list.begin(), list.end(), "* methods");
   if (place != list.end()) list.insert(list.erase(place), methods.begin(), methods.end());
+  return list;
+}
+
+// Replaces "* constraints" by the operators that add one of each kind.
+std::vector<std::string> with_constraints(std::vector<std::string> list) {
+  const auto place = std::find(list.begin(), list.end(), "* constraints");
+  if (place == list.end()) return list;
+  std::vector<std::string> adding;
+  for (const ConstraintRule& rule : constraint_rules()) adding.push_back("constraint.add_" + rule.id);
+  list.insert(list.erase(place), adding.begin(), adding.end());
   return list;
 }
 
@@ -189,6 +200,8 @@ std::vector<Menu> menus() {
         "graph.ease_in", "graph.ease_out", "graph.ease_in_out", "<",
         "> Handles", "graph.handles_automatic", "graph.handles_clamped", "graph.handles_aligned",
         "graph.handles_free", "graph.handles_flat", "<", "<",
+        "> Constraints", "* constraints", "-", "constraint.toggle", "constraint.key_weight", "constraint.switch",
+        "constraint.to_cross_hair", "-", "constraint.remove", "constraint.apply", "<",
         "-",
         "> Markers", "motion.marker", "motion.rename_marker", "motion.delete_marker", "<",
         "> Range", "motion.set_start", "motion.set_end", "motion.preview_range", "motion.clear_range",
@@ -199,7 +212,7 @@ std::vector<Menu> menus() {
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console",
         "help.last_error", "help.system_facts", "-", "help.about"}},
   };
-  for (Menu& menu : all) menu.entries = with_methods(with_brushes(std::move(menu.entries)));
+  for (Menu& menu : all) menu.entries = with_constraints(with_methods(with_brushes(std::move(menu.entries))));
   return all;
 }
 
@@ -217,6 +230,7 @@ Menu pointer_menu(const std::string& name, ViewId view) {
         "skin.contours", "-", "skin.isolate_region", "skin.reveal_regions"}};
   if (name == "Finite elements") return {name, {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy",
         "fem.show_gap", "-", "fem.tets"}};
+  if (name == "Add constraint") return {name, with_constraints({"* constraints"})};
   if (name == "Brushes") return {name, with_brushes({"*"})};
   if (name == "Edit weights") return {name, {"skin.flood", "skin.gradient", "skin.fill_part", "skin.assign_tissue",
         "-", "skin.smooth_all", "skin.limit",

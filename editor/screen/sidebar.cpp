@@ -2,6 +2,7 @@
 // Draws the sidebar at the right. Its sections have a fixed order and scroll together; each section can be folded.
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/motion/constraint_panel.h"
 #include "editor/pose/clinical_angles_panel.h"
 #include "editor/pose/pose_bone_panel.h"
 #include "editor/pose/pose_library.h"
@@ -61,6 +62,7 @@ void draw_sidebar(Editor& editor) {
     if (editor.workspace == Workspace::Pose) {
       draw_pose_library(editor, column);
       draw_posed_bone(editor, column);
+      draw_constraints(editor, column);
       draw_clinical_angles(editor, column);
       draw_live_volume(editor, column);
       draw_motion(editor, column);

@@ -8,6 +8,7 @@
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/dialogs/redo_last_operator.h"
+#include "editor/motion/constraint_overlay.h"
 #include "editor/motion/motion_path_overlay.h"
 #include "editor/motion/onion_skin_overlay.h"
 #include "editor/pose/live_preview.h"
@@ -130,6 +131,7 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   if (!editor.layout.by_sides) draw_view_title(editor, rect, title, state_of(editor));
   draw_onion_skin(editor);
   draw_motion_paths(editor);
+  draw_constraint_lines(editor);
   draw_axis_ball(editor, rect);
   if (!editor.document().volume) return draw_empty_view(editor, rect);
   draw_clip_handles(editor, rect);

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/constraint_edits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/motion/apply_constraints.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/shown/shown_pose.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kMostFrames = 100'000;  // longer ranges are not baked into keys
+constexpr double kInFrontMm = 300;             // how far in front of its bone a new aim has its target
+
+// Changes the shown clip. The pose without constraints stays as it is, with the user's changes.
+void change_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change) {
+  stop_playing(editor);
+  settle_frame(editor);
+  Document next = editor.document();
+  const Pose free = unconstrained_pose(editor), rest = rest_pose(*next.armature);
+  const bool is_bare = !next.shown_clip() || (!next.shown_clip()->motion && next.shown_clip()->keys.empty() &&
+                                              !next.shown_clip()->constraints);
+  if (is_bare && free != rest) key_changes(next, rest, free);
+  if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
+  auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
+  Clip clip = *shown;
+  change(clip);
+  if (clip.constraints && clip.constraints->list.empty()) clip.constraints = nullptr;
+  shown = std::make_shared<const Clip>(std::move(clip));
+  next.pose = free == rest ? nullptr : std::make_shared<const Pose>(free);
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  drop_shown_pose(editor);
+  if (next != editor.document()) commit(editor, label, std::move(next));
+}
+
+void change_list(Clip& clip, const std::function<void(Constraints&)>& change) {
+  Constraints constraints = clip.constraints ? *clip.constraints : Constraints{};
+  change(constraints);
+  clip.constraints = std::make_shared<const Constraints>(std::move(constraints));
+}
+
+Constraint& named(Constraints& constraints, const std::string& name) {
+  const auto found = std::find_if(constraints.list.begin(), constraints.list.end(),
+                                  [&](const Constraint& constraint) { return constraint.name == name; });
+  if (found == constraints.list.end()) throw Error("there is no such constraint any more", name, "add it again");
+  return *found;
+}
+
+// Throws Error if the constraint cannot be applied beside the others.
+void require_applicable(const Editor& editor, const Constraints& constraints, const std::string& name) {
+  const ConstraintStack stack(std::make_shared<const Constraints>(constraints), editor.document().armature);
+  for (std::size_t i = 0; i < constraints.list.size(); ++i)
+    if (constraints.list[i].name == name) stack.require_applied(i);
+}
+
+// Returns the place of a bone's end in the document's pose: of a planted foot or hand the point that stays.
+glm::dvec3 end_of(const Constraint& constraint, const Armature& armature, const PosedRig& rig, int bone) {
+  if (constraint.kind == ConstraintKind::Plant && constraint.point == PlantPoint::Joint) return rig.head(bone);
+  if (constraint.kind != ConstraintKind::Aim) return rig.tail(bone);
+  const int aim = static_cast<int>(constraint.aim);
+  const glm::dvec3 axis = (aim % 2 == 0 ? 1.0 : -1.0) * rest_axes(armature.bones[bone])[aim / 2];
+  return rig.tail(bone) + kInFrontMm * (rig.turn(bone) * axis);
+}
+
+// Gives the constraint a target at which the bone is already, or at which it can look.
+void place_target(Constraint& constraint, const Armature& armature, const Pose& pose) {
+  const ConstraintTarget needed = constraint_rule(constraint.kind).target;
+  if (needed != ConstraintTarget::Place) return;
+  const PosedRig rig(armature, pose);
+  const int bone = require_bone(armature, constraint.bone);
+  const bool on_bone = !constraint.target.empty();
+  const int target = on_bone ? require_bone(armature, constraint.target) : -1;
+  // Limbs stay where they are, relative to a bone too; a bone that looks at another one looks at its tail.
+  const glm::dvec3 place =
+      on_bone && constraint.kind == ConstraintKind::Aim ? rig.tail(target) : end_of(constraint, armature, rig, bone);
+  constraint.place = on_bone ? inverse(rig.posed(target)) * place : place;
+  const glm::dquat frame = on_bone ? rig.turn(target) : glm::dquat(1, 0, 0, 0);
+  constraint.rotation = glm::normalize(glm::conjugate(frame) * rig.turn(bone));
+}
+
+std::optional<int> other_bone(const Editor& editor) {
+  std::optional<int> other;
+  for (const int bone : editor.selection.bones)
+    if (bone != editor.selection.bone) {
+      if (other) return std::nullopt;
+      other = bone;
+    }
+  return other;
+}
+
+void show_changed(Editor& editor, const std::function<void(Clip&)>& change) {
+  stop_playing(editor);
+  settle_frame(editor);
+  const ClipOnRig* on_rig = clip_on_rig(editor);
+  if (!on_rig) return;
+  Clip clip = *on_rig->clip();
+  change(clip);
+  const ClipOnRig changed(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig);
+  show_pose(editor, changed.at(editor.document().frame));
+}
+
+void put_weight(Clip& clip, const std::string& name, int frame, double weight) {
+  if (clip.keys.weights.contains(name)) return insert_weight_key(clip.keys, name, frame, weight);
+  change_list(clip, [&](Constraints& constraints) { named(constraints, name).weight = weight; });
+}
+
+}  // namespace
+
+const Constraints& constraints_of(const Document& document) {
+  static const Constraints kNone;
+  const Clip* clip = document.shown_clip();
+  return clip && clip->constraints ? *clip->constraints : kNone;
+}
+
+std::vector<std::size_t> constraints_of_bone(const Document& document, int bone) {
+  std::vector<std::size_t> found;
+  const auto& list = constraints_of(document).list;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (list[i].bone == document.armature->bones[bone].name) found.push_back(i);
+  return found;
+}
+
+const Constraint* find_constraint(const Document& document, const std::string& name) {
+  for (const Constraint& constraint : constraints_of(document).list)
+    if (constraint.name == name) return &constraint;
+  return nullptr;
+}
+
+const Constraint* active_constraint(const Editor& editor) {
+  const Document& document = editor.document();
+  const auto bone = editor.selection.bone;
+  if (!document.armature || !bone || *bone >= std::ssize(document.armature->bones)) return nullptr;
+  const Constraint* first = nullptr;
+  for (const std::size_t index : constraints_of_bone(document, *bone)) {
+    const Constraint& constraint = constraints_of(document).list[index];
+    if (constraint.name == editor.timeline->constraint) return &constraint;
+    if (!first) first = &constraint;
+  }
+  return first;
+}
+
+void add_constraint(Editor& editor, ConstraintKind kind) {
+  stop_playing(editor);
+  settle_frame(editor);
+  const Armature& armature = *editor.document().armature;
+  const ConstraintRule& rule = constraint_rule(kind);
+  Constraint added{.kind = kind, .bone = armature.bones[*editor.selection.bone].name};
+  if (const auto other = other_bone(editor); other && rule.target != ConstraintTarget::None)
+    added.target = armature.bones[*other].name;
+  if (rule.target == ConstraintTarget::Bone && added.target.empty())
+    throw Error("the constraint needs a target", rule.name, "select the target bone, then with Shift the bone");
+  place_target(added, armature, pose_of(editor.document()));
+  added.name = unique_constraint_name(constraints_of(editor.document()), rule.name + " " + added.bone);
+  Constraints next = constraints_of(editor.document());
+  next.list.push_back(added);
+  require_applicable(editor, next, added.name);
+  change_clip(editor, rule.name, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
+  editor.timeline->constraint = added.name;
+}
+
+void remove_constraint(Editor& editor, const std::string& name) {
+  change_clip(editor, "Remove constraint", [&](Clip& clip) {
+    change_list(clip, [&](Constraints& constraints) {
+      std::erase_if(constraints.list, [&](const Constraint& constraint) { return constraint.name == name; });
+    });
+    clip.keys.weights.erase(name);
+    clip.keys.weight_shapes.erase(name);
+  });
+}
+
+void change_constraint(Editor& editor, const std::string& name, const std::string& label,
+                       const std::function<void(Constraint&)>& change) {
+  Constraints next = constraints_of(editor.document());
+  change(named(next, name));
+  if (next == constraints_of(editor.document())) return drop_shown_pose(editor);
+  require_applicable(editor, next, name);
+  change_clip(editor, label, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
+}
+
+void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change) {
+  show_changed(editor, [&](Clip& clip) {
+    change_list(clip, [&](Constraints& constraints) { change(named(constraints, name)); });
+  });
+}
+
+void set_target(Editor& editor, const std::string& name, const std::string& bone) {
+  settle_frame(editor);
+  change_constraint(editor, name, "Set target", [&](Constraint& constraint) {
+    constraint.target = bone;
+    place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+  });
+}
+
+void aim_at_cross_hair(Editor& editor, const std::string& name) {
+  settle_frame(editor);
+  change_constraint(editor, name, "Target at cross-hair", [&](Constraint& constraint) {
+    const PosedRig rig(*editor.document().armature, pose_of(editor.document()));
+    const glm::dvec3 place = editor.views->cross_hair;
+    constraint.place =
+        constraint.target.empty() ? place : inverse(rig.posed(require_bone(rig.armature(), constraint.target))) * place;
+  });
+}
+
+bool has_weight_key(const Editor& editor, const Constraint& constraint, int frame) {
+  const Clip* clip = shown_clip(editor);
+  const auto track = clip->keys.weights.find(constraint.name);
+  return track != clip->keys.weights.end() && track->second.contains(frame);
+}
+
+double shown_weight(const Editor& editor, const Constraint& constraint) {
+  return weight_at(constraint, shown_clip(editor)->keys, shown_frame(editor));
+}
+
+void set_weight(Editor& editor, const std::string& name, double weight) {
+  settle_frame(editor);
+  const int frame = editor.document().frame;
+  change_clip(editor, "Set weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
+}
+
+void preview_weight(Editor& editor, const std::string& name, double weight) {
+  show_changed(editor, [&](Clip& clip) { put_weight(clip, name, editor.document().frame, weight); });
+}
+
+void toggle_weight_key(Editor& editor, const std::string& name) {
+  settle_frame(editor);
+  const Constraint* constraint = find_constraint(editor.document(), name);
+  if (!constraint) return;
+  const int frame = editor.document().frame;
+  const double weight = shown_weight(editor, *constraint);
+  const bool is_keyed = has_weight_key(editor, *constraint, frame);
+  change_clip(editor, is_keyed ? "Delete weight key" : "Key weight", [&](Clip& clip) {
+    if (is_keyed) delete_weight_key(clip.keys, name, frame);
+    else insert_weight_key(clip.keys, name, frame, weight);
+    // The weight without keys is what the last key had.
+    if (!clip.keys.weights.contains(name))
+      change_list(clip, [&](Constraints& constraints) { named(constraints, name).weight = weight; });
+  });
+}
+
+void switch_weight(Editor& editor, const std::string& name) {
+  settle_frame(editor);
+  const Constraint* constraint = find_constraint(editor.document(), name);
+  if (!constraint) return;
+  const int frame = editor.document().frame;
+  const int later = frame + std::max(1, static_cast<int>(std::lround(frame_rate(editor) / 3)));
+  const double weight = shown_weight(editor, *constraint);
+  change_clip(editor, "Switch weight", [&](Clip& clip) {
+    insert_weight_key(clip.keys, name, frame, weight);
+    insert_weight_key(clip.keys, name, later, weight > 0.5 ? 0 : 1);
+  });
+  editor.messages.info(weight > 0.5 ? "Keys take over" : "The constraint takes over",
+                       "From frame " + std::to_string(frame) + " to " + std::to_string(later));
+}
+
+void set_weight_steps(Editor& editor, const std::string& name, Interpolation next) {
+  change_clip(editor, "Set steps of weight", [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
+}
+
+void apply_constraints(Editor& editor) {
+  stop_playing(editor);
+  settle_frame(editor);
+  const std::shared_ptr<const Clip> source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  const auto [first, last] = all_frames(*source);
+  if (std::int64_t{last} - first >= kMostFrames)
+    throw Error("the clip is too long to be baked", source->name, "trim it, or set a shorter range");
+  start_task(editor, "Apply constraints",
+             [source, rig = editor.document().armature, first = first, last = last](Progress& progress) -> Finish {
+               const auto made =
+                   std::make_shared<const Clip>(with_constraints_as_keys(source, rig, first, last, progress));
+               return [=](Editor& e) {
+                 take_in_clip(e, source, rig, "Apply constraints", *made, false);
+                 e.messages.ok("Constraints applied", "Each turned bone has a key in frames " + std::to_string(first) +
+                                                          " to " + std::to_string(last));
+               };
+             });
+}
+
+}  // namespace limber::editor

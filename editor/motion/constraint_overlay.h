@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Draws the constraints of the shown clip over the 3D view: a thin dashed line from each constrained bone to its
+// target, and a small mark where it is to come. Those of selected bones are brighter.
+#pragma once
+
+#include "editor/context/editor.h"
+
+namespace limber::editor {
+
+void draw_constraint_lines(Editor& editor);
+
+}  // namespace limber::editor

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/constraint_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "editor/context/operator.h"
+#include "editor/context/operator_button.h"
+#include "editor/motion/constraint_edits.h"
+#include "editor/shown/shown_pose.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kFar = 1e5;          // farthest place that can be typed, mm
+constexpr double kWidestLimit = 180;  // degrees
+constexpr int kLongestChain = 64;
+
+// A number of a constraint that the panel shows and changes.
+struct Number {
+  std::string name;  // unique among the number fields of the window
+  double shown = 0, low = 0, high = 1;
+  const char *format = "%.1f", *unit = "";
+  bool filled = false;
+  std::function<void(Editor&, double)> preview, commit;
+};
+
+// Draws the field. The views show the changed pose while the user edits the number, and one edit is committed at the
+// end.
+void draw_number(Editor& editor, const Rect& rect, const Number& number) {
+  auto& edited = editor.edited_number;
+  double value = edited.name == number.name ? edited.value : number.shown;
+  bool committed = false;
+  if (number_field(editor, number.name, rect, value, number.low, number.high, number.format, number.unit, number.filled,
+                   committed)) {
+    edited = {number.name, value};
+    number.preview(editor, value);
+  }
+  if (!committed || edited.name != number.name) return;
+  const double wanted = edited.value;
+  edited = {};
+  attempt(editor, "Constraint", [&](Editor& e) { number.commit(e, wanted); });
+}
+
+// Returns a number of a constraint itself, such as a component of its place.
+Number number_of(const Constraint& constraint, const std::string& name, const std::string& label, double shown,
+                 const std::function<void(Constraint&, double)>& set) {
+  Number number{.name = constraint.name + " " + name, .shown = shown};
+  number.preview = [=, who = constraint.name](Editor& e, double value) {
+    preview_constraint(e, who, [&](Constraint& changed) { set(changed, value); });
+  };
+  number.commit = [=, who = constraint.name](Editor& e, double value) {
+    change_constraint(e, who, label, [&](Constraint& changed) { set(changed, value); });
+  };
+  return number;
+}
+
+void change(Editor& editor, const Constraint& constraint, const std::string& label,
+            const std::function<void(Constraint&)>& set) {
+  const std::string name = constraint.name;
+  attempt(editor, label, [&](Editor& e) { change_constraint(e, name, label, set); });
+}
+
+// Draws a list field whose choices are the values of an enum. Returns true when the user selected another one.
+bool choose(Editor& editor, Column& column, const std::string& title, const std::vector<std::string>& words,
+            int& chosen) {
+  const PathScope path(editor, title);
+  return choice_field(editor, column.property(title), words, chosen);
+}
+
+bool draw_small_icon(Editor& editor, const Rect& rect, const std::string& name, const char* picture, Colour colour,
+                     const std::string& title, const std::string& help) {
+  const Pressed pressed = press_area(editor, name, rect);
+  put_icon(editor.look.fonts.regular, pressed.hovered ? editor.look.theme.text : colour, rect, picture);
+  if (pressed.hovered) tooltip(editor, rect, title, help);
+  return pressed.clicked;
+}
+
+// Draws the head of a constraint. Returns false when its deeds have replaced the document.
+bool draw_head(Editor& editor, Column& column, const Constraint& constraint, bool is_open, bool has_problem) {
+  const Look& look = editor.look;
+  const Rect row = column.row(26);
+  const float left = row.low.x + look.px(10), right = row.high.x - look.px(10), side = look.px(20);
+  const Rect fold{{left, row.low.y}, {right - 2 * side, row.high.y}};
+  const Pressed pressed = press_area(editor, "Fold", fold);
+  put_icon(look.fonts.regular, look.theme.text2, Rect{fold.low, {left + look.px(14), row.high.y}},
+           is_open ? icon::kOpened : icon::kClosed);
+  const Colour colour = has_problem ? look.theme.warn : constraint.on ? look.theme.text : look.theme.text3;
+  put_text(editor, is_open ? look.fonts.semibold : look.fonts.regular, colour,
+           Rect{{left + look.px(18), row.low.y}, fold.high}, constraint.name);
+  if (pressed.hovered) tooltip(editor, fold, constraint.name, constraint_rule(constraint.kind).description);
+  if (pressed.clicked) editor.timeline->constraint = is_open ? "" : constraint.name;
+  if (draw_small_icon(editor, {{right - 2 * side, row.low.y}, {right - side, row.high.y}}, "On",
+                      constraint.on ? icon::kVisible : icon::kHidden,
+                      constraint.on ? look.theme.text2 : look.theme.text3, constraint.on ? "Switch off" : "Switch on",
+                      "A constraint that is switched off changes nothing.")) {
+    change(editor, constraint, constraint.on ? "Switch constraint off" : "Switch constraint on",
+           [](Constraint& changed) { changed.on = !changed.on; });
+    return false;
+  }
+  if (!draw_small_icon(editor, {{right - side, row.low.y}, {right, row.high.y}}, "Remove", icon::kClose,
+                       look.theme.text3, "Remove constraint", "Remove the constraint and the keys of its weight."))
+    return true;
+  const std::string name = constraint.name;
+  attempt(editor, "Remove constraint", [&](Editor& e) { remove_constraint(e, name); });
+  return false;
+}
+
+void draw_weight(Editor& editor, Column& column, const Constraint& constraint) {
+  const Look& look = editor.look;
+  const Rect rect = column.property("Weight");
+  const float button = look.px(22);
+  Number number{
+      .name = constraint.name + " weight", .shown = shown_weight(editor, constraint), .format = "%.2f", .filled = true};
+  number.preview = [who = constraint.name](Editor& e, double value) { preview_weight(e, who, value); };
+  number.commit = [who = constraint.name](Editor& e, double value) { set_weight(e, who, value); };
+  const bool is_keyed = shown_clip(editor)->keys.weights.contains(constraint.name);
+  const bool is_here = has_weight_key(editor, constraint, shown_frame(editor));
+  draw_number(editor, {rect.low, {rect.high.x - button - look.px(4), rect.high.y}}, number);
+  if (!find_constraint(editor.document(), constraint.name)) return;
+  const Rect key{{rect.high.x - button, rect.low.y}, rect.high};
+  const std::string name = constraint.name;
+  if (draw_small_icon(editor, key, "Key weight", icon::kKey,
+                      is_here    ? look.theme.select
+                      : is_keyed ? look.theme.accent_text
+                                 : look.theme.text3,
+                      is_here ? "Delete weight key" : "Key weight",
+                      "The weight goes from key to key: 0 is the pose of the keys, 1 the constraint."))
+    attempt(editor, "Key weight", [&](Editor& e) { toggle_weight_key(e, name); });
+  if (!is_keyed) return;
+  const auto& track = shown_clip(editor)->keys;
+  const auto shapes = track.weight_shapes.find(name);
+  int chosen = static_cast<int>(shapes == track.weight_shapes.end() || shapes->second.empty()
+                                    ? Interpolation::Linear
+                                    : shapes->second.begin()->second.next);
+  if (choose(editor, column, "Between keys", {"Steps", "Straight", "Smooth"}, chosen))
+    set_weight_steps(editor, name, static_cast<Interpolation>(chosen));
+}
+
+void draw_target(Editor& editor, Column& column, const Constraint& constraint) {
+  const Armature& rig = *editor.document().armature;
+  const bool may_be_world = constraint_rule(constraint.kind).target == ConstraintTarget::Place;
+  std::vector<std::string> names;
+  if (may_be_world) names.push_back("World");
+  int chosen = 0;
+  for (const Bone& bone : rig.bones) {
+    if (bone.name == constraint.target) chosen = static_cast<int>(names.size());
+    names.push_back(bone.name);
+  }
+  if (!choose(editor, column, "Target", names, chosen)) return;
+  const std::string name = constraint.name,
+                    bone = may_be_world && chosen == 0 ? "" : names[static_cast<std::size_t>(chosen)];
+  attempt(editor, "Set target", [&](Editor& e) { set_target(e, name, bone); });
+}
+
+// Draws three numbers in one row, marked by the colours of the axes.
+void draw_three(Editor& editor, Column& column, const std::string& title, const std::array<Number, 3>& numbers) {
+  const Look& look = editor.look;
+  Rect rect = column.property(title);
+  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
+  const float width = (rect.width() - 2 * look.px(4)) / 3;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float x = std::round(rect.low.x + static_cast<float>(axis) * (width + look.px(4)));
+    const Rect field{{x, rect.low.y}, {std::round(x + width), rect.high.y}};
+    draw_number(editor, {{field.low.x + look.px(3), field.low.y}, field.high}, numbers[static_cast<std::size_t>(axis)]);
+    fill({field.low, {field.low.x + look.px(3), field.high.y}}, look.theme.axis[axis]);
+  }
+}
+
+void draw_place(Editor& editor, Column& column, const Constraint& constraint) {
+  std::array<Number, 3> numbers;
+  for (int axis = 0; axis < 3; ++axis) {
+    Number& number = numbers[static_cast<std::size_t>(axis)];
+    number = number_of(constraint, std::string("place ") + "XYZ"[axis], "Move target", constraint.place[axis],
+                       [axis](Constraint& changed, double value) { changed.place[axis] = value; });
+    number.low = -kFar;
+    number.high = kFar;
+  }
+  draw_three(editor, column, "Place, mm", numbers);
+}
+
+void draw_axes(Editor& editor, Column& column, const Constraint& constraint) {
+  const Rect rect = column.property("Own axes");
+  const float width = rect.width() / 3;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    bool on = constraint.axes[axis];
+    const float x = std::round(rect.low.x + static_cast<float>(axis) * width);
+    const std::string label(1, "XYZ"[axis]);
+    if (checkbox(editor, "Axis " + label, {{x, rect.low.y}, {x + width, rect.high.y}}, label, on))
+      change(editor, constraint, "Set axes", [axis, on](Constraint& changed) { changed.axes[axis] = on; });
+  }
+}
+
+void draw_limits(Editor& editor, Column& column, const Constraint& constraint) {
+  for (const bool is_maximum : {false, true}) {
+    std::array<Number, 3> numbers;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double shown = glm::degrees((is_maximum ? constraint.maximum : constraint.minimum)[axis]);
+      Number& number = numbers[static_cast<std::size_t>(axis)];
+      number = number_of(constraint, (is_maximum ? "maximum " : "minimum ") + std::string(1, "XYZ"[axis]), "Set limits",
+                         shown, [=](Constraint& changed, double degrees) {
+                           const double angle = glm::radians(degrees);
+                           // The other end of the range gives way.
+                           if (is_maximum) changed.minimum[axis] = std::min(changed.minimum[axis], angle);
+                           else changed.maximum[axis] = std::max(changed.maximum[axis], angle);
+                           (is_maximum ? changed.maximum : changed.minimum)[axis] = angle;
+                         });
+      number.low = -kWidestLimit;
+      number.high = kWidestLimit;
+    }
+    draw_three(editor, column, is_maximum ? "Most, \u00b0" : "Least, \u00b0", numbers);
+  }
+}
+
+void draw_aim(Editor& editor, Column& column, const Constraint& constraint) {
+  int chosen = static_cast<int>(constraint.aim);
+  if (choose(editor, column, "Points with", {"+X", "-X", "+Y (along)", "-Y", "+Z", "-Z"}, chosen))
+    change(editor, constraint, "Set aiming axis",
+           [chosen](Constraint& changed) { changed.aim = static_cast<BoneAxis>(chosen); });
+}
+
+void draw_plant(Editor& editor, Column& column, const Constraint& constraint) {
+  int point = static_cast<int>(constraint.point);
+  if (choose(editor, column, "Point", {"Joint", "Tip"}, point))
+    return change(editor, constraint, "Set planted point",
+                  [point](Constraint& changed) { changed.point = static_cast<PlantPoint>(point); });
+  bool keeps = constraint.keeps_rotation;
+  if (checkbox(editor, "Keep direction", column.property("Direction"), "Kept", keeps))
+    change(editor, constraint, "Keep direction", [keeps](Constraint& changed) { changed.keeps_rotation = keeps; });
+}
+
+void draw_inverse_kinematics(Editor& editor, Column& column, const Constraint& constraint) {
+  Number chain = number_of(constraint, "chain", "Set chain", constraint.chain, [](Constraint& changed, double bones) {
+    changed.chain = static_cast<int>(std::lround(bones));
+  });
+  chain.high = kLongestChain;
+  chain.format = "%.0f";
+  chain.unit = "bones";
+  draw_number(editor, column.property("Chain"), chain);
+  bool keeps = constraint.keep_limits;
+  if (checkbox(editor, "Joint limits", column.property("Limits"), "Kept", keeps))
+    change(editor, constraint, "Keep joint limits", [keeps](Constraint& changed) { changed.keep_limits = keeps; });
+}
+
+void draw_copy(Editor& editor, Column& column, const Constraint& constraint) {
+  int space = static_cast<int>(constraint.space);
+  if (choose(editor, column, "Rotation", {"In the world", "From the parent"}, space))
+    return change(editor, constraint, "Set space",
+                  [space](Constraint& changed) { changed.space = static_cast<RotationSpace>(space); });
+  draw_axes(editor, column, constraint);
+}
+
+void draw_settings(Editor& editor, Column& column, const Constraint& constraint) {
+  switch (constraint.kind) {
+    case ConstraintKind::CopyRotation: return draw_copy(editor, column, constraint);
+    case ConstraintKind::LimitRotation:
+      draw_axes(editor, column, constraint);
+      return draw_limits(editor, column, constraint);
+    case ConstraintKind::JointRange: return;
+    case ConstraintKind::Aim: return draw_aim(editor, column, constraint);
+    case ConstraintKind::Plant: return draw_plant(editor, column, constraint);
+    case ConstraintKind::InverseKinematics: return draw_inverse_kinematics(editor, column, constraint);
+  }
+}
+
+void draw_one(Editor& editor, Column& column, const Constraint& constraint, const std::string& problem) {
+  const Look& look = editor.look;
+  const PathScope path(editor, constraint.name);
+  const bool is_open = editor.timeline->constraint == constraint.name;
+  if (!draw_head(editor, column, constraint, is_open, !problem.empty())) return;
+  if (!is_open) return;
+  if (!problem.empty()) {
+    const float width = column.row(0).width() - look.px(20);
+    const Rect row = column.row(height_of_wrapped(look.fonts.small, problem, width, 3) / look.scale + 6);
+    put_wrapped(editor, look.fonts.small, look.theme.warn, {row.low.x + look.px(10), row.low.y}, width, problem, 3);
+  }
+  const ConstraintTarget needed = constraint_rule(constraint.kind).target;
+  draw_weight(editor, column, constraint);
+  if (needed != ConstraintTarget::None) draw_target(editor, column, constraint);
+  if (needed == ConstraintTarget::Place) draw_place(editor, column, constraint);
+  draw_settings(editor, column, constraint);
+  column.space(6);
+}
+
+}  // namespace
+
+void draw_constraints(Editor& editor, Column& column) {
+  const std::shared_ptr<const Armature> rig = editor.document().armature;
+  const auto bone = editor.selection.bone;
+  if (!rig || !bone || *bone >= std::ssize(rig->bones)) return;
+  const Look& look = editor.look;
+  const std::vector<std::size_t> indices = constraints_of_bone(editor.document(), *bone);
+  if (column.begin_section("Constraints", indices.empty() ? "" : std::to_string(indices.size()))) {
+    column.space(4);
+    // Copied, because an edit replaces the document.
+    const Constraints constraints = constraints_of(editor.document());
+    for (const std::size_t index : indices) {
+      const ClipOnRig* clip = clip_on_rig(editor);
+      const std::string problem = clip && clip->constraints() && clip->constraints()->constraints()->list.size() > index
+                                      ? clip->constraints()->problem(index)
+                                      : "";
+      draw_one(editor, column, constraints.list[index], problem);
+    }
+    const Rect row = column.row(30);
+    operator_button(
+        editor, "constraint.add",
+        {{row.low.x + look.px(10), row.low.y + look.px(2)}, {row.high.x - look.px(10), row.high.y - look.px(2)}},
+        "Add constraint");
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Constraints in the editor: each operator, and what the panel does to the shown clip.
+#include "editor/motion/constraint_edits.h"
+#include "editor/pose/pose_edits.h"
+#include "editor/shown/shown_pose.h"
+#include "tests/editor/operator_proofs.h"
+#include "tests/editor/small_clip.h"
+
+namespace limber::test {
+
+using namespace editor;
+
+namespace {
+
+constexpr int kTrunk = 0, kUpper = 1, kFore = 2, kHand = 3, kThigh = 4;
+
+// An arm and a thigh on a trunk, in the small body.
+Document arm() {
+  Document document = small_body();
+  document.armature = std::make_shared<const Armature>(Armature{{{"Trunk", -1, {0, 0, 0}, {0, 0, 20}},
+                                                                 {"LeftArm", 0, {0, 0, 20}, {12, 2, 4}},
+                                                                 {"LeftForeArm", 1, {12, 2, 4}, {24, -2, -10}},
+                                                                 {"LeftHand", 2, {24, -2, -10}, {27, -4, -18}},
+                                                                 {"LeftThigh", 0, {4, 0, 0}, {6, 0, -30}}}});
+  return document;
+}
+
+// The tail of a bone in the document's pose, by a chain of matrices.
+glm::dvec3 tail_of(const Document& document, const Pose& pose, int bone) {
+  glm::dvec3 place = document.armature->bones[bone].tail;
+  for (int b = bone; b >= 0; b = document.armature->bones[b].parent) {
+    const glm::dvec3 head = document.armature->bones[b].head;
+    place = head + glm::mat3_cast(pose.rotation[b]) * (place - head);
+  }
+  return place + pose.root_translation;
+}
+glm::dvec3 tail_of(const Document& document, int bone) { return tail_of(document, pose_of(document), bone); }
+
+Clip turning_trunk() {
+  Clip clip{.name = "turn", .range_end = 30};
+  clip.keys.bones["Trunk"] = {{0, {1, 0, 0, 0}}, {30, glm::angleAxis(1.0, glm::dvec3(0, 0, 1))}};
+  clip.keys.bones["LeftArm"] = {{0, {1, 0, 0, 0}}, {30, glm::angleAxis(-0.6, glm::dvec3(1, 0, 0))}};
+  return clip;
+}
+
+void open_arm(Editor& editor, std::vector<Constraint> constraints, int bone, std::optional<int> target,
+              const std::function<void(Clip&)>& change = {}) {
+  editor.timeline->play = {};
+  editor.timeline->shows_graph = false;
+  editor.timeline->auto_key = false;
+  Document document = arm();
+  Clip clip = turning_trunk();
+  if (!constraints.empty()) clip.constraints = std::make_shared<const Constraints>(Constraints{std::move(constraints)});
+  if (change) change(clip);
+  document.clips = {std::make_shared<const Clip>(clip)};
+  document.frame = 10;
+  document.pose = pose_at_frame(document);
+  editor.history.reset(std::move(document), "Open arm");
+  editor.timeline->constraint.clear();
+  editor.selection = {};
+  editor.selection.bone = bone;
+  editor.selection.bones = {bone};
+  if (target) editor.selection.bones.insert(*target);
+}
+
+Constraint planted_hand(double weight = 1) {
+  return {.name = "Plant LeftHand",
+          .kind = ConstraintKind::Plant,
+          .weight = weight,
+          .bone = "LeftHand",
+          .target = "LeftThigh",
+          .place{9, -6, -8}};
+}
+
+std::function<void(Stage&)> ready(std::vector<Constraint> constraints, int bone = kHand,
+                                  std::optional<int> target = {}) {
+  return [=](Stage& s) {
+    open_arm(s.editor(), constraints, bone, target);
+    s.play("key Ctrl+3\n wait-idle");
+  };
+}
+
+const std::vector<Constraint>& list_of(Stage& stage) { return constraints_of(stage.document()).list; }
+
+std::function<bool(Stage&, const Seen&)> has_one(ConstraintKind kind, const std::string& bone,
+                                                 const std::string& target) {
+  return [=](Stage& s, const Seen&) {
+    return list_of(s).size() == 1 && list_of(s)[0].kind == kind && list_of(s)[0].bone == bone &&
+           list_of(s)[0].target == target && s.editor().timeline->constraint == list_of(s)[0].name;
+  };
+}
+
+const std::map<int, double>& weights(Editor& editor) {
+  static const std::map<int, double> kNone;
+  const auto& all = shown_clip(editor)->keys.weights;
+  return all.empty() ? kNone : all.begin()->second;
+}
+
+struct ArmEditor : SmallEditor {
+  explicit ArmEditor(std::vector<Constraint> constraints = {}, int bone = kHand, std::optional<int> target = {})
+      : SmallEditor({1280, 900}, {}, false) {
+    open_arm(*editor, std::move(constraints), bone, target);
+    play("key Ctrl+3\n wait-idle");
+  }
+  const Document& document() { return editor->document(); }
+  glm::dvec3 place() {
+    const Constraint& plant = constraints_of(document()).list[0];
+    Document other = document();
+    Armature rig = *other.armature;
+    rig.bones[kThigh].tail = plant.place;
+    other.armature = std::make_shared<const Armature>(rig);
+    return tail_of(other, kThigh);
+  }
+};
+
+}  // namespace
+
+std::vector<Proof> proofs_of_constraints() {
+  const auto choose = [](const char* label) {
+    return std::string("click \"Motion/Constraints/") + label + "\"\n wait-idle";
+  };
+  const std::vector<Constraint> one{planted_hand()};
+  return {
+      {"constraint.add", "click Constraints/constraint.add\n wait-idle",
+       [](Stage& s, const Seen&) { return s.editor().shown_popup == "Add constraint"; }, Shows::Nothing, "", ready({})},
+      {"constraint.add_copy_rotation", choose("Add copy rotation"),
+       has_one(ConstraintKind::CopyRotation, "LeftHand", "LeftThigh"), Shows::Nothing, "", ready({}, kHand, kThigh)},
+      {"constraint.add_limit_rotation", choose("Add limit rotation"),
+       has_one(ConstraintKind::LimitRotation, "LeftHand", ""), Shows::Nothing, "", ready({})},
+      {"constraint.add_joint_range", choose("Add joint range"), has_one(ConstraintKind::JointRange, "LeftArm", ""),
+       Shows::Nothing, "", ready({}, kUpper)},
+      {"constraint.add_aim", choose("Add aim"), has_one(ConstraintKind::Aim, "LeftForeArm", "LeftThigh"), Shows::InBody,
+       "", ready({}, kFore, kThigh)},
+      {"constraint.add_plant", choose("Add plant"), has_one(ConstraintKind::Plant, "LeftHand", ""), Shows::Nothing, "",
+       ready({})},
+      {"constraint.add_inverse_kinematics", choose("Add inverse kinematics"),
+       has_one(ConstraintKind::InverseKinematics, "LeftHand", "LeftThigh"), Shows::Nothing, "",
+       ready({}, kHand, kThigh)},
+      {"constraint.toggle", choose("Constraint on"),
+       [](Stage& s, const Seen&) { return !list_of(s)[0].on && s.is("edit", "Switch constraint off"); }, Shows::InBody,
+       "", ready(one)},
+      {"constraint.key_weight", choose("Key weight"),
+       [](Stage& s, const Seen&) {
+         return weights(s.editor()) == std::map<int, double>{{10, 1}};
+       },
+       Shows::Nothing, "", ready(one)},
+      {"constraint.switch", choose("Switch IK and FK"),
+       [](Stage& s, const Seen&) {
+         return weights(s.editor()) == std::map<int, double>{{10, 1}, {20, 0}};
+       },
+       Shows::Nothing, "", ready(one)},
+      {"constraint.to_cross_hair", choose("Target at cross-hair"),
+       [](Stage& s, const Seen&) {
+         const Constraint& aim = list_of(s)[0];
+         return glm::distance(aim.place, s.editor().views->cross_hair) < 1e-9 && s.is("edit", "Target at cross-hair");
+       },
+       Shows::InBody, "",
+       [](Stage& s) {
+         ready({{.name = "Aim", .kind = ConstraintKind::Aim, .bone = "LeftArm", .place{90, 0, 0}}}, kUpper)(s);
+         s.editor().views->cross_hair = {-20, -30, -10};
+       }},
+      {"constraint.remove", choose("Remove constraint"),
+       [](Stage& s, const Seen&) { return list_of(s).empty() && s.is("edit", "Remove constraint"); }, Shows::InBody, "",
+       ready(one)},
+      {"constraint.apply", choose("Apply constraints") + "\n wait-job\n wait-idle",
+       [](Stage& s, const Seen&) {
+         return list_of(s).empty() && shown_clip(s.editor())->keys.bones.contains("LeftHand") &&
+                shown_clip(s.editor())->keys.bones.at("LeftHand").size() == 31;
+       },
+       Shows::Nothing, "", ready(one)},
+  };
+}
+
+TEST_CASE("operators: bones are constrained") {
+  Stage stage;
+  prove(stage, proofs_of_constraints());
+}
+
+TEST_CASE("constraint panel: a planted hand stays where it was when it is planted, and on its bone in every frame") {
+  ArmEditor test({}, kHand, kThigh);
+  const glm::dvec3 before = tail_of(test.document(), kHand);
+  test.play("click Constraints/constraint.add\n wait-idle\n click \"Add constraint/Add plant\"\n wait-idle");
+  REQUIRE(constraints_of(test.document()).list.size() == 1);
+  CHECK(glm::distance(tail_of(test.document(), kHand), before) < 0.01);
+  CHECK(glm::distance(test.place(), before) < 1e-6);
+  const Pose planted = pose_of(test.document());
+  for (const int frame : {0, 25, 30}) {
+    go_to_frame(*test.editor, frame);
+    CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+    // What plays is what the frame shows when it is gone to.
+    CHECK(pose_of(test.document()) == clip_on_rig(*test.editor)->at(frame));
+  }
+  CHECK(glm::distance(tail_of(test.document(), kHand), before) > 5);
+  test.play("key Ctrl+Z\n key Ctrl+Z\n wait-idle");
+  CHECK(constraints_of(test.document()).list.empty());
+  test.play("key Ctrl+Shift+Z\n wait-idle");
+  CHECK(pose_of(test.document()) == planted);
+}
+
+TEST_CASE("constraint panel: the weight is slid, keyed and unkeyed, each as one edit") {
+  ArmEditor test({planted_hand()});
+  const std::string path = "\"Constraints/Plant LeftHand/";
+  test.play("click " + path + "Fold\"\n wait-idle");
+  const std::size_t steps = test.editor->history.steps().size();
+  const Pose full = pose_of(test.document());
+  test.play("double-click " + path + "Plant LeftHand weight\"\n key Ctrl+A\n type 0.25\n key Return\n wait-idle");
+  CHECK(constraints_of(test.document()).list[0].weight == 0.25);
+  CHECK(test.editor->history.steps().size() == steps + 1);
+  CHECK(pose_of(test.document()) != full);
+  test.play("click " + path + "Key weight\"\n wait-idle");
+  CHECK(weights(*test.editor) == std::map<int, double>{{10, 0.25}});
+  go_to_frame(*test.editor, 20);
+  test.play("wait-idle\n double-click " + path +
+            "Plant LeftHand weight\"\n key Ctrl+A\n type 1\n key Return\n wait-idle");
+  CHECK(weights(*test.editor) == std::map<int, double>{{10, 0.25}, {20, 1}});
+  CHECK(shown_weight(*test.editor, constraints_of(test.document()).list[0]) == 1);
+  go_to_frame(*test.editor, 15);
+  CHECK(shown_weight(*test.editor, constraints_of(test.document()).list[0]) == doctest::Approx(0.625));
+  // Its keys are the timeline's as well.
+  CHECK(frames_of(shown_clip(*test.editor)->keys).contains(20));
+  go_to_frame(*test.editor, 20);
+  test.play("wait-idle\n click " + path + "Key weight\"\n wait-idle");
+  CHECK(weights(*test.editor) == std::map<int, double>{{10, 0.25}});
+  go_to_frame(*test.editor, 10);
+  test.play("wait-idle\n click " + path + "Key weight\"\n wait-idle");
+  CHECK(weights(*test.editor).empty());
+  CHECK(constraints_of(test.document()).list[0].weight == 0.25);
+}
+
+TEST_CASE("constraint panel: keys inserted where a constraint counts by half do not make it count twice") {
+  ArmEditor test({planted_hand(0.5)});
+  const Pose shown = pose_of(test.document());
+  for (int time = 0; time < 3; ++time) {
+    run(*test.editor, "select.all");
+    run(*test.editor, "motion.insert_key");
+    for (int bone = 0; bone < 5; ++bone)
+      CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], shown.rotation[bone])) > 1 - 1e-12);
+  }
+  // A rotation that the user sets is keyed as it is set, and the constraint then takes its share of it.
+  Pose raised = shown;
+  raised.rotation[kUpper] = glm::angleAxis(0.7, glm::dvec3(0, 1, 0));
+  commit_pose(*test.editor, "Raise", raised);
+  CHECK(pose_of(test.document()) == raised);
+  run(*test.editor, "motion.insert_key");
+  CHECK(shown_clip(*test.editor)->keys.bones.at("LeftArm").at(10) == raised.rotation[kUpper]);
+  CHECK(pose_of(test.document()) != raised);
+}
+
+TEST_CASE("constraint panel: with auto-key a planted hand stays while the trunk is turned by hand") {
+  ArmEditor test({planted_hand()});
+  test.editor->timeline->auto_key = true;
+  Pose turned = pose_of(test.document());
+  turned.rotation[kTrunk] = glm::angleAxis(-0.8, glm::dvec3(0, 0, 1));
+  commit_pose(*test.editor, "Turn", turned);
+  CHECK(pose_of(test.document()).rotation[kTrunk] == turned.rotation[kTrunk]);
+  CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+}
+
+TEST_CASE(
+    "constraint panel: a pose made by hand is kept as keys when the first constraint is added, and after it goes") {
+  ArmEditor test;
+  Document bare = arm();
+  Pose pose = rest_pose(*bare.armature);
+  pose.rotation[kTrunk] = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
+  bare.pose = std::make_shared<const Pose>(pose);
+  test.editor->history.reset(bare, "Pose");
+  run(*test.editor, "constraint.add_aim");
+  REQUIRE(constraints_of(test.document()).list.size() == 1);
+  CHECK(pose_of(test.document()).rotation[kTrunk] == pose.rotation[kTrunk]);
+  run(*test.editor, "constraint.remove");
+  CHECK(pose_of(test.document()) == pose);
+  // Without a pose there is nothing to key; the pose that only the constraint made goes with it.
+  test.editor->history.reset(arm(), "Rest");
+  run(*test.editor, "constraint.add_aim");
+  const std::string name = constraints_of(test.document()).list[0].name;
+  change_constraint(*test.editor, name, "Move target", [](Constraint& aim) { aim.place = {0, -90, 0}; });
+  CHECK(test.document().pose);
+  CHECK(shown_clip(*test.editor)->keys.empty());
+  run(*test.editor, "constraint.remove");
+  CHECK(!test.document().pose);
+}
+
+TEST_CASE("constraint panel: circles and targets that move along are refused with one line, and nothing changes") {
+  ArmEditor test({planted_hand()}, kThigh, kHand);
+  const Document before = test.document();
+  run(*test.editor, "constraint.add_aim");
+  CHECK(test.fact("error") == "These constraints wait for each other in a circle");
+  CHECK_THROWS_WITH(add_constraint(*test.editor, ConstraintKind::Aim),
+                    "these constraints wait for each other in a circle: Aim LeftThigh and Plant LeftHand: choose "
+                    "another target, or remove one");
+  CHECK(test.document() == before);
+  test.play("key Escape\n wait-idle");
+  CHECK_THROWS_WITH(set_target(*test.editor, "Plant LeftHand", "LeftForeArm"),
+                    "the target moves along with the constrained bone: Plant LeftHand: choose another target");
+  test.editor->selection.bones = {kTrunk};
+  test.editor->selection.bone = kTrunk;
+  CHECK_THROWS_WITH(add_constraint(*test.editor, ConstraintKind::Plant),
+                    "a plant needs two bones above the bone: Plant Trunk: choose a hand or foot");
+  CHECK(test.document() == before);
+}
+
+}  // namespace limber::test
