@@ -7,7 +7,8 @@
 //   It keeps the undamaged parts of a damaged project and takes lost parts from FILE: an earlier copy, or the volume
 //   that the project was made from.
 // limber project NAME.limber export PART -o OUT: writes one part. PART is volume, tissues, rig, weights, pose, motion,
-//   gltf, seams, bone-map, or the name of a result. A motion with keys is written as it plays on the rig.
+//   gltf, seams, bone-map, or the name of a result. A motion with keys or constraints is written as it plays on the
+//   rig, and --frame writes the pose of one of its frames.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -36,10 +37,13 @@ namespace limber::cmd {
 
 namespace {
 
+constexpr int kFarthestFrame = 1 << 28;  // as projects hold them
+
 struct Options {
   std::string file, action = "inspect", part;
   std::string tissues, rig, weights, pose, motion, seams, bone_map, output, progress, up = "y";
   PoseRequest body;  // values of --pose-name and --joint
+  std::optional<int> frame;
   bool json = false, replace = false;
 };
 
@@ -225,6 +229,16 @@ Motion motion_in(const Document& document, const Options& options) {
   return there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options);
 }
 
+// Returns the pose that the project stores, or that of a frame of the shown clip, as the editor shows it.
+Pose pose_in(const Document& document, const Options& options) {
+  if (!options.frame) return there(document.pose, options);
+  require(document.armature && !document.clips.empty(), "the project has no clip on a rig", options.file,
+          "leave --frame out");
+  const ClipOnRig clip(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
+  require(clip.problem().empty(), "the clip does not move this rig", clip.clip()->name, clip.problem());
+  return clip.at(*options.frame);
+}
+
 const LabelVolume& result_named(const Document& document, const Options& options) {
   for (const auto& result : document.results)
     if (result->name == options.part && result->volume) return *result->volume;
@@ -249,7 +263,7 @@ void export_part(const Options& options) {
   else if (options.part == "rig") write_armature(there(document.armature, options), options.output);
   else if (options.part == "weights")
     write_weights(there(document.weights, options), *document.volume, TissueVoxels(*document.volume), options.output);
-  else if (options.part == "pose") write_pose(there(document.pose, options), *document.armature, options.output);
+  else if (options.part == "pose") write_pose(pose_in(document, options), *document.armature, options.output);
   else if (options.part == "motion") write_bvh(motion_in(document, options), options.output);
   else if (options.part == "seams") write_seams(there(document.seams, options), document.volume->grid, options.output);
   else if (options.part == "bone-map") write_bone_map(there(document.bone_map, options), options.output);
@@ -294,6 +308,8 @@ void add_project(CLI::App& app) {
                       "of create: where tissue touches without being one, as 'limber prepare --seams' writes it");
   command->add_option("--bone-map", options->bone_map, "of create: JSON that says which rig bone a label follows");
   writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
+  command->add_option("--frame", options->frame, "of export pose: a frame of the shown clip, with keys and constraints")
+      ->check(CLI::Range(-kFarthestFrame, kFarthestFrame));
   command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
   command->add_option("--progress", options->progress, "json: one line a step on stderr")
       ->check(CLI::IsMember({"json"}));

@@ -6,6 +6,8 @@
 
 #include "core/base/file.h"
 #include "core/bones/bone_map.h"
+#include "core/motion/constraint.h"
+#include "core/pose/pose_io.h"
 #include "core/project/project_io.h"
 #include "core/project/session.h"
 #include "core/seams/seams_io.h"
@@ -220,4 +222,45 @@ TEST_CASE("project command: a motion with eased keys is written as it plays, a m
   create_project({.document = document}, folder / "arm.limber", writer);
   REQUIRE(project(folder, {"export", "motion", "-o", folder / "again.bvh"}).exit_code == 0);
   CHECK(read_file(folder / "again.bvh") == read_file(folder / "out.bvh"));
+}
+
+TEST_CASE("project command: constraints hold in the motion and the poses that are exported, and are listed") {
+  const TemporaryFolder folder;
+  Armature arm;
+  arm.bones = {{"Trunk", -1, {0, 0, 0}, {0, 0, 200}},
+               {"LeftArm", 0, {0, 0, 200}, {120, 20, 40}},
+               {"LeftForeArm", 1, {120, 20, 40}, {240, -20, -100}},
+               {"LeftHand", 2, {240, -20, -100}, {270, -40, -180}}};
+  Document document;
+  document.armature = std::make_shared<const Armature>(arm);
+  Clip clip{.name = "turn", .range_end = 20};
+  clip.keys.bones["Trunk"] = {{0, {1, 0, 0, 0}}, {20, glm::angleAxis(0.9, glm::dvec3(0, 0, 1))}};
+  Constraint plant{.name = "Plant LeftHand", .kind = ConstraintKind::Plant, .bone = "LeftHand", .place{150, -120, -60}};
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{plant}});
+  clip.keys.weights["Plant LeftHand"] = {{0, 0}, {10, 1}};
+  document.clips = {std::make_shared<const Clip>(clip)};
+  DocumentWriter writer;
+  create_project({.document = document}, folder / "arm.limber", writer);
+  REQUIRE(project(folder, {"export", "motion", "-o", folder / "out.bvh"}).exit_code == 0);
+  const auto motion = std::make_shared<const Motion>(read_bvh(folder / "out.bvh"));
+  const ClipOnRig played(std::make_shared<const Clip>(clip_of(motion, "back")), document.armature);
+  for (const int frame : {0, 5, 10, 20}) {
+    const std::string file = folder / ("pose" + std::to_string(frame) + ".json");
+    const auto written = project(folder, {"export", "pose", "--frame", std::to_string(frame), "-o", file});
+    INFO(written.err);
+    REQUIRE(written.exit_code == 0);
+    const auto tail = [&](const Pose& pose) { return posed_from_rest(arm, pose)[3] * arm.bones[3].tail; };
+    const glm::dvec3 from_pose = tail(read_pose(file, arm)), from_motion = tail(played.at(frame));
+    CHECK(glm::distance(from_pose, from_motion) < 0.01);
+    CHECK((glm::distance(from_pose, plant.place) < 0.5) == (frame >= 10));
+    // At weight 0 only the trunk is turned.
+    if (frame == 0) CHECK(glm::distance(from_pose, arm.bones[3].tail) < 1e-6);
+  }
+  const auto told = nlohmann::json::parse(project(folder, {"inspect", "--json"}).out);
+  CHECK(told["clips"][0]["constraints"] == nlohmann::json{"Plant LeftHand"});
+  document.clips.clear();
+  create_project({.document = document}, folder / "arm.limber", writer);
+  const auto refused = project(folder, {"export", "pose", "--frame", "3", "-o", folder / "none.json"});
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.err.find("the project has no clip on a rig") != std::string::npos);
 }
