@@ -45,14 +45,14 @@ struct Constraint {
 
   // Copy and limit rotation: which parts of the rotation vector are copied or limited, about the bone's own axes.
   std::array<bool, 3> axes{true, true, true};
-  RotationSpace space = RotationSpace::World;  // copy rotation
-  glm::dvec3 minimum{-0.5}, maximum{0.5};      // limit rotation: radians about the bone's own axes
-  BoneAxis aim = BoneAxis::PlusY;              // aim: the direction that points at the target
-  PlantPoint point = PlantPoint::Tip;          // plant: the point of hand or foot that stays
-  bool keeps_rotation = true;                  // plant: the hand or foot keeps `rotation` too
-  glm::dquat rotation{1, 0, 0, 0};             // plant: from rest, relative to the target
-  int chain = 2;                               // inverse kinematics: number of bones that turn; 0: up to the root
-  bool keep_limits = true;                     // inverse kinematics: joints keep to their limits
+  RotationSpace space = RotationSpace::World;                            // copy rotation
+  glm::dvec3 minimum{glm::radians(-30.0)}, maximum{glm::radians(30.0)};  // limit rotation: about the own axes
+  BoneAxis aim = BoneAxis::PlusY;                                        // aim: the direction that points at the target
+  PlantPoint point = PlantPoint::Tip;                                    // plant: the point of hand or foot that stays
+  bool keeps_rotation = true;                                            // plant: the hand or foot keeps `rotation` too
+  glm::dquat rotation{1, 0, 0, 0};                                       // plant: from rest, relative to the target
+  int chain = 2;            // inverse kinematics: number of bones that turn; 0: up to the root
+  bool keep_limits = true;  // inverse kinematics: joints keep to their limits
 
   bool operator==(const Constraint&) const = default;
 };

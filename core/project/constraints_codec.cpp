@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::int64_t kMostFrame = 1 << 28;  // as for all frames of a project
 constexpr int kLongestChain = 4096;           // a rig has no more bones
+constexpr std::size_t kFewestBytes = 138;     // of a constraint with empty names
 constexpr double kWidestLimit = 2 * std::numbers::pi;
 
 double get_within(ByteReader& in, double low, double high) {
@@ -130,7 +131,7 @@ void put_constraints(ByteWriter& out, const Clip& clip) {
 void get_constraints(ByteReader& in, Clip& clip) {
   Constraints constraints;
   std::set<std::string> names;
-  for (std::size_t count = in.count(170); count > 0; --count) {
+  for (std::size_t count = in.count(kFewestBytes); count > 0; --count) {
     constraints.list.push_back(get_constraint(in));
     in.require(names.insert(constraints.list.back().name).second);
   }

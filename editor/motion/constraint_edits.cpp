@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/motion/apply_constraints.h"
+#include "core/motion/body_frame.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/motion/motion_clip_edits.h"
@@ -84,6 +85,18 @@ void place_target(Constraint& constraint, const Armature& armature, const Pose& 
   constraint.rotation = glm::normalize(glm::conjugate(frame) * rig.turn(bone));
 }
 
+// Returns the direction in which a bone looks: along itself, but a head along that of its own axes which points most
+// nearly to the front at rest.
+BoneAxis looking_axis(const Armature& armature, int bone) {
+  const auto role = skeleton_of(armature).role[static_cast<std::size_t>(bone)];
+  if (!role || role->part != BodyPart::Head) return BoneAxis::PlusY;
+  const glm::dvec3 front = glm::transpose(rest_axes(armature.bones[bone])) * glm::dvec3(0, -1, 0);
+  int axis = 0;
+  for (const int other : {1, 2})
+    if (std::abs(front[other]) > std::abs(front[axis])) axis = other;
+  return static_cast<BoneAxis>(2 * axis + (front[axis] < 0 ? 1 : 0));
+}
+
 std::optional<int> other_bone(const Editor& editor) {
   std::optional<int> other;
   for (const int bone : editor.selection.bones)
@@ -155,6 +168,7 @@ void add_constraint(Editor& editor, ConstraintKind kind) {
     added.target = armature.bones[*other].name;
   if (rule.target == ConstraintTarget::Bone && added.target.empty())
     throw Error("the constraint needs a target", rule.name, "select the target bone, then with Shift the bone");
+  if (kind == ConstraintKind::Aim) added.aim = looking_axis(armature, *editor.selection.bone);
   place_target(added, armature, pose_of(editor.document()));
   added.name = unique_constraint_name(constraints_of(editor.document()), rule.name + " " + added.bone);
   Constraints next = constraints_of(editor.document());

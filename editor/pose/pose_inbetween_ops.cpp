@@ -89,14 +89,15 @@ void apply_as_rest(Editor& editor) {
   next.armature = std::make_shared<const Armature>(with_pose_as_rest(*next.armature, pose_of(next)));
   next.pose = nullptr;
   const bool weights = next.weights != nullptr;
-  const bool poses = !next.poses.empty() || std::any_of(next.clips.begin(), next.clips.end(),
-                                                        [](const auto& clip) { return !clip->keys.bones.empty(); });
+  const bool poses = !next.poses.empty() || std::any_of(next.clips.begin(), next.clips.end(), [](const auto& clip) {
+    return !clip->keys.bones.empty() || clip->constraints;
+  });
   commit(editor, "Apply pose as rest", std::move(next));
   if (weights)
     editor.messages.info("Apply pose as rest", "The weights belong to the old rest pose: compute them again");
   if (poses)
     editor.messages.warn("Apply pose as rest",
-                         "Keys and library poses now turn the bones from the new rest pose: check them");
+                         "Keys, constraints and library poses now start from the new rest pose: check them");
 }
 
 }  // namespace

@@ -246,6 +246,9 @@ TEST_CASE("project: wrong constraints are refused, far ones brought near, and we
   aim.place.x = 1e7;
   CHECK(back.constraints->list == std::vector<Constraint>{aim});
   CHECK(back.keys.weights == std::map<std::string, std::map<int, double>>{{"Aim", {{3, 0}}}});
+  // A constraint alone, with the shortest names there are.
+  const Constraints shortest{{Constraint{}}};
+  CHECK(*read({.name = "c", .constraints = std::make_shared<const Constraints>(shortest)}).constraints == shortest);
   const auto refused = [&](const auto& change) {
     Constraint wrong = aim;
     change(wrong);

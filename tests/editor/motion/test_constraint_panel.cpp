@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Constraints in the editor: each operator, and what the panel does to the shown clip.
 #include "editor/motion/constraint_edits.h"
+
+#include "core/project/project_io.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/shown/shown_pose.h"
 #include "tests/editor/operator_proofs.h"
@@ -244,6 +246,30 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
   run(*test.editor, "motion.insert_key");
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftArm").at(10) == raised.rotation[kUpper]);
   CHECK(pose_of(test.document()) != raised);
+}
+
+TEST_CASE("constraint panel: a head is aimed by its face, and a project keeps and reopens what is constrained") {
+  ArmEditor test;
+  Document document = arm();
+  Armature rig = *document.armature;
+  rig.bones.push_back({"Head", kTrunk, {0, 0, 20}, {0, 4, 40}, 0.3});
+  document.armature = std::make_shared<const Armature>(rig);
+  document.frame = 7;
+  test.editor->history.reset(document, "Head");
+  test.editor->selection.bone = 5;
+  test.editor->selection.bones = {5, kHand};
+  run(*test.editor, "constraint.add_aim");
+  REQUIRE(constraints_of(test.document()).list.size() == 1);
+  const Pose aimed = pose_of(test.document());
+  const glm::dvec3 face = glm::mat3_cast(aimed.rotation[5]) * glm::dvec3(0, -1, 0),
+                   towards = glm::normalize(rig.bones[kHand].tail - rig.bones[5].head);
+  CHECK(glm::dot(face, towards) > 0.9);  // the own axis is 20 degrees off the front at most
+  const TemporaryFolder folder;
+  DocumentWriter writer;
+  create_project({.document = test.document()}, folder / "head.limber", writer);
+  const Document back = read_project(folder / "head.limber").document;
+  CHECK(constraints_of(back) == constraints_of(test.document()));
+  CHECK(*pose_at_frame(back) == aimed);
 }
 
 TEST_CASE("constraint panel: with auto-key a planted hand stays while the trunk is turned by hand") {
