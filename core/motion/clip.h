@@ -47,7 +47,7 @@ struct Clip {
   RetargetSettings retarget;
   int range_start = 0, range_end = 250;  // the frames that play, both included
   Keys keys;
-  std::vector<Marker> markers;  // sorted by frame
+  std::vector<Marker> markers;                     // sorted by frame
   std::shared_ptr<const Constraints> constraints;  // declared in core/motion/constraint.h; null: none
 
   // Compares the pointers of motion and constraints, not their contents.

@@ -12,8 +12,8 @@ namespace limber {
 
 // The reader also accepts the earlier layouts. Layout 1 has one motion and no clips. Layout 2 has no pose library, 3
 // has no anchors, 4 has only bits 0 and 1 of packed_reference(), 5 has no weight locks, 6 has no weight layers, 7 has
-// no overlap in a result, 8 has neither seams nor a bone map, 9 has no measurements, 10 has no shapes of keys, and 11 has
-// no constraints.
+// no overlap in a result, 8 has neither seams nor a bone map, 9 has no measurements, 10 has no shapes of keys, and 11
+// has no constraints.
 constexpr std::uint32_t kDocumentLayout = 12;
 
 // The first byte of a part, which names its type.

@@ -48,7 +48,7 @@ struct Timeline {
 
   bool auto_key = false;
   std::string constraint;  // name of the constraint that is unfolded in the panel, and that operators change
-  struct {  // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
+  struct {                 // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
     bool on = false;
     int count = 3, step = 10;
     std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: none yet
