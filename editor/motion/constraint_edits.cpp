@@ -9,6 +9,7 @@
 #include "core/motion/body_frame.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/shown/shown_pose.h"
 
@@ -34,8 +35,9 @@ void change_clip(Editor& editor, const std::string& label, const std::function<v
   change(clip);
   if (clip.constraints && clip.constraints->list.empty()) clip.constraints = nullptr;
   shown = std::make_shared<const Clip>(std::move(clip));
-  next.pose = free == rest ? nullptr : std::make_shared<const Pose>(free);
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  const Pose held = constrained_pose(ClipOnRig(shown, next.armature, clip_on_rig(editor)), free, next.frame);
+  next.pose = held == rest ? nullptr : std::make_shared<const Pose>(held);
+  remember_free_pose(editor, held, free);
   drop_shown_pose(editor);
   if (next != editor.document()) commit(editor, label, std::move(next));
 }
@@ -115,7 +117,7 @@ void show_changed(Editor& editor, const std::function<void(Clip&)>& change) {
   Clip clip = *on_rig->clip();
   change(clip);
   const ClipOnRig changed(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig);
-  show_pose(editor, changed.at(editor.document().frame));
+  show_pose(editor, constrained_pose(changed, unconstrained_pose(editor), editor.document().frame));
 }
 
 void put_weight(Clip& clip, const std::string& name, int frame, double weight) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the shown clip's constraints (core/motion/constraint.h). Each edit takes the document's pose from the clip
-// again, so that the constraints hold at once. A pose that no clip makes, because the rig was only posed by hand, is
-// keyed when the first constraint is added: else it would be lost.
+// Edits of the shown clip's constraints (core/motion/constraint.h). The changed constraints hold at once in the
+// document's pose, and what the user has changed in it by hand stays. A pose that no clip makes, because the rig was
+// only posed by hand, is keyed when the first constraint is added: else it would be lost.
 #pragma once
 
 #include <functional>

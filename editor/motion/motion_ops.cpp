@@ -5,7 +5,7 @@
 
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/form_dialog.h"
-#include "editor/motion/timeline.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/shown_pose.h"
 #include "editor/ui/icons.h"

@@ -215,21 +215,6 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
   commit(editor, label, std::move(next));
 }
 
-bool is_constrained(const Document& document) {
-  return document.shown_clip() && document.shown_clip()->constraints != nullptr;
-}
-
-Pose unconstrained_pose(Editor& editor) {
-  Pose pose = pose_of(editor.document());
-  const ClipOnRig* clip = clip_on_rig(editor);
-  if (!clip || !clip->constraints()) return pose;
-  const int frame = editor.document().frame;
-  const Pose made = clip->at(frame), free = clip->unconstrained_at(frame);
-  for (std::size_t bone = 0; bone < pose.rotation.size(); ++bone)
-    if (pose.rotation[bone] == made.rotation[bone]) pose.rotation[bone] = free.rotation[bone];
-  return pose;
-}
-
 void key_changes(Document& document, const Pose& before, const Pose& pose) {
   if (document.clips.empty()) document.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
   auto& shown = document.clips[static_cast<std::size_t>(document.clip)];

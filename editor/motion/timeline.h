@@ -29,6 +29,7 @@ enum class AtEnd { Stop, Loop, PingPong };
 struct OnionOutlines;
 struct MotionPaths;
 struct Graph;
+struct HandPoses;
 
 struct Timeline {
   // The previewed frame that replaces the document's frame while the user scrubs or the clip plays.
@@ -48,7 +49,8 @@ struct Timeline {
 
   bool auto_key = false;
   std::string constraint;  // name of the constraint that is unfolded in the panel, and that operators change
-  struct {                 // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
+  std::shared_ptr<HandPoses> by_hand;  // declared in constrained_pose.h; null: none
+  struct {  // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
     bool on = false;
     int count = 3, step = 10;
     std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: none yet
@@ -124,11 +126,6 @@ void add_clip(Document& document, Clip clip);
 // clip no longer has that time, the play head moves to the nearest frame of the clip.
 enum class PoseThen { FromClip, Stays };
 void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit);
-// Returns whether the clip has constraints that change the poses of motion and keys.
-bool is_constrained(const Document& document);
-// Returns the document's pose without what constraints have made of it. Rotations that the user has changed stay. Keys
-// store this pose: otherwise constraints that count only partly would count twice.
-Pose unconstrained_pose(Editor& editor);
 // Inserts keys at the document's frame for the bones in which `pose` differs from `before`.
 void key_changes(Document& document, const Pose& before, const Pose& pose);
 

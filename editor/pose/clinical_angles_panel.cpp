@@ -44,7 +44,7 @@ void take_change(Editor& editor, const ShownAngle& angle, bool changed, bool com
     stop_playing(editor);
     settle_frame(editor);
     edited = {angle.name, value};
-    show_pose(editor, angle.pose_at(value));
+    preview_pose(editor, angle.pose_at(value));
   }
   if (!committed || edited.name != angle.name) return;
   const double number = edited.value;

@@ -125,7 +125,7 @@ class Dragging final : public TransformTool {
     if (!is_root_) chain_ = static_cast<int>(std::round(fields[4].value));
   }
 
-  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  void show(Editor& editor) override { preview_pose(editor, pose(editor)); }
   void keep(Editor& editor) override {
     commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, pose(editor));
   }
@@ -193,7 +193,7 @@ class DraggingPole final : public TransformTool {
   void set(const std::vector<FormField>& fields) override { set_way(fields); }
 
   void show(Editor& editor) override {
-    show_pose(editor, pose(editor));
+    preview_pose(editor, pose(editor));
     editor.transform_settings->shown_pole = {armature_->bones[bone_].name, to_};
   }
   void keep(Editor& editor) override {

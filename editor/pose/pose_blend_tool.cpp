@@ -85,7 +85,7 @@ class Blending final : public TransformTool {
   }
   void set(const std::vector<FormField>& fields) override { number_.set(fields[0].value); }
 
-  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  void show(Editor& editor) override { preview_pose(editor, pose(editor)); }
   void keep(Editor& editor) override { commit_pose(editor, blend_.label, pose(editor)); }
 
   Blend blend_;

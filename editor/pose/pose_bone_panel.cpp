@@ -35,7 +35,7 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, cons
     stop_playing(editor);
     settle_frame(editor);
     edited = {name, value};
-    show_pose(editor, changed(value));
+    preview_pose(editor, changed(value));
   }
   if (!committed || edited.name != name) return;
   const double number = edited.value;

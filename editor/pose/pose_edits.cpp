@@ -8,7 +8,7 @@
 #include "core/rig/mirror.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/transform_settings.h"
-#include "editor/motion/timeline.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/pose/live_preview.h"
 #include "editor/shown/shown_result.h"
 #include "editor/shown/test_pose.h"
@@ -58,6 +58,8 @@ Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones) {
   return pose;
 }
 
+void preview_pose(Editor& editor, const Pose& pose) { show_pose(editor, held_by_constraints(editor, pose)); }
+
 void commit_pose(Editor& editor, const std::string& label, Pose pose) {
   commit_pose(editor, label, std::move(pose), editor.document());
 }
@@ -68,10 +70,14 @@ void commit_pose(Editor& editor, const std::string& label, Pose pose, Document n
   // change.
   if (editor.workspace == Workspace::Skin) *editor.trial = {.posed = true};
   if (const Pose before = pose_of(next); pose != before) {
-    const bool keys = editor.timeline->auto_key;
-    if (keys) key_changes(next, before, pose);
+    const bool constrains = is_constrained(editor.document());
+    const Pose free = unconstrained_pose(editor, pose);
+    if (editor.timeline->auto_key) key_changes(next, constrains ? unconstrained_pose(editor) : before, free);
+    if (constrains) {
+      pose = held_by_constraints(editor, pose);
+      remember_free_pose(editor, pose, free);
+    }
     next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
-    if (keys && is_constrained(next)) next.pose = pose_at_frame(next);  // constraints hold again at once
   }
   if (next != editor.document()) commit(editor, label, std::move(next));
 }

@@ -28,6 +28,8 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
 // is off.
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 
+// Shows the changed pose without an edit, as commit_pose() would commit it: constraints of the clip hold in it.
+void preview_pose(Editor& editor, const Pose& pose);
 // Commits the pose as one edit; does nothing when the document does not change.
 void commit_pose(Editor& editor, const std::string& label, Pose pose);
 //   next  the document to commit with the pose; it may contain other changes

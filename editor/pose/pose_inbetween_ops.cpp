@@ -5,7 +5,7 @@
 
 #include "core/pose/apply_pose_as_rest.h"
 #include "editor/context/document_edits.h"
-#include "editor/motion/timeline.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/ui/icons.h"
 

@@ -204,7 +204,7 @@ class Turning final : public TransformTool {
     if (lock_.axis != before.axis || lock_.space != before.space) by_ring_ = false;
   }
 
-  void show(Editor& editor) override { show_pose(editor, pose(editor)); }
+  void show(Editor& editor) override { preview_pose(editor, pose(editor)); }
   void keep(Editor& editor) override {
     const std::string what =
         bones_.size() == 1 ? armature_->bones[bones_[0]].name : std::to_string(bones_.size()) + " bones";

@@ -3,6 +3,7 @@
 #include "editor/motion/constraint_edits.h"
 
 #include "core/project/project_io.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/shown/shown_pose.h"
 #include "tests/editor/operator_proofs.h"
@@ -238,14 +239,23 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
     for (int bone = 0; bone < 5; ++bone)
       CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], shown.rotation[bone])) > 1 - 1e-12);
   }
-  // A rotation that the user sets is keyed as it is set, and the constraint then takes its share of it.
+  // What the user turns is turned below the constraint, which then takes its share: by its keys as without them.
   Pose raised = shown;
-  raised.rotation[kUpper] = glm::angleAxis(0.7, glm::dvec3(0, 1, 0));
+  raised.rotation[kUpper] = glm::angleAxis(0.7, glm::dvec3(0, 1, 0)) * shown.rotation[kUpper];
   commit_pose(*test.editor, "Raise", raised);
-  CHECK(pose_of(test.document()) == raised);
+  const Pose held = pose_of(test.document());
+  CHECK(held != shown);
   run(*test.editor, "motion.insert_key");
-  CHECK(shown_clip(*test.editor)->keys.bones.at("LeftArm").at(10) == raised.rotation[kUpper]);
-  CHECK(pose_of(test.document()) != raised);
+  for (int bone = 0; bone < 5; ++bone)
+    CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
+  // Undo brings back the pose before with what lies below it.
+  run(*test.editor, "edit.undo");
+  run(*test.editor, "edit.undo");
+  CHECK(pose_of(test.document()).rotation[kTrunk] == shown.rotation[kTrunk]);
+  run(*test.editor, "edit.redo");
+  run(*test.editor, "motion.insert_key");
+  for (int bone = 0; bone < 5; ++bone)
+    CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
 }
 
 TEST_CASE("constraint panel: a head is aimed by its face, and a project keeps and reopens what is constrained") {
@@ -272,14 +282,23 @@ TEST_CASE("constraint panel: a head is aimed by its face, and a project keeps an
   CHECK(*pose_at_frame(back) == aimed);
 }
 
-TEST_CASE("constraint panel: with auto-key a planted hand stays while the trunk is turned by hand") {
-  ArmEditor test({planted_hand()});
-  test.editor->timeline->auto_key = true;
-  Pose turned = pose_of(test.document());
-  turned.rotation[kTrunk] = glm::angleAxis(-0.8, glm::dvec3(0, 0, 1));
-  commit_pose(*test.editor, "Turn", turned);
-  CHECK(pose_of(test.document()).rotation[kTrunk] == turned.rotation[kTrunk]);
-  CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+TEST_CASE("constraint panel: a planted hand stays while the trunk is turned by hand, with and without auto-key") {
+  for (const bool auto_key : {false, true}) {
+    ArmEditor test({planted_hand()});
+    test.editor->timeline->auto_key = auto_key;
+    Pose turned = pose_of(test.document());
+    turned.rotation[kTrunk] = glm::angleAxis(-0.8, glm::dvec3(0, 0, 1));
+    preview_pose(*test.editor, turned);  // while a tool or slider is dragged
+    CHECK(glm::distance(tail_of(test.document(), shown_pose(*test.editor), kHand), tail_of(test.document(), kHand)) >
+          5);
+    const Pose dragged = shown_pose(*test.editor);
+    commit_pose(*test.editor, "Turn", turned);
+    CHECK(pose_of(test.document()) == dragged);
+    CHECK(pose_of(test.document()).rotation[kTrunk] == turned.rotation[kTrunk]);
+    CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+    CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").contains(10) == auto_key);
+    CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));  // only what was turned is keyed
+  }
 }
 
 TEST_CASE(

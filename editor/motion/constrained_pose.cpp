@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/constrained_pose.h"
+
+#include "core/motion/constraint_stack.h"
+#include "editor/shown/shown_pose.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::size_t kMostPoses = 64;
+
+}  // namespace
+
+bool is_constrained(const Document& document) {
+  return document.armature && document.shown_clip() && document.shown_clip()->constraints;
+}
+
+Pose unconstrained_pose(Editor& editor) {
+  Pose pose = pose_of(editor.document());
+  const ClipOnRig* clip = clip_on_rig(editor);
+  if (!clip || !clip->constraints()) return pose;
+  if (const auto& by_hand = editor.timeline->by_hand)
+    for (const HandPoses::One& one : by_hand->poses)
+      if (one.shown == pose) return one.free;
+  const int frame = editor.document().frame;
+  const Pose made = clip->at(frame), free = clip->unconstrained_at(frame);
+  for (std::size_t bone = 0; bone < pose.rotation.size(); ++bone)
+    if (pose.rotation[bone] == made.rotation[bone]) pose.rotation[bone] = free.rotation[bone];
+  return pose;
+}
+
+Pose unconstrained_pose(Editor& editor, const Pose& changed) {
+  if (!is_constrained(editor.document())) return changed;
+  const Pose before = pose_of(editor.document());
+  Pose free = unconstrained_pose(editor);
+  free.root_translation = changed.root_translation;
+  for (std::size_t bone = 0; bone < free.rotation.size(); ++bone) {
+    const glm::dquat &was = before.rotation[bone], &is = changed.rotation[bone];
+    if (is == was) continue;
+    free.rotation[bone] =
+        free.rotation[bone] == was ? is : glm::normalize(is * glm::conjugate(was) * free.rotation[bone]);
+  }
+  return free;
+}
+
+Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame) {
+  return clip.constraints() ? clip.constraints()->constrained(free, clip.clip()->keys, frame) : free;
+}
+
+Pose held_by_constraints(Editor& editor, const Pose& changed) {
+  if (!is_constrained(editor.document())) return changed;
+  const Pose free = unconstrained_pose(editor, changed);
+  return constrained_pose(*clip_on_rig(editor), free, editor.document().frame);
+}
+
+void remember_free_pose(Editor& editor, const Pose& shown, const Pose& free) {
+  auto& by_hand = editor.timeline->by_hand;
+  if (!by_hand) by_hand = std::make_shared<HandPoses>();
+  by_hand->poses.push_front({shown, free});
+  if (by_hand->poses.size() > kMostPoses) by_hand->poses.pop_back();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Constraints while the rig is posed by hand. The document's pose is the one in which they hold. Below it lies the free
+// pose, without them: the one of the clip's motion and keys, with the user's changes. A change of a bone by hand
+// changes the free pose, and the constraints then hold again: the trunk is turned, and a planted hand stays. Keys store
+// the free pose; otherwise constraints that count only partly would count twice.
+#pragma once
+
+#include <deque>
+
+#include "editor/motion/timeline.h"
+
+namespace limber::editor {
+
+// The free poses of the last poses that were made by hand. Undo brings these back.
+struct HandPoses {
+  struct One {
+    Pose shown, free;
+  };
+  std::deque<One> poses;
+};
+
+// Returns whether the shown clip has constraints that change the poses of motion and keys.
+bool is_constrained(const Document& document);
+// Returns the document's pose without what constraints have made of it.
+Pose unconstrained_pose(Editor& editor);
+// Returns the free pose after the user has changed the document's pose to `changed`: bones that constraints have turned
+// are turned by as much, the others as they are in `changed`.
+Pose unconstrained_pose(Editor& editor, const Pose& changed);
+// Returns `free` with the constraints of a clip; unchanged if it has none.
+Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
+// Returns the pose to show after the user has changed the document's pose to `changed`.
+Pose held_by_constraints(Editor& editor, const Pose& changed);
+// Remembers what the free pose of a pose of the document is.
+void remember_free_pose(Editor& editor, const Pose& shown, const Pose& free);
+
+}  // namespace limber::editor
