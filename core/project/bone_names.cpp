@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/project/bone_names.h"
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <type_traits>
@@ -67,22 +68,31 @@ Retarget prepared(const Clip& clip, const Armature& armature, const RetargetMap&
   return Retarget(*clip.motion, armature, map, settings);
 }
 
+void drop_weights(Clip& clip, const std::string& constraint) {
+  clip.keys.weights.erase(constraint);
+  clip.keys.weight_shapes.erase(constraint);
+}
+
+void take_list(Clip& clip, Constraints next) {
+  if (next.list.empty()) clip.constraints = nullptr;
+  else take(clip.constraints, std::move(next));
+}
+
 // A constraint whose bone or target was removed, and whose name another bone has taken, goes.
 void follow_constraints(Clip& clip, const Names& names) {
   if (!clip.constraints) return;
   Constraints next;
   for (Constraint constraint : clip.constraints->list) {
     const auto bone = names.now(constraint.bone), target = names.now(constraint.target);
-    if (bone && target) {
-      constraint.bone = *bone;
-      constraint.target = *target;
-      next.list.push_back(constraint);
-    } else {
-      clip.keys.weights.erase(constraint.name);
-      clip.keys.weight_shapes.erase(constraint.name);
+    if (!bone || !target) {
+      drop_weights(clip, constraint.name);
+      continue;
     }
+    constraint.bone = *bone;
+    constraint.target = *target;
+    next.list.push_back(constraint);
   }
-  take(clip.constraints, std::move(next));
+  take_list(clip, std::move(next));
 }
 
 void follow_motion(Clip& clip, const Armature& before, const Armature& after, const Names& names) {
@@ -109,6 +119,37 @@ void follow_motion(Clip& clip, const Armature& before, const Armature& after, co
   if (by_names && as_it_was && next == found) return;
   if (is.scale() != was.scale()) clip.retarget.scale = was.scale();
   for (const auto& [bone, source] : next.sources) clip.map.sources[bone] = source;
+}
+
+// The mirrored bones without a swapped counterpart.
+struct GoneOver {
+  std::map<std::string, std::string> names;  // old name -> new name
+
+  std::string now(const std::string& bone) const { return names.contains(bone) ? names.at(bone) : bone; }
+  // Returns whether a removed bone had the name that a mirrored bone takes.
+  bool is_left_over(const std::string& bone) const {
+    return !names.contains(bone) &&
+           std::any_of(names.begin(), names.end(), [&](const auto& name) { return name.second == bone; });
+  }
+};
+
+void carry_constraints(Clip& clip, const Armature& before, const Armature& after, const GoneOver& gone_over,
+                       const MirrorPlane& plane) {
+  if (!clip.constraints) return;
+  Constraints next;
+  for (Constraint constraint : clip.constraints->list) {
+    if (gone_over.is_left_over(constraint.bone) || gone_over.is_left_over(constraint.target)) {
+      drop_weights(clip, constraint.name);
+      continue;
+    }
+    const auto bone = before.find(constraint.bone);
+    if (bone && gone_over.names.contains(constraint.bone))
+      constraint = mirror_image(constraint, before.bones[*bone], after.bones[*bone], plane);
+    constraint.bone = gone_over.now(constraint.bone);
+    constraint.target = gone_over.now(constraint.target);
+    next.list.push_back(constraint);
+  }
+  take_list(clip, std::move(next));
 }
 
 }  // namespace
@@ -146,43 +187,27 @@ void follow_names(Document& document, const Armature& before, const Armature& af
 
 void follow_mirrored(Document& document, const Armature& before, const Armature& after, const std::vector<int>& bones) {
   const MirrorPlane plane = mirror_plane(before);
-  std::map<std::string, std::string> gone_over;  // mirrored bones without a swapped counterpart: old name -> new name
+  GoneOver gone_over;
   for (const int bone : bones) {
     const std::string& name = before.bones[bone].name;
     if (!mirrored_name(name) || (after.bones[bone].name != name && before.find(after.bones[bone].name))) continue;
-    gone_over[name] = after.bones[bone].name;
+    gone_over.names[name] = after.bones[bone].name;
     if (!document.pose) continue;
     Pose pose = *document.pose;
     pose.rotation[bone] = plane.rotation(pose.rotation[bone]);
     document.pose = std::make_shared<const Pose>(std::move(pose));
   }
-  std::set<std::string> taken;
-  for (const auto& [name, now] : gone_over) taken.insert(now);
   // What a removed bone left under a name that a mirrored bone takes is dropped, or the bone would inherit a part of
   // it.
   const auto carry = [&](auto& by_bone, const auto& in_the_mirror) {
     std::remove_reference_t<decltype(by_bone)> next;
     for (const auto& [bone, value] : by_bone) {
-      if (taken.contains(bone) && !gone_over.contains(bone)) continue;
-      const auto now = gone_over.find(bone);
-      next[now == gone_over.end() ? bone : now->second] = now == gone_over.end() ? value : in_the_mirror(value);
+      if (gone_over.is_left_over(bone)) continue;
+      next[gone_over.now(bone)] = gone_over.names.contains(bone) ? in_the_mirror(value) : value;
     }
     by_bone = std::move(next);
   };
   const auto turned = [&](const glm::dquat& rotation) { return plane.rotation(rotation); };
-  const auto name_now = [&](const std::string& bone) { return gone_over.contains(bone) ? gone_over.at(bone) : bone; };
-  const auto carry_constraints = [&](Clip& clip) {
-    if (!clip.constraints) return;
-    Constraints next = *clip.constraints;
-    for (Constraint& constraint : next.list) {
-      const auto bone = before.find(constraint.bone);
-      if (bone && gone_over.contains(constraint.bone))
-        constraint = mirror_image(constraint, before.bones[*bone], after.bones[*bone], plane);
-      constraint.bone = name_now(constraint.bone);
-      constraint.target = name_now(constraint.target);
-    }
-    take(clip.constraints, std::move(next));
-  };
   for (auto& part : document.clips) {
     Clip clip = *part;
     carry(clip.keys.bones, [&](std::map<int, glm::dquat> track) {
@@ -196,7 +221,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
       return shapes;
     });
     carry(clip.map.sources, [](const RetargetMap::Source& source) { return RetargetMap::Source{source.joint, {}}; });
-    carry_constraints(clip);
+    carry_constraints(clip, before, after, gone_over, plane);
     take(part, std::move(clip));
   }
   for (auto& part : document.poses) {
@@ -206,7 +231,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
   }
   const auto carry_names = [&](std::set<std::string>& bones) {
     std::set<std::string> next;
-    for (const std::string& bone : bones) next.insert(name_now(bone));
+    for (const std::string& bone : bones) next.insert(gone_over.now(bone));
     bones = std::move(next);
   };
   if (document.locks) {

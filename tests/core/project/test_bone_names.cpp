@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/motion/constraint.h"
 #include "core/rig/edit_armature.h"
 #include "core/rig/mirror.h"
 #include "tests/support/documents.h"
@@ -159,4 +160,45 @@ TEST_CASE("bone names: a bone does not inherit the keys of a removed one whose n
   rename(document, "Upper", "Removed");
   CHECK(!document.clips[0]->keys.bones.contains("Removed"));
   CHECK(document.clips[0]->keys.bones.contains("Lower"));
+}
+
+TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones as mirror images") {
+  Armature rig;
+  rig.bones = {{"Trunk", -1, {0, 0, 0}, {0, 0, 100}}, {"Arm.L", 0, {20, 0, 90}, {60, 5, 90}, 0.4}};
+  Document document;
+  document.armature = std::make_shared<const Armature>(rig);
+  Constraint aim{.name = "Aim", .kind = ConstraintKind::Aim, .bone = "Arm.L", .target = "Trunk", .place{50, -80, 40}};
+  Constraint limit{.name = "Limit", .kind = ConstraintKind::LimitRotation, .bone = "Arm.L"};
+  limit.minimum = {-0.1, -0.3, -0.5};
+  limit.maximum = {0.2, 0.4, 0.6};
+  const Constraint left_over{.name = "Old", .kind = ConstraintKind::Aim, .bone = "Arm.R"};
+  Clip clip{.name = "keys"};
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{aim, limit, left_over}});
+  clip.keys.weights = {{"Aim", {{0, 0.5}, {20, 1}}}, {"Old", {{3, 1}}}};
+  document.clips = {std::make_shared<const Clip>(clip)};
+
+  Document renamed = document;
+  rename(renamed, "Trunk", "Chest");
+  CHECK(renamed.clips[0]->constraints->list[0].target == "Chest");
+  CHECK(renamed.clips[0]->constraints->list.size() == 3);
+  rename(renamed, "Chest", "Arm.R");  // the name that a constraint of no bone has
+  CHECK(renamed.clips[0]->constraints->list.size() == 2);
+  CHECK(!renamed.clips[0]->keys.weights.contains("Old"));
+
+  const MirrorPlane plane = mirror_plane(rig);
+  Armature mirrored = rig;
+  mirrored.bones[1] = mirror_image(rig.bones[1], plane);
+  mirrored.bones[1].name = "Arm.R";
+  const Document before = document;
+  follow_mirrored(document, rig, mirrored, {1});
+  CHECK(document.clips[0]->constraints->list.size() == 2);
+  CHECK(document.clips[0]->keys.weights == std::map<std::string, std::map<int, double>>{{"Aim", {{0, 0.5}, {20, 1}}}});
+  // The constraints of a trunk that does not move do the same in the mirror.
+  const auto after = std::make_shared<const Armature>(mirrored);
+  for (const int frame : {0, 9, 20}) {
+    const glm::dquat was = ClipOnRig(before.clips[0], before.armature).at(frame).rotation[1];
+    const glm::dquat is = ClipOnRig(document.clips[0], after).at(frame).rotation[1];
+    CHECK(std::abs(was.w) < 0.999);
+    CHECK(std::abs(glm::dot(is, plane.rotation(was))) > 1 - 1e-9);
+  }
 }
