@@ -22,7 +22,7 @@ Pose unconstrained_pose(Editor& editor) {
   if (!clip || !clip->constraints()) return pose;
   if (const auto& by_hand = editor.timeline->by_hand)
     for (const HandPoses::One& one : by_hand->poses)
-      if (one.shown == pose) return one.free;
+      if (one.clip.lock() == clip->clip() && one.frame == editor.document().frame && one.shown == pose) return one.free;
   const int frame = editor.document().frame;
   const Pose made = clip->at(frame), free = clip->unconstrained_at(frame);
   for (std::size_t bone = 0; bone < pose.rotation.size(); ++bone)
@@ -54,10 +54,10 @@ Pose held_by_constraints(Editor& editor, const Pose& changed) {
   return constrained_pose(*clip_on_rig(editor), free, editor.document().frame);
 }
 
-void remember_free_pose(Editor& editor, const Pose& shown, const Pose& free) {
+void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free) {
   auto& by_hand = editor.timeline->by_hand;
   if (!by_hand) by_hand = std::make_shared<HandPoses>();
-  by_hand->poses.push_front({shown, free});
+  by_hand->poses.push_front({document.clips[static_cast<std::size_t>(document.clip)], document.frame, shown, free});
   if (by_hand->poses.size() > kMostPoses) by_hand->poses.pop_back();
 }
 

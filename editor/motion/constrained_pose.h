@@ -11,9 +11,11 @@
 
 namespace limber::editor {
 
-// The free poses of the last poses that were made by hand. Undo brings these back.
+// The free poses of the last poses that were made by hand, at a frame of a clip. Undo brings these back.
 struct HandPoses {
   struct One {
+    std::weak_ptr<const Clip> clip;
+    int frame;
     Pose shown, free;
   };
   std::deque<One> poses;
@@ -30,7 +32,7 @@ Pose unconstrained_pose(Editor& editor, const Pose& changed);
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 // Returns the pose to show after the user has changed the document's pose to `changed`.
 Pose held_by_constraints(Editor& editor, const Pose& changed);
-// Remembers what the free pose of a pose of the document is.
-void remember_free_pose(Editor& editor, const Pose& shown, const Pose& free);
+// Remembers what the free pose of a pose is, at the frame of the document's shown clip.
+void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);
 
 }  // namespace limber::editor

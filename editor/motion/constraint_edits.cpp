@@ -37,7 +37,7 @@ void change_clip(Editor& editor, const std::string& label, const std::function<v
   shown = std::make_shared<const Clip>(std::move(clip));
   const Pose held = constrained_pose(ClipOnRig(shown, next.armature, clip_on_rig(editor)), free, next.frame);
   next.pose = held == rest ? nullptr : std::make_shared<const Pose>(held);
-  remember_free_pose(editor, held, free);
+  remember_free_pose(editor, next, held, free);
   drop_shown_pose(editor);
   if (next != editor.document()) commit(editor, label, std::move(next));
 }

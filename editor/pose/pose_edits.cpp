@@ -75,7 +75,7 @@ void commit_pose(Editor& editor, const std::string& label, Pose pose, Document n
     if (editor.timeline->auto_key) key_changes(next, constrains ? unconstrained_pose(editor) : before, free);
     if (constrains) {
       pose = held_by_constraints(editor, pose);
-      remember_free_pose(editor, pose, free);
+      remember_free_pose(editor, next, pose, free);
     }
     next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
   }

@@ -258,6 +258,24 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
     CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
 }
 
+TEST_CASE("constraint panel: poses that a constraint makes alike in two frames keep what lies below each of them") {
+  Constraint stiff{.name = "Stiff", .kind = ConstraintKind::LimitRotation, .bone = "Trunk"};
+  stiff.minimum = stiff.maximum = glm::dvec3(0);
+  ArmEditor test({stiff}, kTrunk);
+  edit_clip(*test.editor, "Still arm", PoseThen::FromClip, [](Clip& clip) { clip.keys.bones.erase("LeftArm"); });
+  Pose turned = pose_of(test.document());
+  turned.rotation[kTrunk] = glm::angleAxis(0.3, glm::dvec3(1, 0, 0));
+  commit_pose(*test.editor, "Turn", turned);
+  const Pose held = pose_of(test.document());
+  CHECK(std::abs(held.rotation[kTrunk].w) > 1 - 1e-12);
+  go_to_frame(*test.editor, 30);
+  commit_pose(*test.editor, "Same", held);  // as at frame 10
+  test.editor->selection.bones = {kTrunk};
+  run(*test.editor, "motion.insert_key");
+  const glm::dquat keyed = shown_clip(*test.editor)->keys.bones.at("Trunk").at(30);
+  CHECK(std::abs(glm::dot(keyed, glm::angleAxis(1.0, glm::dvec3(0, 0, 1)))) > 1 - 1e-12);
+}
+
 TEST_CASE("constraint panel: a head is aimed by its face, and a project keeps and reopens what is constrained") {
   ArmEditor test;
   Document document = arm();
