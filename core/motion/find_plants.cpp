@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds when the feet of a motion stand (plants_of_feet()).
+// Finds when the feet of a motion stand (plants_of_feet()), and when limbs rest at a place (plants_at_rest()).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +13,7 @@ namespace {
 // A foot stands while it moves slower than kStanding, mm/s, and is less than kLifted above its lowest places, mm. Both
 // are for a leg of kUsualLeg and grow with its length.
 constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
+constexpr double kRest = 2;              // mm: how far a limb at rest is from its place, and moves in kShortestStance
 constexpr double kLowest = 0.02;         // share of the frames whose places are lower than what counts as the lowest
 constexpr double kShortestStance = 0.1;  // seconds; shorter ones are passed over
 constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
@@ -53,6 +54,34 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
   glm::dvec3 sum(0);
   for (int f = first; f <= last; ++f) sum += values[f];
   return sum / double(last - first + 1);
+}
+
+// Finds the spans in which a point rests, with the places.
+std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) {
+  const int last = static_cast<int>(places.size()) - 1;
+  const int window = std::max(1, static_cast<int>(std::lround(kShortestStance * rate)));
+  // At the ends of a rest the point is still to one side only.
+  const auto is_still = [&](int f) {
+    const auto moves = [&](int g) { return g < 0 || g > last ? 2 * kRest : glm::distance(places[f], places[g]); };
+    return std::min(moves(f - window), moves(f + window)) < kRest;
+  };
+  std::vector<Plant> rests;
+  for (int first = 0, end = 0; first <= last; first = end + 1) {
+    for (end = first; end <= last && is_still(end);) ++end;
+    int from = first, to = end - 1;
+    if (to - from < window) continue;
+    // The frames in the middle say where it rests; those in which it comes and leaves are left out.
+    const int quarter = (to - from + 1) / 4;
+    const glm::dvec3 place = mean_of(places, from + quarter, to - quarter);
+    const auto is_there = [&](int f) { return glm::distance(places[f], place) <= kRest; };
+    while (from <= to && !is_there(from)) ++from;
+    while (from <= to && !is_there(to)) --to;
+    // A limb that is slow for longer than it takes to come and to leave drifts.
+    bool stays = to - from >= window && from - first <= window && end - 1 - to <= window;
+    for (int f = from; f <= to; ++f) stays = stays && is_there(f);
+    if (stays) rests.push_back({.first = from, .last = to, .place = mean_of(places, from, to)});
+  }
+  return rests;
 }
 
 // Gives each plant of a foot's tip its place. While the joint stays in one place, the tip has one place too.
@@ -115,6 +144,24 @@ std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<Pl
     plants.insert(plants.end(), joints.begin(), joints.end());
     plants.insert(plants.end(), tips.begin(), tips.end());
   }
+  return plants;
+}
+
+std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                  const std::vector<Pose>& poses, double rate) {
+  std::vector<Plant> plants;
+  for (int l = 0; l < std::ssize(limbs); ++l)
+    for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip}) {
+      // Of a hand the tip is what holds on to something.
+      if (point == PlantPoint::Joint ? !limbs[l].is_leg : limbs[l].is_leg && limbs[l].end < 0) continue;
+      std::vector<glm::dvec3> places;
+      for (const Pose& pose : poses) places.push_back(place_of(limbs[l], point, armature, pose));
+      for (Plant rest : rests_of(places, rate)) {
+        rest.limb = l;
+        rest.point = point;
+        plants.push_back(rest);
+      }
+    }
   return plants;
 }
 

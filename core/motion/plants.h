@@ -48,6 +48,11 @@ glm::dvec3 place_of(const PlantedLimb& limb, PlantPoint point, const Armature& a
 std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                                   const std::vector<Pose>& poses, double rate);
 
+// Finds the spans of frames in which a foot or hand rests at one place to within two millimetres, such as those in
+// which it was planted or held before. Slow drifts and turning points of a swing are not among them.
+std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                  const std::vector<Pose>& poses, double rate);
+
 // Returns the plants without the frames in which the limb of `hold` is held, or comes there or leaves. A plant may fall
 // into two.
 std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& hold, int ease);

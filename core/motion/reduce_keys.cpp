@@ -40,9 +40,11 @@ using Curve = std::vector<SplineKey>;
 template <class Value>
 class Spline {
  public:
-  Spline(const std::vector<Value>& recorded, double error, Progress& progress)
+  //   allowed  the largest error at each frame
+  Spline(const std::vector<Value>& recorded, const std::vector<double>& allowed, Progress& progress)
       : recorded_(recorded),
-        error_(error),
+        allowed_(allowed),
+        least_(*std::min_element(allowed.begin(), allowed.end())),
         progress_(progress) {}
 
   Curve fitted() {
@@ -59,7 +61,7 @@ class Spline {
  private:
   struct Worst {
     int frame = -1;
-    double error = 0;
+    double error = 0;  // as a share of the error that is allowed at the frame
   };
 
   // Returns the speed at a frame as the difference of the frames beside it.
@@ -78,7 +80,8 @@ class Spline {
     if (progress_.cancelled()) throw Cancelled();
     Worst worst;
     for (int frame = keys[span].frame + 1; frame < keys[span + 1].frame; ++frame)
-      if (const double error = size_of_error(recorded_[frame], value(keys, span, frame)); error > worst.error)
+      if (const double error = size_of_error(recorded_[frame], value(keys, span, frame)) / allowed_[frame];
+          error > worst.error)
         worst = {frame, error};
     return worst;
   }
@@ -88,7 +91,7 @@ class Spline {
     Curve parted;
     for (int span = 0; span + 1 < std::ssize(keys_); ++span) {
       parted.push_back(keys_[span]);
-      if (const Worst worst = worst_of(keys_, span); worst.error > error_)
+      if (const Worst worst = worst_of(keys_, span); worst.error > 1)
         parted.push_back({worst.frame, difference_at(worst.frame)});
     }
     parted.push_back(keys_.back());
@@ -96,6 +99,9 @@ class Spline {
     keys_ = std::move(parted);
     return any;
   }
+
+  // Frames that must be kept more closely count more, so that a span of theirs is not bent by the next one.
+  double weight_of(int frame) const { return (least_ / allowed_[frame]) * (least_ / allowed_[frame]); }
 
   // Fits the speeds of the keys `low` to `high` to the frames of the spans beside them. A change of a key's speed moves
   // the curve, to first order, by the cubic Hermite functions of the two spans at the key.
@@ -114,15 +120,16 @@ class Spline {
           const double t = (frame - keys[span].frame) / frames, first = frames * t * (1 - t) * (1 - t),
                        second = -frames * t * t * (1 - t);
           const glm::dvec3 off = way_from(value(keys, span, frame), recorded_[frame]);
+          const double weight = weight_of(frame);
           if (i >= 0) {
-            own[i] += first * first;
-            wanted[i] += first * off;
+            own[i] += weight * first * first;
+            wanted[i] += weight * first * off;
           }
           if (i + 1 < count) {
-            own[i + 1] += second * second;
-            wanted[i + 1] += second * off;
+            own[i + 1] += weight * second * second;
+            wanted[i + 1] += weight * second * off;
           }
-          if (i >= 0 && i + 1 < count) with_next[i] += first * second;
+          if (i >= 0 && i + 1 < count) with_next[i] += weight * first * second;
         }
       }
       for (int i = 1; i < count; ++i) {
@@ -149,7 +156,7 @@ class Spline {
     near.insert(near.end(), keys_.begin() + key + 1 + std::ssize(fresh), keys_.begin() + end);
     fit(near, low - begin, high - begin);
     for (int span = 0; span + 1 < std::ssize(near); ++span)
-      if (worst_of(near, span).error > error_) return false;
+      if (worst_of(near, span).error > 1) return false;
     keys_.erase(keys_.begin() + key);
     std::copy(near.begin(), near.end(), keys_.begin() + begin);
     return true;
@@ -180,7 +187,8 @@ class Spline {
   }
 
   const std::vector<Value>& recorded_;
-  double error_;
+  const std::vector<double>& allowed_;
+  double least_;
   Progress& progress_;
   Curve keys_;
 };
@@ -195,8 +203,8 @@ struct ReducedTrack {
 
 // Returns the keys of the recorded values. A track that is `rest` at every frame has none.
 template <class Value>
-ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start, double error,
-                            Progress& progress) {
+ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start,
+                            const std::vector<double>& allowed, Progress& progress) {
   ReducedTrack<Value> track;
   const auto all_are = [&](const Value& value) {
     return std::all_of(recorded.begin(), recorded.end(),
@@ -207,7 +215,7 @@ ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& res
     track.keys[start] = recorded[0];
     return track;
   }
-  for (const SplineKey& key : Spline<Value>(recorded, error, progress).fitted()) {
+  for (const SplineKey& key : Spline<Value>(recorded, allowed, progress).fitted()) {
     track.keys[start + key.frame] = recorded[key.frame];
     track.shapes[start + key.frame] = {Interpolation::Bezier, HandleKind::Aligned, key.speed, key.speed};
   }
@@ -218,10 +226,19 @@ ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& res
 
 }  // namespace
 
-ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
-                            const ReduceSettings& settings, Progress& progress) {
+AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, const ReduceSettings& settings) {
   if (!(settings.degrees > 0) || !(settings.mm > 0))
     throw Error("the error must be positive", "keys", "allow at least a small error");
+  return {std::vector(armature.bones.size(), std::vector(frames, settings.degrees)), std::vector(frames, settings.mm)};
+}
+
+ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
+                            const ReduceSettings& settings, Progress& progress) {
+  return reduced_within(armature, poses, start, allowed_everywhere(armature, poses.size(), settings), progress);
+}
+
+ReducedKeys reduced_within(const Armature& armature, const std::vector<Pose>& poses, int start,
+                           const AllowedErrors& allowed, Progress& progress) {
   ReducedKeys result;
   if (poses.empty()) return result;
   std::vector<ReducedTrack<glm::dquat>> tracks(armature.bones.size());
@@ -230,7 +247,7 @@ ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& p
       if (progress.cancelled()) throw Cancelled();
       std::vector<glm::dquat> recorded;
       for (const Pose& pose : poses) recorded.push_back(pose.rotation[bone]);
-      tracks[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start, settings.degrees, progress);
+      tracks[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start, allowed.degrees[bone], progress);
     }
   });
   for (std::size_t bone = 0; bone < tracks.size(); ++bone) {
@@ -246,7 +263,7 @@ ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& p
   }
   std::vector<glm::dvec3> shift;
   for (const Pose& pose : poses) shift.push_back(pose.root_translation);
-  ReducedTrack<glm::dvec3> root = reduced(shift, glm::dvec3(0), start, settings.mm, progress);
+  ReducedTrack<glm::dvec3> root = reduced(shift, glm::dvec3(0), start, allowed.mm, progress);
   result.count += std::ssize(root.keys);
   result.most_mm = root.error;
   result.keys.root = std::move(root.keys);

@@ -33,4 +33,13 @@ struct ReducedKeys {
 ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
                             const ReduceSettings& settings, Progress& progress);
 
+// The largest errors that are allowed at each frame; all are positive.
+struct AllowedErrors {
+  std::vector<std::vector<double>> degrees;  // for each bone and frame
+  std::vector<double> mm;                    // of the body's shift, for each frame
+};
+AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, const ReduceSettings& settings);
+ReducedKeys reduced_within(const Armature& armature, const std::vector<Pose>& poses, int start,
+                           const AllowedErrors& allowed, Progress& progress);
+
 }  // namespace limber

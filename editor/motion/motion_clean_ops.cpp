@@ -76,25 +76,39 @@ std::string mm_text(double mm) {
   return text;
 }
 
-void tell_of_plants(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& before,
-                    const CleanedMotion& cleaned, bool holds, Result& result) {
+void tell_of_hold(const Armature& rig, const std::vector<PlantedLimb>& limbs, const Plant& hold, Result& result) {
+  const double off = error_of(hold, rig, limbs, result.poses).from_place;
+  result.is_short = off > kOff;
+  result.detail = "It is " + mm_text(off) + " off its place at most" + (result.is_short ? ": it does not reach" : "");
+}
+
+void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& before,
+                  const std::vector<Plant>& feet, Result& result) {
   double slid = 0, slides = 0, off = 0;
-  for (const Plant& plant : cleaned.plants) {
+  for (const Plant& plant : feet) {
     slid = std::max(slid, error_of(plant, rig, limbs, before).slide);
-    const PlantError error = error_of(plant, rig, limbs, cleaned.poses);
+    const PlantError error = error_of(plant, rig, limbs, result.poses);
     slides = std::max(slides, error.slide);
     off = std::max(off, error.from_place);
   }
   result.is_short = off > kOff;
-  if (holds) {
-    result.detail = "It is " + mm_text(off) + " off its place at most";
-  } else if (cleaned.plants.empty()) {
+  if (feet.empty()) {
     result.detail = "No foot was found to stand: none is low and slow for a tenth of a second";
   } else {
-    result.detail = "Feet stand " + std::to_string(cleaned.plants.size()) + " times; there they slid by up to " +
-                    mm_text(slid) + ", and now by " + mm_text(slides);
+    result.detail = "Feet stand " + std::to_string(feet.size()) + " times; there they slid by up to " + mm_text(slid) +
+                    ", and now by " + mm_text(slides);
   }
-  if (result.is_short) result.detail += holds ? ": it does not reach" : "; a leg is too short for its place";
+  if (result.is_short) result.detail += "; a leg is too short for its place";
+}
+
+// Returns what has to stay in place because it rests there in the recorded poses: a hand that was held before, when the
+// body is moved with its feet or what moves fast is filtered out, and likewise feet when one limb is held.
+std::vector<Plant> rests_to_keep(const Cleaning& cleaning, const Armature& rig, const std::vector<PlantedLimb>& limbs,
+                                 const std::vector<Pose>& recorded, double rate) {
+  std::vector<Plant> rests = plants_at_rest(rig, limbs, recorded, rate);
+  if (cleaning.plants_feet) std::erase_if(rests, [&](const Plant& plant) { return limbs[plant.limb].is_leg; });
+  if (cleaning.hold) rests = without_held(rests, *cleaning.hold, static_cast<int>(std::lround(cleaning.ease * rate)));
+  return rests;
 }
 
 Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Progress& progress) {
@@ -107,12 +121,9 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
   }
   const std::vector<Pose> smooth = cleaning.smooth > 0 ? smoothed(recorded, rate, cleaning.smooth) : recorded;
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
-  std::vector<Plant> holds;
-  if (cleaning.hold) {
-    Plant& hold = *cleaning.hold;
-    if (cleaning.stays_where_it_is) hold.place = place_of(limbs[hold.limb], hold.point, rig, smooth[hold.first]);
-    holds.push_back(hold);
-  }
+  if (cleaning.hold && cleaning.stays_where_it_is)
+    cleaning.hold->place =
+        place_of(limbs[cleaning.hold->limb], cleaning.hold->point, rig, smooth[cleaning.hold->first]);
   Result result;
   if (cleaning.gap) {
     result.poses = with_gap_closed(smooth, cleaning.gap->first, cleaning.gap->last);
@@ -121,9 +132,13 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
     return result;
   }
   if (cleaning.plants_feet || cleaning.hold) {
+    std::vector<Plant> holds = rests_to_keep(cleaning, rig, limbs, recorded, rate);
+    if (cleaning.hold) holds.push_back(*cleaning.hold);
     CleanedMotion cleaned = clean_motion(rig, limbs, smooth, rate, cleaning.plants_feet, holds, cleaning.ease);
-    tell_of_plants(rig, limbs, recorded, cleaned, cleaning.hold.has_value(), result);
     result.poses = std::move(cleaned.poses);
+    cleaned.plants.resize(cleaned.plants.size() - holds.size());
+    if (cleaning.hold) tell_of_hold(rig, limbs, *cleaning.hold, result);
+    else tell_of_feet(rig, limbs, recorded, cleaned.plants, result);
   } else {
     result.poses = smooth;
   }
@@ -185,8 +200,8 @@ void ask_cleaning(Editor& editor) {
        "Clean",
        {number_of("Smooth", "Filters out movement faster than this; 6 Hz suits walking. 0: no filter.",
                   std::min(6.0, most), 0, most, "%.1f", "Hz"),
-        choice_of("Feet", "Whether feet that stand on the ground are kept in place.", {"As they are", "Planted"},
-                  feet ? 1 : 0),
+        choice_of("Feet", "Whether feet that stand on the ground, and hands that rest at a place, are kept there.",
+                  {"As they are", "Planted"}, feet ? 1 : 0),
         ease_field(), becomes_field(Becomes::NewClip)},
        [feet, cleaning_of](const Editor& e, const std::vector<FormField>& fields) {
          require_frames(e);
@@ -204,43 +219,87 @@ void ask_cleaning(Editor& editor) {
        [cleaning_of](Editor& e, const std::vector<FormField>& fields) { start_cleaning(e, cleaning_of(fields)); }}));
 }
 
+// Reads "x, y, z". Throws NotYet if the text is something else.
+glm::dvec3 position_in(const std::string& text) {
+  glm::dvec3 position(0);
+  int end = 0;
+  const bool three =
+      std::sscanf(text.c_str(), " %lf%*[ ,;]%lf%*[ ,;]%lf %n", &position.x, &position.y, &position.z, &end) == 3;
+  const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+  if (!three || end != std::ssize(text) || !finite) throw NotYet{"Type the position as x, y, z in mm: 120, -350, 1020"};
+  return position;
+}
+std::string position_text(const glm::dvec3& position) {
+  char text[96];
+  std::snprintf(text, sizeof text, "%.1f, %.1f, %.1f", position.x, position.y, position.z);
+  return text;
+}
+
+// The fields of the form that holds a limb.
+enum HoldField { kLimb, kFrom, kTo, kPlace, kPosition, kEase, kResult };
+enum class HoldPlace { WhereItIs, CrossHair, Position };
+
+glm::dvec3 hold_position(const Editor& editor, const std::vector<FormField>& fields) {
+  return static_cast<HoldPlace>(fields[kPlace].chosen) == HoldPlace::Position ? position_in(fields[kPosition].text)
+                                                                              : editor.views->cross_hair;
+}
+
+std::string hold_outcome(const Editor& editor, const std::vector<FormField>& fields) {
+  require_frames(editor);
+  const int first = static_cast<int>(fields[kFrom].value), last = static_cast<int>(fields[kTo].value);
+  if (last < first) throw NotYet{"The last frame comes before the first one."};
+  const auto limb = static_cast<std::size_t>(fields[kLimb].chosen);
+  std::string words = "Holds the " + fields[kLimb].choices[limb] + " in " + frames_text(first, last) + ".";
+  if (!shown_clip(editor)->keys.empty()) words += " Keys of the clip become part of the motion.";
+  if (static_cast<HoldPlace>(fields[kPlace].chosen) == HoldPlace::WhereItIs) return words;
+  const glm::dvec3 wanted = hold_position(editor, fields);
+  const ClipOnRig* clip = editor.timeline->prepared.get();
+  if (!clip || clip->clip().get() != shown_clip(editor) || !clip->problem().empty()) return words;
+  const Armature& rig = *clip->armature();
+  const glm::dvec3 place = place_of(planted_limbs(rig)[limb], PlantPoint::Tip, rig, clip->at(first));
+  return words + " In the first one it is " + mm_text(glm::distance(place, wanted)) + " from there.";
+}
+
+void hold_limb(Editor& editor, const std::vector<FormField>& fields) {
+  const int low = playing_range(editor).low;
+  Cleaning cleaning{.label = "Hold limb", .made = " held"};
+  cleaning.hold = Plant{.limb = fields[kLimb].chosen,
+                        .first = static_cast<int>(std::lround(fields[kFrom].value)) - low,
+                        .last = static_cast<int>(std::lround(fields[kTo].value)) - low,
+                        .place = hold_position(editor, fields)};
+  cleaning.stays_where_it_is = static_cast<HoldPlace>(fields[kPlace].chosen) == HoldPlace::WhereItIs;
+  cleaning.ease = fields[kEase].value;
+  cleaning.becomes = static_cast<Becomes>(fields[kResult].chosen);
+  start_cleaning(editor, cleaning);
+}
+
 void ask_hold(Editor& editor) {
+  const Armature& rig = *editor.document().armature;
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   std::vector<std::string> names;
-  for (const PlantedLimb& limb : planted_limbs(*editor.document().armature)) names.push_back(limb.name);
+  for (const PlantedLimb& limb : limbs) names.push_back(limb.name);
   const auto [low, high] = playing_range(editor);
   const int frame = std::clamp(shown_frame(editor), low, high);
   const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 2)));
-  editor.open_dialog(
-      make_form({"Hold a hand or foot",
-                 "Keeps the tip of a limb in place for some frames; elbow or knee bend so that it does.",
-                 "Hold",
-                 {choice_of("Limb", "The hand or foot that is held.", names, static_cast<int>(names.size()) - 1),
-                  number_of("From frame", "The first frame in which it is held.", frame, low, high, "%.0f"),
-                  number_of("To frame", "The last frame in which it is held.", until, low, high, "%.0f"),
-                  choice_of("Place",
-                            "Where it is held: where it is in the first of these frames, or at the cross-hair of the "
-                            "slices.",
-                            {"Where it is", "Cross-hair"}),
-                  ease_field(), becomes_field(Becomes::SameClip)},
-                 [names](const Editor& e, const std::vector<FormField>& fields) {
-                   require_frames(e);
-                   if (fields[2].value < fields[1].value) throw NotYet{"The last frame comes before the first one."};
-                   const int first = static_cast<int>(fields[1].value), last = static_cast<int>(fields[2].value);
-                   return "Holds the " + names[static_cast<std::size_t>(fields[0].chosen)] + " in " +
-                          frames_text(first, last) + ".";
-                 },
-                 [](Editor& e, const std::vector<FormField>& fields) {
-                   const int low = playing_range(e).low;
-                   Cleaning cleaning{.label = "Hold limb", .made = " held"};
-                   cleaning.hold = Plant{.limb = fields[0].chosen,
-                                         .first = static_cast<int>(std::lround(fields[1].value)) - low,
-                                         .last = static_cast<int>(std::lround(fields[2].value)) - low,
-                                         .place = e.views->cross_hair};
-                   cleaning.stays_where_it_is = fields[3].chosen == 0;
-                   cleaning.ease = fields[4].value;
-                   cleaning.becomes = static_cast<Becomes>(fields[5].chosen);
-                   start_cleaning(e, cleaning);
-                 }}));
+  const ClipOnRig* clip = clip_on_rig(editor);
+  const glm::dvec3 position = clip && clip->problem().empty()
+                                  ? place_of(limbs.back(), PlantPoint::Tip, rig, clip->at(frame))
+                                  : editor.views->cross_hair;
+  editor.open_dialog(make_form(
+      {"Hold a hand or foot",
+       "Keeps the tip of a limb in place for some frames; elbow or knee bend so that it does.",
+       "Hold",
+       {choice_of("Limb", "The hand or foot that is held.", names, static_cast<int>(names.size()) - 1),
+        number_of("From frame", "The first frame in which it is held.", frame, low, high, "%.0f"),
+        number_of("To frame", "The last frame in which it is held.", until, low, high, "%.0f"),
+        choice_of("Place",
+                  "Where it is held: where it is in the first of these frames, at the cross-hair of the slices, or at "
+                  "the position that is typed below.",
+                  {"Where it is", "Cross-hair", "Position"}),
+        text_of("Position", "x, y and z in mm, LPS: for Place = Position.", position_text(position)), ease_field(),
+        becomes_field(Becomes::SameClip)},
+       hold_outcome,
+       hold_limb}));
 }
 
 std::string needs_gap(const Editor& editor) {

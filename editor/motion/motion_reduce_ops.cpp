@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "core/motion/reduce_keys.h"
+#include "core/motion/reduce_planted.h"
 #include "editor/context/background_task.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
@@ -22,13 +22,29 @@ std::string needs_clip_and_rig(const Editor& editor) {
   return editor.document().armature ? "" : "Import a rig first";
 }
 
-std::string summary_of(const ReducedKeys& reduced) {
+struct Wanted {
+  ReduceSettings settings;
+  double plant_mm = 0;  // 0: feet and hands go as their bones do
+  bool is_new = true;
+};
+
+struct Reduced {
+  PlantedKeys keys;
+  std::size_t plants = 0;  // number of times that a foot stands or a hand rests
+};
+
+std::string summary_of(const Reduced& result) {
+  const ReducedKeys& reduced = result.keys.reduced;
   char text[160];
   std::snprintf(text, sizeof text, "At most %.2g\u00b0 off%s%.60s", reduced.most_degrees,
                 reduced.worst_bone.empty() ? "" : ", in ", reduced.worst_bone.c_str());
   std::string words = text;
   if (!reduced.keys.root.empty()) {
     std::snprintf(text, sizeof text, "; the body's shift at most %.2g mm", reduced.most_mm);
+    words += text;
+  }
+  if (result.plants > 0) {
+    std::snprintf(text, sizeof text, "; feet and hands that stay are at most %.2g mm off", result.keys.most_off);
     words += text;
   }
   return words;
@@ -43,17 +59,27 @@ Clip keyed_clip(const Clip& source, const ReducedKeys& reduced, int first, int l
 }
 
 void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-             const FrameRange& range, bool is_new, const ReducedKeys& reduced) {
+             const FrameRange& range, bool is_new, const Reduced& result) {
+  const ReducedKeys& reduced = result.keys.reduced;
   take_in_clip(editor, source, rig, "Reduce to keys",
                keyed_clip(*source, reduced, range.low, range.high, is_new ? source->name + " keys" : source->name),
                is_new);
   editor.messages.ok(std::to_string(range.high - range.low + 1) + " frames became " + std::to_string(reduced.count) +
                          " keys of " + std::to_string(reduced.keys.bones.size()) +
                          (reduced.keys.bones.size() == 1 ? " bone" : " bones"),
-                     summary_of(reduced));
+                     summary_of(result));
 }
 
-void start_reducing(Editor& editor, const ReduceSettings& settings, bool is_new) {
+Reduced reduce(const Armature& rig, const std::vector<Pose>& poses, double rate, int start, const Wanted& wanted,
+               Progress& progress) {
+  if (wanted.plant_mm <= 0) return {{reduced_to_keys(rig, poses, start, wanted.settings, progress)}};
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
+  const std::vector<Plant> plants = resting_limbs(rig, limbs, poses, rate);
+  return {reduced_with_plants(rig, limbs, poses, start, wanted.settings, plants, wanted.plant_mm, progress),
+          plants.size()};
+}
+
+void start_reducing(Editor& editor, const Wanted& wanted) {
   stop_playing(editor);
   const FrameRange range = playing_range(editor);
   const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
@@ -66,12 +92,23 @@ void start_reducing(Editor& editor, const ReduceSettings& settings, bool is_new)
       poses.push_back(clip.at(frame));
     }
     const auto reduced =
-        std::make_shared<const ReducedKeys>(reduced_to_keys(*rig, poses, range.low, settings, progress));
-    return [=](Editor& e) { take_in(e, source, rig, range, is_new, *reduced); };
+        std::make_shared<const Reduced>(reduce(*rig, poses, source->rate, range.low, wanted, progress));
+    return [=](Editor& e) { take_in(e, source, rig, range, wanted.is_new, *reduced); };
   });
 }
 
+std::string outcome_of(const Editor& e) {
+  if (!shown_clip(e) || !e.document().armature) throw Error("there is no clip any more", "reduce", "open this again");
+  const auto [first, last] = playing_range(e);
+  if (std::int64_t{last} - first >= kMostFrames)
+    throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
+                "set a shorter range");
+  return "Reduces frames " + std::to_string(first) + " to " + std::to_string(last) +
+         ", with the clip's keys. The result has keys and no recorded motion.";
+}
+
 void ask_reducing(Editor& editor) {
+  const bool has_limbs = !planted_limbs(*editor.document().armature).empty();
   editor.open_dialog(make_form(
       {"Reduce to keys",
        "Makes few keys of the frames that play, joined by Bezier curves, to be edited in the graph editor.",
@@ -80,20 +117,16 @@ void ask_reducing(Editor& editor) {
                   0.01, 45, "%.2f", "\u00b0"),
         number_of("Shift error", "The body's shift differs by no more than this, in any frame.", 2, 0.01, 1000, "%.2f",
                   "mm"),
+        number_of("Planted feet",
+                  "Feet that stand and hands that rest are off their places by no more than this; the bones that carry "
+                  "them get more keys. 0: they go as their bones do, and may slide.",
+                  has_limbs ? 1 : 0, 0, has_limbs ? 1000 : 0, "%.2f", "mm"),
         choice_of("Result", "Whether the keys become a clip of their own or replace the shown clip.",
                   {"New clip", "Same clip"})},
-       [](const Editor& e, const std::vector<FormField>&) {
-         if (!shown_clip(e) || !e.document().armature)
-           throw Error("there is no clip any more", "reduce", "open this again");
-         const auto [first, last] = playing_range(e);
-         if (std::int64_t{last} - first >= kMostFrames)
-           throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
-                       "set a shorter range");
-         return "Reduces frames " + std::to_string(first) + " to " + std::to_string(last) +
-                ", with the clip's keys. The result has keys and no recorded motion.";
-       },
+       [](const Editor& e, const std::vector<FormField>&) { return outcome_of(e); },
        [](Editor& e, const std::vector<FormField>& fields) {
-         start_reducing(e, {.degrees = fields[0].value, .mm = fields[1].value}, fields[2].chosen == 0);
+         start_reducing(e,
+                        {{.degrees = fields[0].value, .mm = fields[1].value}, fields[2].value, fields[3].chosen == 0});
        }}));
 }
 

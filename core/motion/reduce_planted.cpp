@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/reduce_planted.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/motion/key_curve.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kMostRounds = 12;          // each makes the allowed errors smaller by a third at least
+constexpr double kSmallestAngle = 1e-4;  // degrees: moves a foot by microns
+constexpr double kSmallestShift = 1e-3;  // mm
+
+// Returns the poses that the keys give at the frames `start` to `start` + `count` - 1.
+std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int start, std::size_t count) {
+  std::vector<Pose> poses(count, rest_pose(armature));
+  for (std::size_t f = 0; f < count; ++f) {
+    const double frame = start + static_cast<double>(f);
+    for (std::size_t bone = 0; bone < armature.bones.size(); ++bone)
+      if (const auto found = keys.bones.find(armature.bones[bone].name); found != keys.bones.end())
+        poses[f].rotation[bone] = value_at(found->second, shapes_of(keys, armature.bones[bone].name), frame);
+    if (!keys.root.empty()) poses[f].root_translation = value_at(keys.root, keys.root_shapes, frame);
+  }
+  return poses;
+}
+
+int carrier_of(const PlantedLimb& limb) { return limb.end >= 0 ? limb.end : limb.lower; }
+
+// The recorded places of a plant's point in its frames.
+std::vector<glm::dvec3> places_of(const Plant& plant, const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                  const std::vector<Pose>& poses) {
+  std::vector<glm::dvec3> places;
+  for (int f = plant.first; f <= plant.last; ++f)
+    places.push_back(place_of(limbs[plant.limb], plant.point, armature, poses[f]));
+  return places;
+}
+
+double largest_distance(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, glm::distance(a[i], b[i]));
+  return most;
+}
+
+// Lowers the errors that are allowed to the bones that carry a plant's point in its frames, and to the shift, to what
+// moves the point by `mm` in all, if the errors have chance directions.
+void tighten(AllowedErrors& allowed, const Plant& plant, const Armature& armature,
+             const std::vector<PlantedLimb>& limbs, const Pose& pose, double mm) {
+  const glm::dvec3 point = place_of(limbs[plant.limb], plant.point, armature, pose);
+  const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
+  std::vector<std::pair<int, double>> carriers;  // with their lever arms, mm
+  for (int bone = carrier_of(limbs[plant.limb]); bone >= 0; bone = armature.bones[bone].parent) {
+    const double arm = glm::distance(posed[bone] * armature.bones[bone].head, point);
+    if (arm > 1e-6) carriers.emplace_back(bone, arm);
+  }
+  const double share = mm / std::sqrt(static_cast<double>(carriers.size() + 1));
+  for (int f = plant.first; f <= plant.last; ++f) {
+    for (const auto& [bone, arm] : carriers)
+      allowed.degrees[bone][f] =
+          std::min(allowed.degrees[bone][f], std::max(kSmallestAngle, glm::degrees(share / arm)));
+    allowed.mm[f] = std::min(allowed.mm[f], std::max(kSmallestShift, share));
+  }
+}
+
+}  // namespace
+
+std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                 const std::vector<Pose>& poses, double rate) {
+  std::vector<Plant> plants = plants_of_feet(armature, limbs, poses, rate);
+  for (const Plant& plant : plants_at_rest(armature, limbs, poses, rate))
+    if (!limbs[plant.limb].is_leg) plants.push_back(plant);
+  return plants;
+}
+
+PlantedKeys reduced_with_plants(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                const std::vector<Pose>& poses, int start, const ReduceSettings& settings,
+                                const std::vector<Plant>& plants, double plant_mm, Progress& progress) {
+  if (!(plant_mm > 0)) throw Error("the error must be positive", "planted feet", "allow at least a small error");
+  AllowedErrors allowed = allowed_everywhere(armature, poses.size(), settings);
+  std::vector<double> aims(plants.size(), plant_mm);
+  std::vector<std::vector<glm::dvec3>> recorded;
+  for (const Plant& plant : plants) recorded.push_back(places_of(plant, armature, limbs, poses));
+  PlantedKeys result;
+  for (int round = 0;; ++round) {
+    result.reduced = reduced_within(armature, poses, start, allowed, progress);
+    const std::vector<Pose> played = poses_of_keys(armature, result.reduced.keys, start, poses.size());
+    result.most_off = 0;
+    bool any = false;
+    for (std::size_t i = 0; i < plants.size(); ++i) {
+      const double off = largest_distance(recorded[i], places_of(plants[i], armature, limbs, played));
+      result.most_off = std::max(result.most_off, off);
+      if (off <= plant_mm) continue;
+      any = true;
+      if (round > 0) aims[i] *= std::min(0.67, 0.9 * plant_mm / off);
+      tighten(allowed, plants[i], armature, limbs, poses[plants[i].first], aims[i]);
+    }
+    if (!any || round == kMostRounds) return result;
+  }
+}
+
+}  // namespace limber

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Makes few keys of many frames, and keeps feet and hands where they stay. A small error of each bone on the way from
+// the pelvis to a foot adds up to a centimetre at the foot, so feet that stood would slide again. In the frames in
+// which a foot stands or a hand is held, the bones that carry it are therefore kept more closely, until it is within a
+// distance of its recorded place; elsewhere the errors of reduce_keys.h hold.
+#pragma once
+
+#include "core/motion/plants.h"
+#include "core/motion/reduce_keys.h"
+
+namespace limber {
+
+// Finds the feet that stand (plants_of_feet()), and the hands that rest at a place (plants_at_rest()).
+std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                 const std::vector<Pose>& poses, double rate);
+
+struct PlantedKeys {
+  ReducedKeys reduced;
+  double most_off = 0;  // largest distance of a planted point from its recorded place, in the frames of its plant, mm
+};
+
+// Returns keys as reduced_to_keys() does, with the points of the plants within `plant_mm` of where they are in the
+// poses.
+//   limbs   from planted_limbs()
+//   plants  with frames counted from the first pose
+PlantedKeys reduced_with_plants(const Armature& armature, const std::vector<PlantedLimb>& limbs,
+                                const std::vector<Pose>& poses, int start, const ReduceSettings& settings,
+                                const std::vector<Plant>& plants, double plant_mm, Progress& progress);
+
+}  // namespace limber
