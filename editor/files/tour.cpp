@@ -46,6 +46,10 @@ bool resampled(const Editor& editor, const TourStart& start) {
   return editor.document().results.size() > start.results;
 }
 
+bool in_skin(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Skin; }
+bool in_pose(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Pose; }
+bool in_resample(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Resample; }
+
 TourStart start_of(const Editor& editor) {
   return {editor.views->body.camera.world_from_view,
           editor.views->cross_hair,
@@ -86,10 +90,17 @@ const std::vector<TourStep>& tour_steps() {
       {"Let tissue follow the bones",
        "Click Compute. It spreads weights from the bones through the tissue around them while you go on working.",
        "Steps/Skin/Compute", "skin.heat", weighted},
+      {"See the weights",
+       "In the Skin workspace colours show how far the selected bone takes tissue along. Its brushes change that.",
+       "top/Skin", "workspace.skin", in_skin},
+      {"Pose the body", "In the Pose workspace the body follows its bones, and motions play on them.", "top/Pose",
+       "workspace.pose", in_pose},
       {"Bend the elbow", "Flex turns a bone about its joint by an angle in degrees. Select Forearm.",
        "Steps/Pose/Flex...", "pose.flex", bent},
       {"Resample", "Writes the posed arm as a new label volume, with a report of what changed.",
        "Steps/Resample/Resample", "resample.run", resampled},
+      {"See the result", "The Resample workspace shows the posed volume, and what changed in it.", "top/Resample",
+       "workspace.resample", in_resample},
   };
   return steps;
 }

@@ -69,6 +69,9 @@ void ask_flex(Editor& editor) {
     next.pose = std::make_shared<const Pose>(std::move(pose));
     const std::string name = next.armature->bones[fields[0].chosen].name;
     e.history.commit("Flex " + name, std::move(next));
+    // The Rig workspace shows the body at rest, so nothing there tells that the bone has turned.
+    if (e.workspace == Workspace::Rig)
+      e.messages.ok(name + " is turned", "The Pose workspace shows it", "workspace.pose");
     e.touch();
   };
   editor.open_dialog(

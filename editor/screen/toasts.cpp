@@ -137,6 +137,19 @@ bool points_at_toasts(const Editor& editor) {
   });
 }
 
+// Returns where the lower end of a toast has to be so that the toast does not cover the tour's bubble or the fields of
+// the last operation, which the user may need at the same time.
+float free_bottom(const Editor& editor, const Rect& toast) {
+  float bottom = toast.high.y;
+  for (const Widget& widget : editor.widgets.widgets()) {
+    if (widget.name != "tour/box" && !widget.name.ends_with("last operation/box")) continue;
+    const Rect kept = widget.rect.grown(editor.look.px(kGap));
+    const Rect moved{{toast.low.x, bottom - toast.height()}, {toast.high.x, bottom}};
+    if (moved.overlaps(kept)) bottom = kept.low.y;
+  }
+  return bottom;
+}
+
 }  // namespace
 
 void draw_toasts(Editor& editor) {
@@ -166,6 +179,7 @@ void draw_toasts(Editor& editor) {
     const std::size_t at = seen[shown];
     const Toast toast = toasts[at];  // a copy, because a button of this toast may add toasts to the list
     const Shape shape = shape_of(editor, toast, width);
+    bottom = free_bottom(editor, {{right - width, bottom - shape.height}, {right, bottom}});
     const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
     if (draw_toast(editor, toast, shape, rect, static_cast<int>(shown))) closed = at;
     if (life_of(toast.severity) < 1e9) editor.wake_at(toasts[at].since + life_of(toast.severity) - kFadeOut);

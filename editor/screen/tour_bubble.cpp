@@ -29,7 +29,9 @@ Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) 
   };
   const glm::vec2 middle = target.centre();
   if (target.height() > 2 * size.y && target.width() > size.x) {
-    const Rect rect = within({target.low.x + editor.look.px(16), target.high.y - size.y - editor.look.px(60)});
+    // In a small view the bubble stays in the corner, so that the body and the middle of the view are free.
+    const float above = target.height() > 4 * size.y ? editor.look.px(60) : editor.look.px(12);
+    const Rect rect = within({target.low.x + editor.look.px(12), target.high.y - size.y - above});
     return {rect, rect.low + glm::vec2(size.x * 0.8f, -gap), rect.low + glm::vec2(size.x * 0.8f, 0)};
   }
   if (target.high.y + gap + size.y < window.high.y && target.height() < editor.look.px(60) &&
@@ -63,6 +65,7 @@ void draw_tour(Editor& editor) {
   const Place place = place_of(editor, target ? target->rect : editor.layout.views, size);
 
   begin_region(editor, Region::Toast, "tour", place.rect, 0);
+  register_widget(editor, "box", place.rect);
   ImDrawList& canvas = *ImGui::GetForegroundDrawList();
   fill(place.rect, look.theme.panel, look.px(6));
   outline(place.rect, look.theme.accent, look.px(6), 2 * look.line());

@@ -120,11 +120,33 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     key Escape
     expect "text:Let tissue follow the bones"
     click "Skip step"
+    expect "text:See the weights"
+    click top/Skin
+    expect "text:Pose the body"
+    click top/Pose
     expect "text:Bend the elbow"
     click "Skip step"
     expect "text:Writes the posed arm"
     click "Skip step"
+    expect "text:See the result"
+    click top/Resample
     expect "toast" "That was the tour"
   )");
   CHECK(sitting.editor().recent_files.tour_step == 0);
+}
+
+TEST_CASE("tour: toasts leave its bubble free, and the bubble leaves the middle of a small view free") {
+  const Home home;
+  Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
+  sitting.play("click Help/Tour\n wait-idle\n click view.four\n wait-idle");
+  const auto rect_of = [&](const char* name) -> editor::Rect {
+    const editor::Widget* widget = sitting.editor().widgets.find(name);
+    REQUIRE_MESSAGE(widget, name);
+    return widget ? widget->rect : editor::Rect{};
+  };
+  CHECK(!rect_of("tour/box").contains(rect_of("3D view/view").centre()));
+  for (int message = 0; message < 3; ++message) sitting.editor().messages.info("A message " + std::to_string(message));
+  sitting.play("wait 0.5");
+  CHECK(!rect_of("tour/box").overlaps(rect_of("toast 0/box")));
+  CHECK(rect_of("3D view/view").contains(rect_of("toast 0/box").centre()));
 }
