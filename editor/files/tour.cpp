@@ -3,6 +3,7 @@
 
 #include "editor/context/editor.h"
 #include "editor/files/import.h"
+#include "editor/shown/shown_result.h"
 
 namespace limber::editor {
 
@@ -48,7 +49,9 @@ bool resampled(const Editor& editor, const TourStart& start) {
 
 bool in_skin(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Skin; }
 bool in_pose(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Pose; }
-bool in_resample(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Resample; }
+bool sees_result(const Editor& editor, const TourStart&) {
+  return editor.workspace == Workspace::Resample && (shown_result(editor) || editor.document().results.empty());
+}
 
 TourStart start_of(const Editor& editor) {
   return {editor.views->body.camera.world_from_view,
@@ -99,8 +102,9 @@ const std::vector<TourStep>& tour_steps() {
        "Steps/Pose/Flex...", "pose.flex", bent},
       {"Resample", "Writes the posed arm as a new label volume, with a report of what changed.",
        "Steps/Resample/Resample", "resample.run", resampled},
-      {"See the result", "The Resample workspace shows the posed volume, and what changed in it.", "top/Resample",
-       "workspace.resample", in_resample},
+      {"See the result",
+       "Go to the Resample workspace and click the posed arm in its list: you see it, and what changed.",
+       "top/Resample", "workspace.resample", sees_result},
   };
   return steps;
 }

@@ -241,6 +241,8 @@ void show_result(Editor& editor, const std::string& name) {
   stop_watching(editor);
   editor.comparison.b = name;
   editor.comparison.shows_a = false;
+  // Where the workspace shows the body itself or another pose, the user would see nothing of the result.
+  if (result_named(editor.document(), name) && !shown_result(editor)) editor.workspace = Workspace::Resample;
 }
 
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name) {

@@ -12,17 +12,28 @@ std::shared_ptr<const Result> result_named(const Document& document, const std::
   return nullptr;
 }
 
+namespace {
+
+// The result of the side that the user selected, whatever the workspace shows.
+std::shared_ptr<const Result> result_of_side(const Editor& editor) {
+  const Comparison& comparison = editor.comparison;
+  return result_named(editor.document(), comparison.shows_a && !comparing(editor) ? comparison.a : comparison.b);
+}
+
+}  // namespace
+
 std::shared_ptr<const Result> shown_result(const Editor& editor) {
   if (watched_solve(editor)) return nullptr;
-  const Comparison& comparison = editor.comparison;
-  auto result = result_named(editor.document(), comparison.shows_a && !comparing(editor) ? comparison.a : comparison.b);
+  auto result = result_of_side(editor);
+  // Bones are fitted, and weights are painted, on the body itself.
+  if (editor.workspace == Workspace::Rig || editor.workspace == Workspace::Skin) return nullptr;
   if (result && editor.workspace == Workspace::Pose && !(result->from_pose && *result->from_pose == shown_pose(editor)))
     return nullptr;
   return result;
 }
 
 std::shared_ptr<const Result> chosen_result(const Editor& editor) {
-  if (auto shown = shown_result(editor)) return shown;
+  if (auto chosen = result_of_side(editor)) return chosen;
   return editor.document().results.empty() ? nullptr : editor.document().results.back();
 }
 

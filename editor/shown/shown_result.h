@@ -26,10 +26,11 @@ bool comparing(const Editor& editor);  // wiping() or side_by_side()
 std::string name_of_side(const Editor& editor, const std::string& result);
 
 // Returns the result that the views show. Returns null if the views show the volume at rest or the preview of the pose.
-// The Pose workspace shows a result only while the current pose is the pose from which the result was made.
+// The Rig and Skin workspaces show the body itself. The Pose workspace shows a result only while the current pose is the
+// pose from which the result was made.
 std::shared_ptr<const Result> shown_result(const Editor& editor);
-// Returns the result that the tables of results describe. This is the result that the views show; if they show none, it
-// is the document's last result.
+// Returns the result that the tables of results describe. This is the result of the side that the user selected, even
+// if the workspace shows something else; if there is none, it is the document's last result.
 std::shared_ptr<const Result> chosen_result(const Editor& editor);
 
 // Returns the volume that the views show: the volume of the shown result, or the document's volume if no result is

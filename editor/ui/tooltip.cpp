@@ -29,7 +29,12 @@ void draw_tooltip(Ui& ui) {
   const ImGuiID active = ImGui::GetActiveID();
   const bool typing = active != 0 && ImGui::TempInputIsActive(active);
   if (!std::exchange(tip.asked, false) || typing) return tip.widget.clear();
-  if (ui.input.down(MouseButton::Left)) return;
+  // After a click the user knows what the widget does, and looks at what has changed.
+  if (ui.input.down(MouseButton::Left)) {
+    tip.since = 1e300;
+    return;
+  }
+  if (tip.since > ui.now) return;
   if (ui.now - tip.since < ui.tooltip_delay) return ui.wake_at(tip.since + ui.tooltip_delay);
 
   const Look& look = ui.look;

@@ -299,3 +299,20 @@ TEST_CASE("results: one is renamed in its row and deleted, and both are undone")
   CHECK(test.editor->document().results[0]->name == "One");
   CHECK(test.editor->document().results[1]->name == "Two");
 }
+TEST_CASE(
+    "results: bones are fitted and weights painted on the body itself, and to show a result goes where it is seen") {
+  Compared test;
+  test.play("key Ctrl+4\n click One/row\n wait-idle");
+  REQUIRE(shown_result(*test.editor));
+  const std::string chosen = shown_result(*test.editor)->name;
+  for (const char* workspace : {"Ctrl+1", "Ctrl+2"}) {
+    test.play(std::string("key ") + workspace + "\n wait-idle");
+    CHECK_FALSE(shown_result(*test.editor));
+    CHECK(shown_volume(*test.editor) == test.editor->document().volume);
+    CHECK(chosen_result(*test.editor)->name == chosen);
+  }
+  test.play("key Ctrl+1\n wait-idle");
+  run(*test.editor, "result.show_last");
+  CHECK(test.fact("workspace") == "resample");
+  CHECK(shown_result(*test.editor) == test.editor->document().results.back());
+}
