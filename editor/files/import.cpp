@@ -37,6 +37,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// The name of a volume's file without ".nii.gz", ".seg.nrrd" or the like.
+std::string name_of_file(const Path& path) {
+  const Path stem = path.stem();
+  const bool has_two = stem.extension() == ".nii" || stem.extension() == ".seg";
+  return (has_two && !stem.stem().empty() ? stem.stem() : stem).string();
+}
+
 constexpr std::uint64_t kLargestJson = 64 << 20;  // largest accepted JSON file of a rig or pose, bytes
 
 std::string extension_of(const Path& path) {
@@ -116,7 +123,7 @@ std::shared_ptr<Opened> project_for_image(const GreyLevels& image, const Path& p
   opened->document = document_for_image(image);
   opened->extents = shared(extents_of(opened->document.volume));
   opened->inputs = inputs_of(FileKind::Volume, path);
-  opened->name = path.stem().string();
+  opened->name = name_of_file(path);
   opened->label = "Open image " + path.filename().string();
   return opened;
 }
@@ -380,7 +387,7 @@ void open_volume(Editor& editor, const Path& path, Then then) {
           opened->extents = shared(extents_of(opened->document.volume));
           if (read.doubt.empty()) make_ready(opened->document, progress);
           opened->inputs = inputs_of(FileKind::Volume, path);
-          opened->name = path.stem().string();
+          opened->name = name_of_file(path);
           opened->label = "Open " + path.filename().string();
           opened->agreed = agreed;
           opened->then = [path, then](Editor& ed) {

@@ -268,11 +268,21 @@ void draw_side_chip(Editor& editor, const ViewPlace& place) {
              Align::Right);
 }
 
+// Draws a text with a dark rim, so that it can be read over a bright body, too.
+static void put_rimmed_text(Editor& editor, ImFont* font, Colour colour, const glm::vec2& corner,
+                            const std::string& text) {
+  const float rim = std::max(1.0f, std::floor(editor.look.scale));
+  for (const glm::vec2& side : {glm::vec2(-1, 0), {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, 1}, {-1, 1}, {1, -1}})
+    ImGui::GetWindowDrawList()->AddText(font, font->FontSize, im(corner + rim * side),
+                                        with_alpha(editor.look.theme.view_bottom, 0.5f), text.c_str());
+  put_text(editor, font, colour, corner, text);
+}
+
 void draw_view_title(Editor& editor, const Rect& rect, const std::string& title, const std::string& state) {
   const Look& look = editor.look;
   const glm::vec2 corner = rect.low + glm::vec2(look.px(12), look.px(10));
-  put_text(editor, look.fonts.regular, look.theme.view_text, corner, title);
-  put_text(editor, look.fonts.small, look.theme.view_text2, corner + glm::vec2(0, look.px(18)), state);
+  put_rimmed_text(editor, look.fonts.regular, look.theme.view_text, corner, title);
+  put_rimmed_text(editor, look.fonts.small, look.theme.view_text2, corner + glm::vec2(0, look.px(18)), state);
 }
 
 void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pixel) {

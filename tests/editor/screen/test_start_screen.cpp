@@ -150,3 +150,14 @@ TEST_CASE("tour: toasts leave its bubble free, and the bubble leaves the middle 
   CHECK(!rect_of("tour/box").overlaps(rect_of("toast 0/box")));
   CHECK(rect_of("3D view/view").contains(rect_of("toast 0/box").centre()));
 }
+
+TEST_CASE("opened volumes: the project's name has none of the file's two extensions") {
+  const Home home;
+  const Document body = small_body();
+  for (const char* file : {"scan.nii.gz", "scan.seg.nrrd", "scan.nrrd"}) {
+    CAPTURE(file);
+    write_volume(*body.volume, home / file, *body.tissues);
+    Sitting sitting(home.folder.path(), {home / file});
+    CHECK(sitting.test.fact("name") == "scan");
+  }
+}
