@@ -57,8 +57,10 @@ void start_finding_problems(Editor& editor) {
       e.skin->painting->problems = found;
       e.skin->painting->problem = -1;
       const auto count = found->problems.size();
-      e.messages.ok(kFinding, count == 0 ? "The weights have no problems"
-                                         : std::to_string(count) + (count == 1 ? " problem" : " problems"));
+      e.messages.ok(
+          kFinding,
+          count == 0 ? "The weights have no problems" : std::to_string(count) + (count == 1 ? " problem" : " problems"),
+          count == 0 ? "" : "skin.next_problem");
       e.touch();
     };
   });

@@ -24,6 +24,17 @@ std::string needs_problem(const Editor& editor) {
                                                                                  : "";
 }
 
+// Says which problem the views show, since its row may be out of sight. Replaces what was said of another one.
+void tell_of_problem(Editor& editor) {
+  constexpr std::string_view kLine = "Problem ";
+  const Painting& painting = *editor.skin->painting;
+  const auto at = static_cast<std::size_t>(painting.problem);
+  std::erase_if(editor.messages.toasts, [&](const Toast& toast) { return toast.line.starts_with(kLine); });
+  editor.messages.info(
+      std::string(kLine) + std::to_string(at + 1) + " of " + std::to_string(painting.problems->problems.size()),
+      describe(painting.problems->problems[at], *painting.problems->armature));
+}
+
 // Goes to the next (by = 1) or previous (by = -1) problem that is not repaired. If there was no search for problems
 // yet, starts one.
 void step(Editor& editor, int by) {
@@ -33,7 +44,9 @@ void step(Editor& editor, int by) {
   int at = painting.problem < 0 && by < 0 ? 0 : painting.problem;
   for (int tried = 0; tried < count; ++tried) {
     at = (at + by + count) % count;
-    if (!painting.problems->repaired[static_cast<std::size_t>(at)]) return go_to_problem(editor, at);
+    if (painting.problems->repaired[static_cast<std::size_t>(at)]) continue;
+    go_to_problem(editor, at);
+    return tell_of_problem(editor);
   }
   if (problems_stale(editor)) return start_finding_problems(editor);
   editor.messages.info("Next problem", "All problems are repaired");

@@ -52,6 +52,25 @@ std::vector<Proof> proofs_of_weight_problems() {
   };
 }
 
+TEST_CASE("weight problems: a step says which problem the views show, in the place of the one before") {
+  Stage stage;
+  stage.open_limb();
+  weigh(stage);
+  stage.play("click \"Edit weights/Problems/Find problems\"\n wait-job\n wait-idle\n move \"3D view/view\"\n key J");
+  const auto& problems = stage.editor().skin->painting->problems->problems;
+  REQUIRE(problems.size() >= 2);
+  const std::string of = " of " + std::to_string(problems.size());
+  const auto said = [&](const std::string& line) {
+    const auto& toasts = stage.editor().messages.toasts;
+    return std::count_if(toasts.begin(), toasts.end(), [&](const Toast& toast) { return toast.line == line; });
+  };
+  CHECK(said("Problem 1" + of) == 1);
+  CHECK(stage.editor().messages.toasts.back().detail == describe(problems[0], *stage.document().armature));
+  stage.play("key J\n wait-idle");
+  CHECK(said("Problem 1" + of) == 0);
+  CHECK(said("Problem 2" + of) == 1);
+}
+
 TEST_CASE("operators: what is wrong with weights is found and repaired") {
   Stage stage;
   stage.open_limb();
