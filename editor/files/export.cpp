@@ -22,7 +22,7 @@
 #include "editor/dialogs/form_dialog.h"
 #include "editor/figure/video.h"
 #include "editor/file_browser/temp_folder.h"
-#include "editor/files/picture_task.h"
+#include "editor/files/picture_files.h"
 #include "editor/files/study_pictures.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
@@ -62,17 +62,6 @@ void check_export(ExportKind kind, const Path& path) {
   else if (kind == ExportKind::Rig) check_armature_writable(path);
   else if (kind == ExportKind::Weights) check_weights_writable(path);
   else check_place(path);
-}
-
-glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
-  const Rect* place = editor.layout.place_of(id);
-  return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
-}
-
-Path numbered(const Path& path, int number) {
-  char suffix[16];
-  std::snprintf(suffix, sizeof suffix, "-%04d", number);
-  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
 }
 
 // A video turns once in five seconds.
@@ -273,6 +262,7 @@ void export_picture(Editor& editor, const Path& path) {
                  .scene = views.scene,
                  .size = size_of_view(editor, views.active),
                  .camera = [camera = views.body.camera](int) { return camera; },
+                 .prepare = {},
                  .take = [path](int, const render::Image& image, Progress&) { render::write_png(image, path); },
                  .finish = done});
   auto image = std::make_shared<render::Image>(slice_of(views, views.active).picture->read());
@@ -286,56 +276,23 @@ namespace {
 
 void begin_turntable(Editor& editor, const Path& path, int pictures) {
   const render::Camera from = editor.views->body.camera;
-  PictureTask task{
-      .label = "Export turntable",
-      .scene = editor.views->scene,
-      .size = size_of_view(editor, ViewId::Body),
-      .pictures = pictures,
-      .camera = [from, pictures](int i) { return turned_about(from, 2 * std::numbers::pi * i / pictures); },
-      .take = {},
-      .finish = {}};
-  if (is_video(path)) {
-    const auto video = std::make_shared<std::unique_ptr<Video>>();
-    task.take = [video, path, size = task.size, scratch = editor.preferences.scratch_folder](
-                    int i, const render::Image& image, Progress& progress) {
-      if (i == 0) *video = std::make_unique<Video>(path, size, scratch, progress);
-      (*video)->add(image);
-    };
-    task.finish = [video, path](Progress&) -> Finish {
-      (*video)->finish();
-      return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
-    };
-  } else {
-    task.take = [path](int i, const render::Image& image, Progress&) { render::write_png(image, numbered(path, i)); };
-    task.finish = [path, pictures](Progress&) -> Finish {
-      return [path, pictures](Editor& e) {
-        e.messages.ok("Exported " + std::to_string(pictures) + " pictures", path.parent_path().string());
-      };
-    };
-  }
-  start_picture_task(editor, std::move(task));
+  start_picture_files(
+      editor, path,
+      {.label = "Export turntable",
+       .scene = editor.views->scene,
+       .size = size_of_view(editor, ViewId::Body),
+       .pictures = pictures,
+       .camera = [from, pictures](int i) { return turned_about(from, 2 * std::numbers::pi * i / pictures); },
+       .prepare = {},
+       .take = {},
+       .finish = {}});
 }
 
 }  // namespace
 
 void export_turntable(Editor& editor, const Path& path, int pictures) {
-  check_place(path);
-  if (is_video(path)) {
-    require_ffmpeg(path);
-    return begin_turntable(editor, path, kPicturesOfVideo);
-  }
-  int there = 0;
-  for (int i = 0; i < pictures; ++i) there += std::filesystem::exists(numbered(path, i));
-  if (there == 0) return begin_turntable(editor, path, pictures);
-  const std::string first = numbered(path, 0).filename().string(),
-                    last = numbered(path, pictures - 1).filename().string();
-  ask(editor,
-      {.title = "Replace pictures?",
-       .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " + last +
-                     " already exist.",
-                 path.parent_path().string()},
-       .icon = icon::kWarning,
-       .answers = {{"Cancel", {}}, {"Replace", [path, pictures](Editor& e) { begin_turntable(e, path, pictures); }}}});
+  const int count = is_video(path) ? kPicturesOfVideo : pictures;
+  agree_on_pictures(editor, path, count, [path, count](Editor& e) { begin_turntable(e, path, count); });
 }
 
 }  // namespace limber::editor

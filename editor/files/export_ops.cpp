@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators that export parts of the project, results, reports and pictures.
 #include <algorithm>
+#include <cctype>
 
 #include "core/export/exporter.h"
 #include "editor/context/operator_polls.h"
@@ -8,6 +9,7 @@
 #include "editor/files/export.h"
 #include "editor/files/export_figure.h"
 #include "editor/files/file_filters.h"
+#include "editor/files/picture_files.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
 #include "editor/volume/shown_image.h"
@@ -27,8 +29,13 @@ struct ExportFacts {
   const char* suffix;               // appended to the proposed file name
 };
 
-// Returns the dialog title for an operator's label: "glTF..." -> "Export glTF".
-std::string title_of(const std::string& label) { return "Export " + label.substr(0, label.find("...")); }
+// Returns the dialog title for an operator's label: "glTF..." -> "Export glTF", "Motion..." -> "Export motion".
+std::string title_of(const std::string& label) {
+  std::string words = label.substr(0, label.find("..."));
+  if (words.size() > 1 && std::islower(static_cast<unsigned char>(words[1])))
+    words[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(words[0])));
+  return "Export " + words;
+}
 
 Operator export_operator(const ExportFacts& facts) {
   return {facts.id,
@@ -67,6 +74,17 @@ Operator picture_operator(const char* id, const char* label, const char* descrip
                        .chosen = act});
           },
           needs_volume};
+}
+
+Operator motion_pictures() {
+  Operator op =
+      picture_operator("file.export_motion_pictures", "Motion as pictures...",
+                       "Export the frames that play as the body in the 3D view: a video at the clip's speed, or a "
+                       "picture of each frame.",
+                       "-motion", {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
+                       export_motion_pictures);
+  op.disabled_reason = why_no_motion_pictures;
+  return op;
 }
 
 // Returns a file name made of the project's and the result's names: "limb, Forearm, DQ". Replaces "/" by "-", because
@@ -188,6 +206,7 @@ std::vector<Operator> export_operators() {
                        "Export 36 pictures of the body, with the camera turning once around it, or a video of 5 s.",
                        "-turn", {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
                        [](Editor& e, const Path& path) { export_turntable(e, path); }),
+      motion_pictures(),
   };
 }
 

@@ -35,17 +35,21 @@ render::Image next_picture(Board& board, int number, int count, Progress& progre
 // The picture that the editor draws, a share in each frame.
 struct Drawing {
   std::unique_ptr<render::View3D> view;
+  render::Scene scene;
   int picture = 0;
-  bool drawn = false;  // the picture is complete, and waits until the task has taken the one before
+  bool prepared = false;  // the scene is the picture's
+  bool drawn = false;     // the picture is complete, and waits until the task has taken the one before
   double time = 0;
 };
 
 // Draws a share of the task's next picture. Returns true when the picture is complete.
 bool draw_share(Drawing& drawing, const PictureTask& task) {
-  drawing.view->draw(task.scene, task.camera(drawing.picture), task.size, drawing.time += 1);
+  if (task.prepare && !drawing.prepared) drawing.prepared = task.prepare(drawing.picture, drawing.scene);
+  if (task.prepare && !drawing.prepared) return false;
+  drawing.view->draw(drawing.scene, task.camera(drawing.picture), task.size, drawing.time += 1);
   if (!drawing.view->complete()) return false;
   if (drawing.view->scale() > 1)  // nothing is averaged at rest, so the picture has stayed coarse
-    drawing.view->draw(task.scene, task.camera(drawing.picture), task.size, drawing.time, 1);
+    drawing.view->draw(drawing.scene, task.camera(drawing.picture), task.size, drawing.time, 1);
   return true;
 }
 
@@ -63,7 +67,7 @@ bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board&
   const std::lock_guard lock(board.mutex);
   board.picture = std::move(image);
   board.changed.notify_all();
-  drawing.drawn = false;
+  drawing.drawn = drawing.prepared = false;
   return ++drawing.picture < task.pictures;
 }
 
@@ -74,6 +78,7 @@ void start_picture_task(Editor& editor, PictureTask wanted) {
   auto board = std::make_shared<Board>();
   auto drawing = std::make_shared<Drawing>();
   drawing->view = std::make_unique<render::View3D>(editor.views->renderer);
+  drawing->scene = task->scene;
   const int id = start_task(editor, task->label, [task, board](Progress& progress) -> Finish {
     for (int i = 0; i < task->pictures; ++i) task->take(i, next_picture(*board, i, task->pictures, progress), progress);
     return task->finish(progress);

@@ -14,6 +14,9 @@ struct PictureTask {
   glm::ivec2 size{0};
   int pictures = 1;
   std::function<render::Camera(int picture)> camera;
+  // Changes the scene for a picture, in the editor's thread. Called once per frame until it returns true: what it waits
+  // for is then there. Empty: all pictures show the same scene.
+  std::function<bool(int picture, render::Scene& scene)> prepare;
   // These functions run in the task's thread: `take` for each picture in order, then `finish`.
   std::function<void(int picture, const render::Image& image, Progress& progress)> take;
   std::function<Finish(Progress& progress)> finish;

@@ -88,6 +88,18 @@ bool PoseWish::operator==(const PoseWish& other) const {
          same_motions(motions, other.motions) && same_motions(rig_motions, other.rig_motions);
 }
 
+PoseWish wish_for_pose(const Editor& editor, const Document& document, const Pose& pose) {
+  PoseWish wish{
+      {document.volume, document.tissues, document.weights, document.armature, document.seams, document.bone_map},
+      {},
+      preview_blend(editor)};
+  wish.pose = pose;
+  wish.rig_motions = posed_from_rest(*document.armature, pose);
+  if (!motions_of_weights(*document.weights, *document.armature, wish.rig_motions, wish.motions))
+    throw Error("the weights belong to another rig", "posing the body", "compute them again");
+  return wish;
+}
+
 MapMaker::MapMaker(int divisor, std::function<void()> wake)
     : divisor_(divisor),
       wake_(std::move(wake)),

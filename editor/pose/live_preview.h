@@ -52,6 +52,9 @@ struct PoseWish {
   bool operator==(const PoseWish&) const;
 };
 
+// Returns the request for the document's body in a pose. Throws Error if the weights belong to another rig.
+PoseWish wish_for_pose(const Editor& editor, const Document& document, const Pose& pose);
+
 class MapMaker {
  public:
   struct Made {

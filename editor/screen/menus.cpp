@@ -99,7 +99,7 @@ std::vector<Menu> menus() {
         "file.import_motion", "file.import_weights", "file.import_tissues", "file.import_pose", "<",
         "> Export", "file.export_volume", "file.export_rig", "file.export_pose", "file.export_motion",
         "file.export_weights", "file.export_tissues", "file.export_gltf", "file.export_image",
-        "view.screenshot", "file.export_figure", "view.turntable", "<",
+        "view.screenshot", "file.export_figure", "view.turntable", "file.export_motion_pictures", "<",
         "-", "file.quit"}},
       {"Edit",
        {"edit.undo", "edit.redo", "edit.history", "-", "edit.repeat_last", "edit.adjust_last", "-",
@@ -208,7 +208,7 @@ std::vector<Menu> menus() {
         "motion.view_all", "motion.view_selected", "motion.show_seconds", "<",
         "> Onion skin and paths", "motion.onion_skin", "motion.onion_frames", "-", "motion.paths", "<",
         "-",
-        "> Export", "file.export_motion", "<"}},
+        "> Export", "file.export_motion", "file.export_motion_pictures", "<"}},
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console",
         "help.last_error", "help.system_facts", "-", "help.about"}},
   };

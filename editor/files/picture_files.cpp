@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/files/picture_files.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/error.h"
+#include "editor/dialogs/confirm_dialog.h"
+#include "editor/figure/video.h"
+#include "editor/motion/timeline.h"
+#include "editor/pose/live_preview.h"
+#include "editor/shown/shown_result.h"
+#include "editor/ui/icons.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr int kFiner = 2;               // the posed body is as fine as in the 3D view at rest
+constexpr int kMostPictures = 100'000;  // upper limit on the pictures of one export
+
+Path numbered(const Path& path, int number) {
+  char suffix[16];
+  std::snprintf(suffix, sizeof suffix, "-%04d", number);
+  return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
+}
+
+// The frames of the clip that become pictures. A video has a fixed number of pictures per second, a clip any.
+std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
+  const auto [low, high] = playing_range(editor);
+  std::vector<int> frames;
+  if (!is_video(path)) {
+    for (int frame = low; frame <= high; ++frame) frames.push_back(frame);
+    return frames;
+  }
+  const double step = frame_rate(editor) / kPicturesPerSecond;
+  for (int i = 0; low + i * step <= high + 0.5; ++i)
+    frames.push_back(std::min(high, low + static_cast<int>(std::lround(i * step))));
+  return frames;
+}
+
+// Poses the scene for one frame after the other.
+class PosedScenes {
+ public:
+  PosedScenes(Editor& editor, std::vector<int> frames)
+      : editor_(editor),
+        clip_(editor.document().clips[static_cast<std::size_t>(editor.document().clip)], editor.document().armature),
+        document_(editor.document()),
+        frames_(std::move(frames)),
+        maker_(kFiner, [&window = editor.host] { window.wake(); }) {
+    if (!clip_.problem().empty()) throw Error("the clip cannot be shown", clip_.clip()->name, clip_.problem());
+  }
+
+  // Returns true once the scene shows the frame of this picture.
+  bool pose(int picture, render::Scene& scene) {
+    const int frame = frames_[static_cast<std::size_t>(picture)];
+    const PoseWish wish = wish_for_pose(editor_, document_, clip_.at(frame));
+    maker_.ask(wish);
+    const std::optional<MapMaker::Made> made = maker_.take();
+    if (!made || !(made->wish == wish)) return false;
+    if (!made->trouble.empty())
+      throw Error("the volume cannot follow the pose", "frame " + std::to_string(frame), made->trouble);
+    scene.pose = made->map;
+    scene.posed_from_rest = made->wish.rig_motions;
+    return true;
+  }
+
+ private:
+  Editor& editor_;
+  const ClipOnRig clip_;
+  const Document document_;
+  const std::vector<int> frames_;
+  MapMaker maker_;
+};
+
+}  // namespace
+
+glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
+  const Rect* place = editor.layout.place_of(id);
+  return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
+}
+
+void agree_on_pictures(Editor& editor, const Path& path, int pictures, std::function<void(Editor&)> begin) {
+  check_place(path);
+  if (is_video(path)) {
+    require_ffmpeg(path);
+    return begin(editor);
+  }
+  int there = 0;
+  for (int i = 0; i < pictures; ++i) there += std::filesystem::exists(numbered(path, i));
+  if (there == 0) return begin(editor);
+  const std::string first = numbered(path, 0).filename().string(),
+                    last = numbered(path, pictures - 1).filename().string();
+  ask(editor, {.title = "Replace pictures?",
+               .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " +
+                             last + " already exist.",
+                         path.parent_path().string()},
+               .icon = icon::kWarning,
+               .answers = {{"Cancel", {}}, {"Replace", std::move(begin)}}});
+}
+
+void start_picture_files(Editor& editor, const Path& path, PictureTask task) {
+  if (is_video(path)) {
+    const auto video = std::make_shared<std::unique_ptr<Video>>();
+    task.take = [video, path, size = task.size, scratch = editor.preferences.scratch_folder](
+                    int i, const render::Image& image, Progress& progress) {
+      if (i == 0) *video = std::make_unique<Video>(path, size, scratch, progress);
+      (*video)->add(image);
+    };
+    task.finish = [video, path](Progress&) -> Finish {
+      (*video)->finish();
+      return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+    };
+  } else {
+    task.take = [path](int i, const render::Image& image, Progress&) { render::write_png(image, numbered(path, i)); };
+    task.finish = [path, pictures = task.pictures](Progress&) -> Finish {
+      return [path, pictures](Editor& e) {
+        e.messages.ok("Exported " + std::to_string(pictures) + (pictures == 1 ? " picture" : " pictures"),
+                      path.parent_path().string());
+      };
+    };
+  }
+  start_picture_task(editor, std::move(task));
+}
+
+std::string why_no_motion_pictures(const Editor& editor) {
+  const Document& document = editor.document();
+  if (!document.volume) return "Open a volume first";
+  if (!document.armature) return "Import a rig first";
+  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
+  if (!document.weights) return "Compute the weights first";
+  return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
+}
+
+void export_motion_pictures(Editor& editor, const Path& path) {
+  if (const std::string why = why_no_motion_pictures(editor); !why.empty())
+    throw Error("the motion cannot be shown", path.filename().string(), why);
+  const std::vector<int> frames = frames_of_pictures(editor, path);
+  if (std::ssize(frames) > kMostPictures)
+    throw Error("too many frames play", std::to_string(frames.size()) + " pictures", "set a shorter range");
+  agree_on_pictures(editor, path, static_cast<int>(frames.size()), [path, frames](Editor& e) {
+    stop_playing(e);
+    const auto scenes = std::make_shared<PosedScenes>(e, frames);
+    start_picture_files(
+        e, path,
+        {.label = "Motion pictures",
+         .scene = e.views->scene,
+         .size = size_of_view(e, ViewId::Body),
+         .pictures = static_cast<int>(frames.size()),
+         .camera = [camera = e.views->body.camera](int) { return camera; },
+         .prepare = [scenes](int picture, render::Scene& scene) { return scenes->pose(picture, scene); },
+         .take = {},
+         .finish = {}});
+  });
+}
+
+}  // namespace limber::editor
