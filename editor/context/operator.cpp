@@ -66,10 +66,22 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
   return false;
 }
 
+// Says why an operator cannot run now. If that is the workspace, the message has a button that goes to the right one.
+static void tell_why_not(Editor& editor, const Operator& op, const std::string& reason) {
+  editor.messages.info(op.label, reason);
+  for (const auto& [name, id] : {std::pair("Rig", "workspace.rig"),
+                                 {"Skin", "workspace.skin"},
+                                 {"Pose", "workspace.pose"},
+                                 {"Resample", "workspace.resample"}}) {
+    if (reason != std::string("Switch to the ") + name + " workspace first") continue;
+    for (Toast& toast : editor.messages.toasts)
+      if (toast.line == op.label && toast.detail == reason) toast.action = id;
+  }
+}
+
 void run(Editor& editor, const Operator& op) {
   editor.touch();
-  if (const std::string reason = disabled_reason(editor, op); !reason.empty())
-    return editor.messages.info(op.label, reason);
+  if (const std::string reason = disabled_reason(editor, op); !reason.empty()) return tell_why_not(editor, op, reason);
   if (!goes_on_while_playing(op)) editor.before_change(editor);
   if (attempt(editor, op.label, op.run)) note_use(editor, op);
 }

@@ -78,7 +78,7 @@ void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) 
     const FigureOptions options = *last = options_of(fields);
     browse(e,
            {.purpose = "picture",
-            .title = "Export Figure",
+            .title = "Export figure",
             .action = "Export",
             .kind = FileRequest::Kind::Save,
             .filters = {{"PNG pictures", {".png"}}, {"TIFF pictures", {".tif", ".tiff"}}, {"SVG drawings", {".svg"}}},
@@ -87,7 +87,7 @@ void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) 
             .chosen = [options](Editor& ed, const Path& path) { export_figure(ed, options, path); }});
   };
   editor.open_dialog(make_form(
-      {"Export Figure",
+      {"Export figure",
        "A picture of the active view for a page, with a scale bar and a legend of its tissues.",
        "Export...",
        {number_of("Width", "Width of the figure on the page.", last->size.x, kSmallestFigure, kLargestFigure, "%.1f",

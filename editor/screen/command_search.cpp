@@ -262,7 +262,11 @@ std::vector<FoundCommand> find_commands(const Editor& editor, const std::string&
     one->command.reason = disabled_reason(editor, op);
     ranked.push_back(std::move(*one));
   }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) {
+  // A command that is named but cannot run now says why when it is chosen. A command that only speaks of the words
+  // would do something else in its place.
+  const auto only_speaks_of = [](const Ranked& one) { return one.score == -kSentencePenalty; };
+  std::stable_sort(ranked.begin(), ranked.end(), [&](const Ranked& a, const Ranked& b) {
+    if (only_speaks_of(a) != only_speaks_of(b)) return only_speaks_of(b);
     if (a.command.reason.empty() != b.command.reason.empty()) return a.command.reason.empty();
     if (a.score != b.score) return a.score > b.score;
     return a.order < b.order;

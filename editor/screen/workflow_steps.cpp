@@ -29,6 +29,13 @@ Step prepare_step(const Editor& editor) {
   Step step{"Prepare", StepState::Later, "No volume is open", "file.open", "Open...", {}};
   const Document& document = editor.document();
   if (!document.volume) return step;
+  if ((!document.tissues || document.tissues->tissues.empty()) && editor.views->image) {
+    // A bare CT or MR has nothing that could follow bones.
+    step.line = "No labels yet";
+    step.operator_id = "image.labels";
+    step.button = "Labels...";
+    return step;
+  }
   step.state = StepState::Done;
   step.line = size_text(document.volume->grid.size) + ", " +
               std::to_string(document.tissues ? document.tissues->tissues.size() : 0) + " tissues";

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/volume/tissue_edits.h"
 
+#include <algorithm>
+
 #include "editor/context/document_edits.h"
 
 namespace limber::editor {
@@ -27,7 +29,9 @@ void commit_looks(Editor& editor, const std::string& label,
 }  // namespace
 
 std::string shown_name(const Tissue& tissue) {
-  return capitalized(tissue.name.empty() ? "Label " + std::to_string(tissue.label) : tissue.name);
+  std::string name = capitalized(tissue.name.empty() ? "Label " + std::to_string(tissue.label) : tissue.name);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 std::string capitalized(std::string name) {

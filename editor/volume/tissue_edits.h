@@ -8,7 +8,7 @@
 
 namespace limber::editor {
 
-// Returns a tissue's name as lists show it: with a capital letter, or "Label 17" if the tissue has no name.
+// Returns a tissue's name as lists show it: with a capital letter and without "_", or "Label 17" if it has no name.
 std::string shown_name(const Tissue& tissue);
 std::string capitalized(std::string name);  // "fat" -> "Fat"
 

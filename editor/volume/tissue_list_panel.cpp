@@ -105,6 +105,7 @@ std::vector<const Tissue*> found(const Editor& editor, const TissueTable& tissue
   std::vector<const Tissue*> rows;
   for (const Tissue& tissue : tissues.tissues)
     if (contains_ignoring_case(shown_name(tissue), editor.tissue_search) ||
+        contains_ignoring_case(tissue.name, editor.tissue_search) ||
         std::to_string(tissue.label) == editor.tissue_search)
       rows.push_back(&tissue);
   return rows;

@@ -27,9 +27,10 @@ TEST_CASE("search: a command is found by letters of its name and run with Return
   )");
 }
 
-TEST_CASE("search: arrows choose, what cannot run now stands last and says why when it is chosen") {
+TEST_CASE("search: arrows choose, what cannot run now stands behind what can and says why when it is chosen") {
   SmallEditor test({1024, 640}, {}, false);
-  const auto found = find_commands(*test.editor, "fram");
+  auto found = find_commands(*test.editor, "fram");
+  std::erase_if(found, [](const FoundCommand& c) { return c.letters.empty(); });  // found by their descriptions
   REQUIRE(found.size() >= 2);
   const auto cannot = std::find_if(found.begin(), found.end(), [](const FoundCommand& c) { return !c.reason.empty(); });
   CHECK(std::all_of(cannot, found.end(), [](const FoundCommand& c) { return !c.reason.empty(); }));
@@ -42,6 +43,24 @@ TEST_CASE("search: arrows choose, what cannot run now stands last and says why w
     key Return
     expect dialog no
     expect toast "Re-grid..."
+  )");
+}
+
+TEST_CASE("search: a command that is named stands before those that only speak of it, even if it cannot run now") {
+  SmallEditor test;
+  const auto found = find_commands(*test.editor, "label brush");
+  REQUIRE(found.size() >= 2);
+  CHECK(found.front().op->id == "labels.brush");
+  CHECK(std::any_of(found.begin(), found.end(),
+                    [](const FoundCommand& c) { return c.op->id == "labels.new_tissue" && c.reason.empty(); }));
+  // What it says leads to where it can run.
+  test.play(R"(
+    key F3
+    type "label brush"
+    key Return
+    expect "text:Switch to the Skin workspace first"
+    click "toast 0/Skin"
+    expect workspace skin
   )");
 }
 

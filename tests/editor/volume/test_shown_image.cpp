@@ -145,8 +145,9 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   CHECK(sitting.editor().document().tissues->tissues.empty());
   const Document bare = sitting.editor().document();
   sitting.play(
-      "click View/Display/\"Image settings\"/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n wait-job\n "
-      "wait-idle");
+      "expect \"text:No labels yet\"\n click Steps/Prepare/Labels...\n wait-idle\n click \"Make "
+      "labels\"\n "
+      "wait-job\n wait-idle\n expect widget:Steps/Prepare/Statistics");
   sitting.play("expect error none\n expect unsaved yes");
   const Document labelled = sitting.editor().document();
   REQUIRE(labelled.tissues->find(6));
