@@ -39,7 +39,8 @@ std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, con
 
 std::string why_not_paint(const Editor& editor) {
   const Document& document = editor.document();
-  if (!document.volume || !document.armature) return "Open a volume with a rig first";
+  if (!document.volume) return "Open a volume first";
+  if (!document.armature) return "Import or auto-fit a rig first";
   if (!document.weights) return "There are no weights yet: compute weights first";
   const auto bone = skin_bone(editor);
   if (!bone || weights_bone(*document.weights, document.armature->bones[*bone].name) < 0)
