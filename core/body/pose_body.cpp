@@ -182,7 +182,9 @@ void measure_posed_body(const Body& body, const PosingSettings& settings, BodyIn
   const JudgedPose judged{body.file.volume,
                           result.volume,
                           body.tissues,
-                          {result.displacement.data(), result.displacement.size()},
+                          result.tiled_displacement.empty()
+                              ? DisplacementView(result.displacement.data(), result.displacement.size())
+                              : DisplacementView(result.tiled_displacement),
                           &posed.rig,
                           posed.asked,
                           posed_from_rest(posed.rig, result.shape ? result.shape->pose : posed.pose)};

@@ -314,7 +314,8 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
                        .mass_exact = options.mass_exact,
                        .mass_limit_percent = options.mass_limit,
                        .spacing = options.spacing,
-                       .displacement = !options.field.empty() || !options.report.empty() || options.strict,
+                       .displacement = !options.field.empty(),
+                       .tiled_displacement = options.field.empty() && (!options.report.empty() || options.strict),
                        .jacobian = !options.jacobian.empty(),
                        .overlap = !options.overlap.empty(),
                        .grey = grey}};

@@ -217,7 +217,8 @@ py::object resample_body(const Weights& weights, const py::object& poses, const 
                                 .resample = {.nearest = options.nearest,
                                              .mass_exact = options.mass_exact,
                                              .spacing = options.spacing,
-                                             .displacement = options.displacement || options.report,
+                                             .displacement = options.displacement,
+                                             .tiled_displacement = options.report && !options.displacement,
                                              .jacobian = options.jacobian,
                                              .overlap = options.overlap,
                                              .grey = carried.get()}};

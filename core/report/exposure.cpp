@@ -17,7 +17,7 @@ constexpr std::array<glm::ivec3, 6> kFaces = {{{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}
 // Flood fill of the air inside a box, starting from seed voxels; each step fills a whole run of air voxels along x.
 class AirFlood {
  public:
-  AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<std::uint8_t>& outside)
+  AirFlood(const LabelVolume& volume, const VoxelBox& box, std::vector<bool>& outside)
       : volume_(volume),
         box_(box),
         outside_(outside) {}
@@ -41,7 +41,7 @@ class AirFlood {
     while (begin > low && is_new({begin - 1, seed.y, seed.z})) --begin;
     while (end < high && is_new({end, seed.y, seed.z})) ++end;
     const auto row = outside_.begin() + box_.index({begin, seed.y, seed.z});
-    std::fill(row, row + (end - begin), std::uint8_t{1});
+    std::fill(row, row + (end - begin), true);
     for (const auto& [dy, dz] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       const glm::ivec3 beside{begin, seed.y + dy, seed.z + dz};
       if (box_.contains(beside)) seed_row(beside, end);
@@ -51,10 +51,10 @@ class AirFlood {
   // Adds a seed for each run of air voxels that is not filled yet. Looks only at x = from.x .. end - 1 of one row.
   void seed_row(const glm::ivec3& from, int end) {
     const Label* labels = volume_.voxels.data() + volume_.grid.index(from);
-    const std::uint8_t* outside = outside_.data() + box_.index(from);
+    const std::int64_t outside = box_.index(from);
     bool before = false;
     for (int k = 0; k < end - from.x; ++k) {
-      const bool now = labels[k] == 0 && !outside[k];
+      const bool now = labels[k] == 0 && !outside_[outside + k];
       if (now && !before) seeds_.push_back({from.x + k, from.y, from.z});
       before = now;
     }
@@ -62,7 +62,7 @@ class AirFlood {
 
   const LabelVolume& volume_;
   const VoxelBox& box_;
-  std::vector<std::uint8_t>& outside_;
+  std::vector<bool>& outside_;
   std::vector<glm::ivec3> seeds_;
 };
 
@@ -97,7 +97,7 @@ struct SurfaceOfSlice {
 
 OutsideAir::OutsideAir(const LabelVolume& volume)
     : box_(tissue_box(volume, 1)),
-      outside_(static_cast<std::size_t>(box_.voxel_count()), 0) {
+      outside_(static_cast<std::size_t>(box_.voxel_count())) {
   AirFlood flood(volume, box_, outside_);
   const glm::ivec3 low = box_.lowest, high = box_.lowest + box_.size - 1;
   for (int z = low.z; z <= high.z; ++z)
@@ -161,7 +161,7 @@ std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAr
     for (const glm::ivec3& face : kFaces) {
       const glm::ivec3 beside = v + face;
       if (pose.posed.at_or_air(beside) == 0) continue;
-      const glm::dvec3 moved = pose.knows_field() ? glm::dvec3(pose.displacement[grid.index(beside)]) : glm::dvec3(0);
+      const glm::dvec3 moved = pose.knows_field() ? glm::dvec3(pose.displacement.at(grid, beside)) : glm::dvec3(0);
       const glm::ivec3 rest(glm::floor(to_rest * (pose.posed_place(v) - moved) + 0.5));
       if (pose.rest.at_or_air(rest) == 0 && !air.rest.contains(rest)) return true;
     }

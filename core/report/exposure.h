@@ -9,6 +9,7 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "core/report/judged_pose.h"
 #include "core/volume/distance_transform.h"
@@ -24,7 +25,7 @@ class OutsideAir {
 
  private:
   VoxelBox box_;  // a box around all tissue
-  std::vector<std::uint8_t> outside_;
+  std::vector<bool> outside_;
 };
 
 // The outside air around the body at rest and around the posed body.

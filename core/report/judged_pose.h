@@ -4,11 +4,11 @@
 // program splits bone tissue, so that errors in these are found and not repeated.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
 #include "core/base/rigid_transform.h"
+#include "core/report/displacement_view.h"
 #include "core/rig/armature.h"
 #include "core/tissue/tissue_table.h"
 
@@ -16,11 +16,11 @@ namespace limber {
 
 struct JudgedPose {
   const LabelVolume& rest;
-  const LabelVolume& posed;                   // has the same labels as `rest`
-  const TissueTable& tissues;                 // the tissues of both volumes
-  std::span<const glm::vec3> displacement{};  // posed minus rest position of each posed voxel, mm; empty: unknown
-  const Armature* armature = nullptr;         // nullptr: no rig
-  std::vector<RigidTransform> asked;          // #bones: motions from rest to the pose that the user requested
+  const LabelVolume& posed;            // has the same labels as `rest`
+  const TissueTable& tissues;          // the tissues of both volumes
+  DisplacementView displacement{};     // empty: unknown
+  const Armature* armature = nullptr;  // nullptr: no rig
+  std::vector<RigidTransform> asked;   // #bones: motions from rest to the pose that the user requested
   // #bones: motions that were used. They differ from `asked` if the rig's joints were fitted or a solve ended early.
   std::vector<RigidTransform> applied;
 
@@ -28,7 +28,7 @@ struct JudgedPose {
   // rest_place() needs `displacement`.
   glm::dvec3 posed_place(const glm::ivec3& voxel) const { return world_from_voxel(posed.grid) * glm::dvec3(voxel); }
   glm::dvec3 rest_place(const glm::ivec3& voxel) const {
-    return posed_place(voxel) - glm::dvec3(displacement[posed.grid.index(voxel)]);
+    return posed_place(voxel) - glm::dvec3(displacement.at(posed.grid, voxel));
   }
   bool knows_field() const { return !displacement.empty(); }
 };

@@ -93,6 +93,7 @@ class PosedVoxels {
     if (mends_) skin_.emplace(volume_, body.lattice.tissue(), *depth_, labels_.soft, labels_.skin);
     if (mends_) posed_bones_ = TiledLabels(output_.grid);
     if (settings.displacement) posed.displacement.resize(voxels);
+    if (settings.tiled_displacement) posed.tiled_displacement = TiledVectors(output_.grid);
     if (settings.jacobian) posed.jacobian.resize(voxels);
     if (settings.overlap) posed.overlap.resize(voxels);
     if (settings.grey) start_grey();
@@ -204,11 +205,10 @@ class PosedVoxels {
   }
 
   void carry_fields(const Origins& origins) {
-    if (settings_.displacement)
-      for (const auto& [at, from] : origins) {
-        const glm::dvec3 v(output_.range.low + voxel_at(output_.grid, at));
-        posed_.displacement[at] = world_from_rest_.linear * (lattice_.output().to_rest(v) - from.rest);
-      }
+    for (const auto& [at, from] : origins) {
+      const glm::ivec3 voxel = voxel_at(output_.grid, at);
+      write_displacement(voxel, {at, tiles_.row(voxel.y, voxel.z) + TiledLabels::along_row(voxel.x)}, from.rest);
+    }
     if (settings_.grey)
       for (const auto& [at, from] : origins) posed_.grey.voxels[at] = moved_grey(from.rest);
     if (settings_.jacobian)
@@ -346,7 +346,7 @@ class PosedVoxels {
            std::array<std::uint16_t, 3>{static_cast<std::uint16_t>(v.x - output_.range.low.x),
                                         static_cast<std::uint16_t>(v.y - output_.range.low.y),
                                         static_cast<std::uint16_t>(v.z - output_.range.low.z)}});
-    write_fields(map, i, v, at);
+    write_fields(map, i, v, place);
     count(map, i, v, label, counts);
     return map.bone[i] != InverseMap::kNoBone || labels_.bone[label];
   }
@@ -377,10 +377,18 @@ class PosedVoxels {
     return soft ? soft : label;
   }
 
-  void write_fields(const InverseMap& map, std::int64_t i, const glm::ivec3& v, std::int64_t at) const {
-    const OutputLattice& lattice = lattice_.output();
-    if (settings_.displacement)
-      posed_.displacement[at] = world_from_rest_.linear * (lattice.to_rest(glm::dvec3(v)) - glm::dvec3(map.rest[i]));
+  // Writes the displacement of a voxel of the posed volume, where one is wanted.
+  void write_displacement(const glm::ivec3& voxel, const Place& place, const glm::dvec3& rest) const {
+    if (!settings_.displacement && !settings_.tiled_displacement) return;
+    const glm::dvec3 to(output_.range.low + voxel);
+    const glm::vec3 moved = world_from_rest_.linear * (lattice_.output().to_rest(to) - rest);
+    if (settings_.displacement) posed_.displacement[place.at] = moved;
+    if (settings_.tiled_displacement) posed_.tiled_displacement.data()[place.in_tiles] = moved;
+  }
+
+  void write_fields(const InverseMap& map, std::int64_t i, const glm::ivec3& v, const Place& place) const {
+    const std::int64_t at = place.at;
+    write_displacement(v - output_.range.low, place, glm::dvec3(map.rest[i]));
     if (settings_.jacobian)
       posed_.jacobian[at] =
           map.bone[i] != InverseMap::kNoBone ? 1.0f : static_cast<float>(map.posed_per_rest[i] / output_per_rest());

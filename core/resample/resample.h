@@ -20,6 +20,7 @@
 #include "core/rig/pose.h"
 #include "core/skin/skin_weights.h"
 #include "core/tissue/tissue_table.h"
+#include "core/volume/tiled_labels.h"
 #include "core/volume_io/volume_io.h"
 
 namespace limber {
@@ -34,10 +35,11 @@ struct ResampleSettings {
   bool mass_exact = false;
   // Upper limit on the volume change, in %, by which mass_exact corrects a soft tissue; beyond it, Error is thrown.
   double mass_limit_percent = 3;
-  std::optional<double> spacing;  // output spacing along all axes, mm; none: as the input
-  bool displacement = false;      // true: Posed::displacement is filled
-  bool jacobian = false;          // true: Posed::jacobian is filled (det of the Jacobian of the map from rest to pose)
-  bool overlap = false;           // true: Posed::overlap is filled (voxels in which regions of the body overlap)
+  std::optional<double> spacing;    // output spacing along all axes, mm; none: as the input
+  bool displacement = false;        // true: Posed::displacement is filled
+  bool tiled_displacement = false;  // true: Posed::tiled_displacement is filled
+  bool jacobian = false;  // true: Posed::jacobian is filled (det of the Jacobian of the map from rest to pose)
+  bool overlap = false;   // true: Posed::overlap is filled (voxels in which regions of the body overlap)
   const GreyVolume* grey = nullptr;  // grey values to move together with the labels; nullptr: none
   // Voxel faces at which limbs touch without being connected. Null: all tissue that touches is connected.
   std::shared_ptr<const Seams> seams;
@@ -91,6 +93,7 @@ struct Posed {
   LabelVolume volume;
   DeformReport report;
   ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
+  TiledVectors tiled_displacement;       // the same, in less memory
   ZeroedVector<float> jacobian;          // on the output grid; zero in air
   // Overlap in each voxel of the output grid: 0: none, 1: tissue overlaps, 2: bone tissue of two bones overlaps.
   ZeroedVector<Label> overlap;

@@ -32,21 +32,6 @@ void copy_tile(const Label* tile, const glm::ivec3& low, LabelVolume& to) {
 
 }  // namespace
 
-TiledLabels::TiledLabels(const Grid& grid) : grid_(grid), tiles_((grid.size + kTile - 1) / kTile) {
-  const std::int64_t count = std::int64_t{tiles_.x} * tiles_.y * tiles_.z * kTileVoxels;
-  pages_.resize(count + kTileVoxels);
-  const std::uintptr_t page = kTileVoxels * sizeof(Label);
-  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(pages_.data());
-  first_ = static_cast<std::int64_t>((begin + page - 1) / page * page - begin) / std::int64_t{sizeof(Label)};
-}
-
-void TiledLabels::copy_row(int y, int z, Label* to) const {
-  const Label* from = data() + row(y, z);
-  int x = 0;
-  for (; x + kLine <= grid_.size.x; x += kLine, from += kTileVoxels) std::memcpy(to + x, from, kLine * sizeof(Label));
-  std::copy_n(from, grid_.size.x - x, to + x);
-}
-
 LabelVolume in_rows(TiledLabels tiles) {
   LabelVolume volume{tiles.grid_, ZeroedVector<Label>(static_cast<std::size_t>(tiles.grid_.voxel_count()))};
   want_large_pages(volume);

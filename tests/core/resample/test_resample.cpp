@@ -152,7 +152,8 @@ TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what
     });
     tube.weights.set_chunk(brick, chunk);
   }
-  const Posed result = posed(tube, tube.pose(70), Blend::DualQuaternion, {.displacement = true});
+  const Posed result =
+      posed(tube, tube.pose(70), Blend::DualQuaternion, {.displacement = true, .tiled_displacement = true});
   CHECK(result.report.filled_air_voxels > 0);
   CHECK(compare(tube.volume, result.volume, tube.tissues).enclosed_air_after <= hollow);
   std::int64_t from_nowhere = 0;
@@ -161,6 +162,7 @@ TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what
   for (v.z = 0; v.z < grid.size.z; ++v.z)
     for (v.y = 0; v.y < grid.size.y; ++v.y)
       for (v.x = 0; v.x < grid.size.x; ++v.x) {
+        CHECK(result.tiled_displacement.at(v) == result.displacement[grid.index(v)]);
         if (result.volume.at(v) == 0) continue;
         const glm::dvec3 rest = voxel_from_world(tube.volume.grid) * (world_from_voxel(grid) * glm::dvec3(v) -
                                                                       glm::dvec3(result.displacement[grid.index(v)]));
