@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/deform/corner_poser.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -94,7 +95,7 @@ CornerPoser::FourFixed CornerPoser::posed(const FourPoints& rest, const CornerWe
   const FourPoints at{(to.x + 0.5) * ratio.x - 0.5 - base.x, (to.y + 0.5) * ratio.y - 0.5 - base.y,
                       (to.z + 0.5) * ratio.z - 0.5 - base.z};
   if (!all_within(at.x, kFurthestPosed) || !all_within(at.y, kFurthestPosed) || !all_within(at.z, kFurthestPosed))
-    throw_torn(weights.influences.front().bone);
+    throw_torn(at, weights.influences);
   return {rounded(at.x * kFixedOne), rounded(at.y * kFixedOne), rounded(at.z * kFixedOne)};
 }
 
@@ -121,6 +122,17 @@ void CornerPoser::replace_single(const FourPoints& rest, const CornerWeights::Fo
     if (!(follows[0] | follows[1] | follows[2] | follows[3])) continue;
     moved = select(follows, product(shift_[bone], rest), moved);
   }
+}
+
+// Throws the Error for the first of four corners that is too far away.
+void CornerPoser::throw_torn(const FourPoints& at, std::span<const FourWeights> influences) const {
+  for (int i = 0; i < 4; ++i) {
+    const double furthest = std::max({std::abs(at.x[i]), std::abs(at.y[i]), std::abs(at.z[i])});
+    if (furthest < kFurthestPosed) continue;
+    for (const auto& [bone, weight] : influences)
+      if (weight[i] > 0) throw_torn(bone);
+  }
+  throw_torn(influences.front().bone);
 }
 
 // Throws the Error for a corner that is too far away.

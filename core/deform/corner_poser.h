@@ -43,6 +43,7 @@ class CornerPoser {
   FourPoints moved(const FourPoints& rest, std::span<const FourWeights> influences) const;
   void replace_single(const FourPoints& rest, const CornerWeights::Four& weights, FourPoints& moved) const;
   [[noreturn]] void throw_torn(int bone) const;
+  [[noreturn]] void throw_torn(const FourPoints& at, std::span<const FourWeights> influences) const;
   FixedPoint fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const;
 
   const std::vector<std::string>* names_;

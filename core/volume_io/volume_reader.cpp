@@ -270,7 +270,8 @@ class ReaderVoxels final : public VoxelSource {
       talk_.check_cancelled();
       const std::size_t now = std::min(kStep, bytes - done);
       if (opened_->read_at(*plain_at_, to + done, now) < now)
-        throw Error("the file ends earlier than when it was opened", talk_.parsed(), "export or download it again");
+        throw Error("the file could not be read to its end", talk_.parsed(),
+                    "check the disk, and whether another program writes the file");
       *plain_at_ += static_cast<std::int64_t>(now);
       done += now;
     }

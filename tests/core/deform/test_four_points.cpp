@@ -103,6 +103,12 @@ TEST_CASE("four points: a corner that is carried too far is refused like any oth
   const Grid grid{{8, 8, 8}, glm::dvec3(1), glm::dvec3(0), glm::dmat3(1)};
   const std::vector<std::string> names{"Hips", "Knee"};
   CornerPoser poser(grid, names, {{}, {glm::dquat(1, 0, 0, 0), {0, 0, 90000}}}, Blend::Linear);
-  const std::vector<FourWeights> weights{{0, FourNumbers{1, 1, 1, 1}}, {1, FourNumbers{0, 0, 9, 0}}};
-  CHECK_THROWS_AS(poser.posed(FourPoints{}, {weights, FourIntegers{1, 1, 2, 1}}, nullptr), Error);
+  const std::vector<FourWeights> weights{{0, FourNumbers{1, 1, 0, 1}}, {1, FourNumbers{0, 0, 9, 0}}};
+  std::string said;
+  try {
+    poser.posed(FourPoints{}, {weights, FourIntegers{1, 1, 1, 1}}, nullptr);
+  } catch (const Error& error) {
+    said = error.what();
+  }
+  CHECK(said.find("bone Knee") != std::string::npos);
 }
