@@ -292,9 +292,8 @@ std::vector<Landmark> posed_landmarks(const std::vector<Landmark>& landmarks, co
                                       const BoundBody& bound, const BodyInPose& posed) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks) places.push_back(landmark.position);
-  const Blend blend = find_method(options.method)->blend.value_or(Blend::Linear);
-  places = posed_points(body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose, blend,
-                        posed.posed.shape.get(), places);
+  places = posed_points(body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
+                        find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), places);
   std::vector<Landmark> there = landmarks;
   for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
   return there;

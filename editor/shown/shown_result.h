@@ -26,8 +26,8 @@ bool comparing(const Editor& editor);  // wiping() or side_by_side()
 std::string name_of_side(const Editor& editor, const std::string& result);
 
 // Returns the result that the views show. Returns null if the views show the volume at rest or the preview of the pose.
-// The Rig and Skin workspaces show the body itself. The Pose workspace shows a result only while the current pose is the
-// pose from which the result was made.
+// The Rig and Skin workspaces show the body itself. The Pose workspace shows a result only while the current pose is
+// the pose from which the result was made.
 std::shared_ptr<const Result> shown_result(const Editor& editor);
 // Returns the result that the tables of results describe. This is the result of the side that the user selected, even
 // if the workspace shows something else; if there is none, it is the document's last result.
