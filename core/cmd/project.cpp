@@ -275,6 +275,8 @@ void export_part(const Options& options) {
 }
 
 void run(const Options& options) {
+  require(!options.frame || (options.action == "export" && options.part == "pose"), "only export pose takes a frame",
+          options.file, "leave --frame out");
   if (options.action == "create") return create(options);
   if (options.action == "verify") return verify(options);
   if (options.action == "recover") return recover(options);

@@ -63,7 +63,8 @@ struct Constraints {
   bool operator==(const Constraints&) const = default;
 };
 
-constexpr double kFarthestPlace = 1e7;  // bound of a place's coordinates in a project, mm
+constexpr std::size_t kMostConstraints = 4096;  // of a clip; far more than a rig has bones
+constexpr double kFarthestPlace = 1e7;          // bound of a place's coordinates in a project, mm
 
 // Returns the weight of a constraint at a frame, [0, 1]: that of its keys, or its own where it has none.
 double weight_at(const Constraint& constraint, const Keys& keys, int frame);

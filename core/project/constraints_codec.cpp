@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFrame = 1 << 28;  // as for all frames of a project
-constexpr int kLongestChain = 4096;           // a rig has no more bones
-constexpr std::size_t kFewestBytes = 138;     // of a constraint with empty names
+constexpr std::int64_t kMostFrame = 1 << 28;    // as for all frames of a project
+constexpr int kLongestChain = 4096;             // a rig has no more bones
+constexpr std::size_t kFewestBytes = 138;       // of a constraint with empty names
 constexpr double kWidestLimit = 2 * std::numbers::pi;
 
 double get_within(ByteReader& in, double low, double high) {
@@ -131,7 +131,9 @@ void put_constraints(ByteWriter& out, const Clip& clip) {
 void get_constraints(ByteReader& in, Clip& clip) {
   Constraints constraints;
   std::set<std::string> names;
-  for (std::size_t count = in.count(kFewestBytes); count > 0; --count) {
+  const std::size_t constraints_count = in.count(kFewestBytes);
+  in.require(constraints_count <= kMostConstraints);
+  for (std::size_t count = constraints_count; count > 0; --count) {
     constraints.list.push_back(get_constraint(in));
     in.require(names.insert(constraints.list.back().name).second);
   }

@@ -152,6 +152,8 @@ const Constraint* active_constraint(const Editor& editor) {
   const auto bone = editor.selection.bone;
   if (!document.armature || !bone || *bone >= std::ssize(document.armature->bones)) return nullptr;
   const Constraint* first = nullptr;
+  if (constraints_of(editor.document()).list.size() >= kMostConstraints)
+    throw Error("the clip has as many constraints as it can", rule.name, "remove one first");
   for (const std::size_t index : constraints_of_bone(document, *bone)) {
     const Constraint& constraint = constraints_of(document).list[index];
     if (constraint.name == editor.timeline->constraint) return &constraint;

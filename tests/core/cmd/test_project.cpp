@@ -258,6 +258,26 @@ TEST_CASE("project command: constraints hold in the motion and the poses that ar
   }
   const auto told = nlohmann::json::parse(project(folder, {"inspect", "--json"}).out);
   CHECK(told["clips"][0]["constraints"] == nlohmann::json{"Plant LeftHand"});
+  for (const std::vector<std::string> words : {std::vector<std::string>{"inspect", "--frame", "3"},
+                                               {"verify", "--frame", "3"},
+                                               {"export", "motion", "--frame", "3", "-o", folder / "none.bvh"}}) {
+    const auto refused = project(folder, words);
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.err.find("only export pose takes a frame") != std::string::npos);
+  }
+  // A clip with more constraints than the editor makes is no project of this program.
+  std::vector<Constraint> many;
+  for (std::size_t i = 0; i <= kMostConstraints; ++i) {
+    many.push_back(plant);
+    many.back().name = std::to_string(i);
+  }
+  for (const std::size_t count : {kMostConstraints + 1, kMostConstraints}) {
+    many.resize(count);
+    clip.constraints = std::make_shared<const Constraints>(Constraints{many});
+    document.clips = {std::make_shared<const Clip>(clip)};
+    create_project({.document = document}, folder / "arm.limber", writer);
+    CHECK((project(folder, {"verify"}).exit_code == 0) == (count == kMostConstraints));
+  }
   document.clips.clear();
   create_project({.document = document}, folder / "arm.limber", writer);
   const auto refused = project(folder, {"export", "pose", "--frame", "3", "-o", folder / "none.json"});
