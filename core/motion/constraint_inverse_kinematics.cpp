@@ -28,7 +28,9 @@ void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
       reach(rig.armature(), rig.pose(),
             {{.bone = on_rig.bone, .target = target_place(on_rig, rig), .chain = on_rig.constraint.chain}},
             {.keep_limits = on_rig.constraint.keep_limits, .restarts = kRestarts});
-  for (const int bone : turned(on_rig, rig.armature())) rig.set(bone, found.pose.rotation[bone]);
+  Pose next = rig.pose();
+  for (const int bone : turned(on_rig, rig.armature())) next.rotation[bone] = found.pose.rotation[bone];
+  rig.set_all(next);
 }
 
 }  // namespace

@@ -13,11 +13,8 @@ namespace limber {
 
 namespace {
 
-// A forearm or shank without a hand or foot ends its limb itself.
-bool has_end(const ConstraintOnRig& on_rig) { return on_rig.bone != on_rig.lower; }
-
 glm::dvec3 joint_of(const ConstraintOnRig& on_rig, const PosedRig& rig) {
-  return has_end(on_rig) ? rig.head(on_rig.bone) : rig.tail(on_rig.bone);
+  return has_planted_end(on_rig) ? rig.head(on_rig.bone) : rig.tail(on_rig.bone);
 }
 
 // Returns the axis about which the limb bends: the one about which it is bent already, on the side of its hinge. The
@@ -52,14 +49,14 @@ void bring_joint(const ConstraintOnRig& on_rig, PosedRig& rig, const glm::dvec3&
 }
 
 std::vector<int> turned(const ConstraintOnRig& on_rig, const Armature&) {
-  if (has_end(on_rig)) return {on_rig.upper, on_rig.lower, on_rig.bone};
+  if (has_planted_end(on_rig)) return {on_rig.upper, on_rig.lower, on_rig.bone};
   return {on_rig.upper, on_rig.lower};
 }
 
 void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
   const Constraint& constraint = on_rig.constraint;
   const glm::dvec3 place = target_place(on_rig, rig);
-  if (!has_end(on_rig)) return bring_joint(on_rig, rig, place);
+  if (!has_planted_end(on_rig)) return bring_joint(on_rig, rig, place);
   const glm::dquat frame = on_rig.target < 0 ? glm::dquat(1, 0, 0, 0) : rig.turn(on_rig.target);
   const glm::dquat direction =
       constraint.keeps_rotation ? glm::normalize(frame * constraint.rotation) : rig.turn(on_rig.bone);
@@ -69,6 +66,13 @@ void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
 }
 
 }  // namespace
+
+bool has_planted_end(const ConstraintOnRig& on_rig) { return on_rig.bone != on_rig.lower; }
+
+glm::dvec3 planted_point(const ConstraintOnRig& on_rig, const PosedRig& rig) {
+  const bool by_joint = on_rig.constraint.point == PlantPoint::Joint && has_planted_end(on_rig);
+  return by_joint ? rig.head(on_rig.bone) : rig.tail(on_rig.bone);
+}
 
 ConstraintRule plant_constraint() {
   return {

@@ -20,8 +20,8 @@ int bone_named(const Armature& armature, const Constraint& constraint, const std
 }
 
 // Finds the limb that a planted bone ends. A forearm or shank without a hand or foot is its own limb's end.
-void find_limb(ConstraintOnRig& found, const Armature& armature) {
-  for (const PlantedLimb& limb : planted_limbs(armature)) {
+void find_limb(ConstraintOnRig& found, const Armature& armature, const std::vector<PlantedLimb>& limbs) {
+  for (const PlantedLimb& limb : limbs) {
     if (found.bone != (limb.end >= 0 ? limb.end : limb.lower)) continue;
     found.upper = limb.upper;
     found.lower = limb.lower;
@@ -58,7 +58,7 @@ const ConstraintRule& constraint_rule(ConstraintKind kind) {
   return constraint_rules()[static_cast<std::size_t>(kind)];
 }
 
-ConstraintOnRig on_rig(const Constraint& constraint, const Armature& armature) {
+ConstraintOnRig on_rig(const Constraint& constraint, const Armature& armature, const std::vector<PlantedLimb>& limbs) {
   ConstraintOnRig found{constraint};
   const ConstraintTarget needed = constraint_rule(constraint.kind).target;
   found.bone = bone_named(armature, constraint, constraint.bone);
@@ -66,7 +66,7 @@ ConstraintOnRig on_rig(const Constraint& constraint, const Armature& armature) {
     found.target = bone_named(armature, constraint, constraint.target);
   if (needed == ConstraintTarget::Bone && found.target < 0)
     throw Error("the constraint has no target", constraint.name, "choose a bone as its target");
-  if (constraint.kind == ConstraintKind::Plant) find_limb(found, armature);
+  if (constraint.kind == ConstraintKind::Plant) find_limb(found, armature, limbs);
   return found;
 }
 

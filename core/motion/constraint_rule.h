@@ -44,10 +44,16 @@ std::span<const ConstraintRule> constraint_rules();
 const ConstraintRule& constraint_rule(ConstraintKind kind);
 
 // Finds the bones of a constraint. Throws Error with one line where the rig does not have them.
-ConstraintOnRig on_rig(const Constraint& constraint, const Armature& armature);
+//   limbs  from planted_limbs()
+ConstraintOnRig on_rig(const Constraint& constraint, const Armature& armature, const std::vector<PlantedLimb>& limbs);
 
 // Returns the place of the target in a pose, world, mm.
 glm::dvec3 target_place(const ConstraintOnRig& on_rig, const PosedRig& rig);
+
+// Of a plant: returns whether a hand or foot ends the limb. Otherwise the forearm or shank is planted by its tail.
+bool has_planted_end(const ConstraintOnRig& on_rig);
+// Returns the point of a planted bone that stays, in a pose, world, mm.
+glm::dvec3 planted_point(const ConstraintOnRig& on_rig, const PosedRig& rig);
 
 // Returns the bone alone, as most kinds turn nothing else.
 std::vector<int> turned_alone(const ConstraintOnRig& on_rig, const Armature& armature);

@@ -39,6 +39,114 @@ bool share_a_bone(const std::vector<int>& turned, const std::set<int>& bones) {
   return std::any_of(turned.begin(), turned.end(), [&](int bone) { return bones.contains(bone); });
 }
 
+// The constraints that are not yet in the order. One waits for another that turns a bone which it reads: it must. One
+// that turns the same bone as an earlier one of the list waits for that too, so that the later one has the last word,
+// unless this would close a circle.
+class WaitingConstraints {
+ public:
+  WaitingConstraints(std::size_t constraints, std::size_t bones)
+      : turned_(constraints),
+        read_(constraints),
+        turning_(bones) {}
+
+  void add(std::size_t one, const std::vector<int>& turned, const std::set<int>& read) {
+    turned_[one] = turned;
+    read_[one] = read;
+    all_.insert(one);
+    for (const int bone : turned) turning_[static_cast<std::size_t>(bone)].insert(one);
+  }
+  void take(std::size_t one) {
+    all_.erase(one);
+    for (const int bone : turned_[one]) turning_[static_cast<std::size_t>(bone)].erase(one);
+  }
+  bool empty() const { return all_.empty(); }
+
+  // Returns the first that waits for no other; nothing where all must wait for each other.
+  std::optional<std::size_t> next() const {
+    const auto first = [&](const auto& is_ready) -> std::optional<std::size_t> {
+      const auto found = std::find_if(all_.begin(), all_.end(), is_ready);
+      return found == all_.end() ? std::nullopt : std::optional(*found);
+    };
+    if (const auto free = first([&](std::size_t one) { return !must_wait_for(one) && !waits_for_earlier(one); }))
+      return free;
+    // Only a circle may break the list's order: each that one waits for waits for the one in turn. Those come first for
+    // which others must wait.
+    const auto is_in_circle = [&](std::size_t one) {
+      if (must_wait_for(one)) return false;
+      const std::set<std::size_t> earlier = earlier_of(one);
+      return std::all_of(earlier.begin(), earlier.end(),
+                         [&](std::size_t other) { return is_reached(other, one, false); });
+    };
+    const auto awaited = first([&](std::size_t one) { return is_awaited(one) && is_in_circle(one); });
+    return awaited ? awaited : first(is_in_circle);
+  }
+
+  // Returns a circle of constraints that must wait for each other: each for the next one, and the last is the first
+  // again. Where next() returns nothing, there is one.
+  std::vector<std::size_t> circle() const {
+    const auto start = std::find_if(all_.begin(), all_.end(), [&](std::size_t one) { return closes_circle(one); });
+    std::vector<std::size_t> circle{*start};
+    while (true) {
+      const std::set<std::size_t> others = must_wait_for_all(circle.back());
+      const std::size_t other =
+          *std::find_if(others.begin(), others.end(), [&](std::size_t one) { return closes_circle(one); });
+      const auto seen = std::find(circle.begin(), circle.end(), other);
+      const bool is_closed = seen != circle.end();
+      if (is_closed) circle.erase(circle.begin(), seen);
+      circle.push_back(other);
+      if (is_closed) return circle;
+    }
+  }
+
+ private:
+  const std::set<std::size_t>& turning(int bone) const { return turning_[static_cast<std::size_t>(bone)]; }
+  bool must_wait_for(std::size_t one) const {
+    return std::any_of(read_[one].begin(), read_[one].end(), [&](int bone) { return !turning(bone).empty(); });
+  }
+  bool is_awaited(std::size_t one) const {
+    return std::any_of(all_.begin(), all_.end(), [&](std::size_t other) {
+      return std::any_of(turned_[one].begin(), turned_[one].end(),
+                         [&](int bone) { return read_[other].contains(bone); });
+    });
+  }
+  bool waits_for_earlier(std::size_t one) const {
+    return std::any_of(turned_[one].begin(), turned_[one].end(),
+                       [&](int bone) { return !turning(bone).empty() && *turning(bone).begin() < one; });
+  }
+  std::set<std::size_t> must_wait_for_all(std::size_t one) const {
+    std::set<std::size_t> others;
+    for (const int bone : read_[one]) others.insert(turning(bone).begin(), turning(bone).end());
+    return others;
+  }
+  std::set<std::size_t> earlier_of(std::size_t one) const {
+    std::set<std::size_t> others;
+    for (const int bone : turned_[one]) others.insert(turning(bone).begin(), turning(bone).lower_bound(one));
+    return others;
+  }
+  // Returns whether the first waits for the last, or for one that waits for it, and so on.
+  //   must  only those count that must wait for another
+  bool is_reached(std::size_t first, std::size_t last, bool must) const {
+    std::set<std::size_t> reached;
+    std::vector<std::size_t> open{first};
+    while (!open.empty()) {
+      const std::size_t now = open.back();
+      open.pop_back();
+      std::set<std::size_t> others = must_wait_for_all(now);
+      if (!must) others.merge(earlier_of(now));
+      if (others.contains(last)) return true;
+      for (const std::size_t other : others)
+        if (reached.insert(other).second) open.push_back(other);
+    }
+    return false;
+  }
+  bool closes_circle(std::size_t one) const { return is_reached(one, one, true); }
+
+  std::vector<std::vector<int>> turned_;
+  std::vector<std::set<int>> read_;
+  std::vector<std::set<std::size_t>> turning_;  // for each bone those that turn it
+  std::set<std::size_t> all_;
+};
+
 }  // namespace
 
 ConstraintStack::ConstraintStack(std::shared_ptr<const Constraints> constraints,
@@ -53,46 +161,31 @@ ConstraintStack::ConstraintStack(std::shared_ptr<const Constraints> constraints,
 
 void ConstraintStack::find_order() {
   const std::vector<Constraint>& list = constraints_->list;
-  std::vector<std::set<int>> read(list.size());
-  std::set<std::size_t> waiting;
+  WaitingConstraints waiting(list.size(), armature_->bones.size());
+  const std::vector<PlantedLimb> limbs = planted_limbs(*armature_);
   for (std::size_t i = 0; i < list.size(); ++i) {
     try {
-      found_[i].emplace(on_rig(list[i], *armature_));
+      found_[i].emplace(on_rig(list[i], *armature_, limbs));
       const std::vector<int> turned = constraint_rule(list[i].kind).turned(*found_[i], *armature_);
       if (share_a_bone(turned, bones_of_target(*found_[i], *armature_)))
         throw Error("the target moves along with the constrained bone", list[i].name, "choose another target");
-      read[i] = bones_read(*found_[i], *armature_, turned);
+      if (!list[i].on) continue;
       turned_[i] = turned;
-      waiting.insert(i);
+      waiting.add(i, turned, bones_read(*found_[i], *armature_, turned));
     } catch (const Error& error) {
       problems_[i].emplace(error);
     }
   }
   // Takes the first in the list that waits for no other, again and again [Kahn 1962].
-  const auto waits_for = [&](std::size_t one) {
-    return std::find_if(waiting.begin(), waiting.end(),
-                        [&](std::size_t other) { return other != one && share_a_bone(turned_[other], read[one]); });
-  };
   while (!waiting.empty()) {
-    const auto next =
-        std::find_if(waiting.begin(), waiting.end(), [&](std::size_t one) { return waits_for(one) == waiting.end(); });
-    if (next != waiting.end()) {
+    if (const auto next = waiting.next()) {
       order_.push_back(*next);
-      waiting.erase(next);
+      waiting.take(*next);
       continue;
     }
-    // All wait for another. Whoever goes from each to the one that it waits for comes into a circle.
-    std::vector<std::size_t> circle{*waiting.begin()};
-    while (true) {
-      const std::size_t other = *waits_for(circle.back());
-      const auto seen = std::find(circle.begin(), circle.end(), other) - circle.begin();
-      circle.push_back(other);
-      if (seen == std::ssize(circle) - 1) continue;
-      circle.erase(circle.begin(), circle.begin() + seen);
-      break;
-    }
+    const std::vector<std::size_t> circle = waiting.circle();
     leave_out(circle);
-    for (const std::size_t one : circle) waiting.erase(one);
+    for (const std::size_t one : circle) waiting.take(one);
   }
 }
 

@@ -3,8 +3,9 @@
 //
 // They are applied in the list's order, except that a constraint waits for those that turn its target, or a bone above
 // the bones that it turns: a hand is planted on the hip after the hip has its rotation. Where two constraints turn the
-// same bone, the later one has the last word. Constraints that wait for each other in a circle have no order. They are
-// not applied, and problem() says so; so are those whose bones the rig does not have.
+// same bone, the later one has the last word: it waits for the earlier one too, unless that would wait for it in turn.
+// Constraints that must wait for each other in a circle have no order. They are not applied, and problem() says so; so
+// are those whose bones the rig does not have. One that is switched off keeps no other waiting.
 #pragma once
 
 #include <memory>
@@ -32,6 +33,8 @@ class ConstraintStack {
   void require_applied(std::size_t index) const;
   // Returns the indices of the constraints that are applied, in the order in which they are.
   const std::vector<std::size_t>& order() const { return order_; }
+  // Returns a constraint with its bones; nothing where the rig does not have them.
+  const std::optional<ConstraintOnRig>& found(std::size_t index) const { return found_[index]; }
   // Returns the bones that a constraint turns; empty if it is not applied.
   const std::vector<int>& turned(std::size_t index) const { return turned_[index]; }
   const std::shared_ptr<const Constraints>& constraints() const { return constraints_; }

@@ -35,6 +35,11 @@ class PosedRig {
     pose_.rotation[bone] = rotation;
     posed_ = posed_from_rest(armature_, pose_);
   }
+  // Gives all bones the rotations of another pose.
+  void set_all(const Pose& pose) {
+    pose_ = pose;
+    posed_ = posed_from_rest(armature_, pose_);
+  }
   // Goes back towards an earlier pose's rotation of a bone: by all of the way for share 0, not at all for share 1.
   void mix_back(int bone, const Pose& earlier, double share) {
     pose_.rotation[bone] = glm::normalize(glm::slerp(earlier.rotation[bone], pose_.rotation[bone], share));

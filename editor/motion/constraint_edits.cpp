@@ -64,7 +64,8 @@ void require_applicable(const Editor& editor, const Constraints& constraints, co
 
 // Returns the place of a bone's end in the document's pose: of a planted foot or hand the point that stays.
 glm::dvec3 end_of(const Constraint& constraint, const Armature& armature, const PosedRig& rig, int bone) {
-  if (constraint.kind == ConstraintKind::Plant && constraint.point == PlantPoint::Joint) return rig.head(bone);
+  if (constraint.kind == ConstraintKind::Plant)
+    return planted_point(on_rig(constraint, armature, planted_limbs(armature)), rig);
   if (constraint.kind != ConstraintKind::Aim) return rig.tail(bone);
   const int aim = static_cast<int>(constraint.aim);
   const glm::dvec3 axis = (aim % 2 == 0 ? 1.0 : -1.0) * rest_axes(armature.bones[bone])[aim / 2];
@@ -160,6 +161,7 @@ const Constraint* active_constraint(const Editor& editor) {
     if (!first) first = &constraint;
   }
   return first;
+  place_target(added, armature, pose_of(editor.document()));
 }
 
 void add_constraint(Editor& editor, ConstraintKind kind) {
@@ -173,7 +175,6 @@ void add_constraint(Editor& editor, ConstraintKind kind) {
   if (rule.target == ConstraintTarget::Bone && added.target.empty())
     throw Error("the constraint needs a target", rule.name, "select the target bone, then with Shift the bone");
   if (kind == ConstraintKind::Aim) added.aim = looking_axis(armature, *editor.selection.bone);
-  place_target(added, armature, pose_of(editor.document()));
   added.name = unique_constraint_name(constraints_of(editor.document()), rule.name + " " + added.bone);
   Constraints next = constraints_of(editor.document());
   next.list.push_back(added);
@@ -202,6 +203,22 @@ void change_constraint(Editor& editor, const std::string& name, const std::strin
 }
 
 void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change) {
+void set_planted_point(Editor& editor, const std::string& name, PlantPoint point) {
+  settle_frame(editor);
+  change_constraint(editor, name, "Set planted point", [&](Constraint& constraint) {
+    constraint.point = point;
+    place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+  });
+}
+
+void keep_direction(Editor& editor, const std::string& name, bool keeps) {
+  settle_frame(editor);
+  change_constraint(editor, name, "Keep direction", [&](Constraint& constraint) {
+    constraint.keeps_rotation = keeps;
+    if (keeps) place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+  });
+}
+
   show_changed(editor, [&](Clip& clip) {
     change_list(clip, [&](Constraints& constraints) { change(named(constraints, name)); });
   });

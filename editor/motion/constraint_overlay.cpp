@@ -20,8 +20,7 @@ glm::dvec3 middle_of(const PosedRig& rig, int bone) { return 0.5 * (rig.head(bon
 glm::dvec3 begin_of(const ConstraintOnRig& found, const PosedRig& rig) {
   switch (found.constraint.kind) {
     case ConstraintKind::Aim: return rig.head(found.bone);
-    case ConstraintKind::Plant:
-      return found.constraint.point == PlantPoint::Joint ? rig.head(found.bone) : rig.tail(found.bone);
+    case ConstraintKind::Plant: return planted_point(found, rig);
     case ConstraintKind::InverseKinematics: return rig.tail(found.bone);
     default: return middle_of(rig, found.bone);
   }
@@ -44,13 +43,12 @@ void draw_constraint_lines(Editor& editor) {
   const ClipOnRig* clip = clip_on_rig(editor);
   const std::optional<ViewProjection> view = clip && clip->constraints() ? body_seen(editor) : std::nullopt;
   if (!view) return;
-  const Armature& armature = *editor.document().armature;
-  const PosedRig rig(armature, shown_pose(editor));
+  const PosedRig rig(*clip->armature(), shown_pose(editor));
   const GizmoPainter painter(editor, *view);
   for (const std::size_t index : clip->constraints()->order()) {
     const Constraint& constraint = clip->constraints()->constraints()->list[index];
     if (!constraint.on || constraint_rule(constraint.kind).target == ConstraintTarget::None) continue;
-    const ConstraintOnRig found = on_rig(constraint, armature);
+    const ConstraintOnRig& found = *clip->constraints()->found(index);
     draw_line(painter, found, rig, editor.selection.bones.contains(found.bone) ? kViewAccent : kQuiet);
   }
 }
