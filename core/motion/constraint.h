@@ -43,7 +43,8 @@ struct Constraint {
   std::string target;
   glm::dvec3 place{0};
 
-  // Copy and limit rotation: which parts of the rotation vector are copied or limited, about the bone's own axes.
+  // Limit rotation: which parts of the rotation vector are limited, about the bone's own axes. Copy rotation: which
+  // parts of the turn from the bone's own rotation to its target's are taken.
   std::array<bool, 3> axes{true, true, true};
   RotationSpace space = RotationSpace::World;                            // copy rotation
   glm::dvec3 minimum{glm::radians(-30.0)}, maximum{glm::radians(30.0)};  // limit rotation: about the own axes

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Copy rotation: a bone turns from its rest pose as another bone does. With all axes the copy is exact. Otherwise the
-// rotation vectors of both bones are split about the constrained bone's own axes at rest, and the chosen parts copied.
+// Copy rotation: a bone turns from its rest pose as another bone does. With all axes the copy is exact. Otherwise
+// the turn from the bone's own rotation to the other's is split about the bone's own axes, and the bone takes the
+// chosen parts of it: it nods as its target does, wherever the body is turned.
 #include "core/motion/constraint_rule.h"
 #include "core/motion/key_curve.h"
 #include "core/rig/joint_limits.h"
@@ -16,12 +17,11 @@ void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
   glm::dquat copied = rotation(on_rig.target);
   if (constraint.axes != std::array<bool, 3>{true, true, true}) {
     const glm::dmat3 axes = rest_axes(rig.armature().bones[on_rig.bone]), back = glm::transpose(axes);
-    const glm::dquat none(1, 0, 0, 0);
-    const glm::dvec3 theirs = back * turn_between(none, copied);
-    glm::dvec3 parts = back * turn_between(none, rotation(on_rig.bone));
+    const glm::dquat own = rotation(on_rig.bone);
+    glm::dvec3 parts = back * turn_between(glm::dquat(1, 0, 0, 0), glm::conjugate(own) * copied);
     for (int axis = 0; axis < 3; ++axis)
-      if (constraint.axes[axis]) parts[axis] = theirs[axis];
-    copied = exponential(axes * parts);
+      if (!constraint.axes[axis]) parts[axis] = 0;
+    copied = glm::normalize(own * exponential(axes * parts));
   }
   if (in_world) rig.turn_to(on_rig.bone, copied);
   else rig.set(on_rig.bone, copied);
