@@ -142,13 +142,21 @@ void carry_constraints(Clip& clip, const Armature& before, const Armature& after
       drop_weights(clip, constraint.name);
       continue;
     }
-    const auto bone = before.find(constraint.bone);
-    if (bone && gone_over.names.contains(constraint.bone))
+    const bool bone_goes = gone_over.names.contains(constraint.bone);
+    // A place goes over with the bone that it is fixed to. One in the world, or on a bone of no side, does with the
+    // constrained bone.
+    const bool place_goes =
+        gone_over.names.contains(constraint.target) || (bone_goes && !mirrored_name(constraint.target));
+    const Constraint was = constraint;
+    if (const auto bone = before.find(constraint.bone); bone && bone_goes)
       constraint = mirror_image(constraint, before.bones[*bone], after.bones[*bone], plane);
     constraint.bone = gone_over.now(constraint.bone);
     constraint.target = gone_over.now(constraint.target);
     next.list.push_back(constraint);
   }
+    constraint.place = place_goes ? plane.place(was.place) : was.place;
+    constraint.rotation = place_goes ? plane.rotation(was.rotation) : was.rotation;
+    bones.push_back(constraint.bone);
   take_list(clip, std::move(next));
 }
 

@@ -193,6 +193,22 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
   follow_mirrored(document, rig, mirrored, {1});
   CHECK(document.clips[0]->constraints->list.size() == 2);
   CHECK(document.clips[0]->keys.weights == std::map<std::string, std::map<int, double>>{{"Aim", {{0, 0.5}, {20, 1}}}});
+  // A place goes over with the bone that it is fixed to, and stays on a bone of the other side that does not.
+  Document targets = before;
+  Constraint from_trunk{
+      .name = "A", .kind = ConstraintKind::Aim, .bone = "Trunk", .target = "Arm.L", .place{60, 5, 90}},
+      to_leg{.name = "B", .kind = ConstraintKind::Plant, .bone = "Arm.L", .target = "Leg.R", .place{-20, 3, 8}};
+  from_trunk.rotation = glm::angleAxis(0.3, glm::dvec3(0, 0, 1));
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{from_trunk, to_leg}});
+  targets.clips = {std::make_shared<const Clip>(clip)};
+  follow_mirrored(targets, rig, mirrored, {1});
+  const std::vector<Constraint>& over = targets.clips[0]->constraints->list;
+  CHECK(over[0].target == "Arm.R");
+  CHECK(glm::distance(over[0].place, mirrored.bones[1].tail) < 1e-9);
+  CHECK(std::abs(glm::dot(over[0].rotation, glm::angleAxis(-0.3, glm::dvec3(0, 0, 1)))) > 1 - 1e-12);
+  CHECK(over[0].axes == from_trunk.axes);
+  CHECK(over[1].bone == "Arm.R");
+  CHECK(over[1].place == to_leg.place);
   // The constraints of a trunk that does not move do the same in the mirror.
   const auto after = std::make_shared<const Armature>(mirrored);
   for (const int frame : {0, 9, 20}) {
