@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/motion/clip_keys.h"
 #include "core/motion/clip_speed.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
@@ -168,10 +169,7 @@ void trim(Editor& editor) {
       clip.first = first;
       clip.last = last;
     }
-    std::set<int> outside;
-    for (int frame : frames_of(clip.keys))
-      if (frame < low || frame > high) outside.insert(frame);
-    delete_keys(clip.keys, outside);
+    delete_clip_keys_outside(clip, low, high);
     std::erase_if(clip.markers, [&](const Marker& marker) { return marker.frame < low || marker.frame > high; });
   });
 }

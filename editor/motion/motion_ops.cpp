@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/clip_keys.h"
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/constrained_pose.h"
@@ -118,7 +119,7 @@ void choose_keys(Editor& editor, bool all) {
 
 void delete_chosen_keys(Editor& editor) {
   const std::set<int> chosen = std::exchange(editor.timeline->chosen, {});
-  edit_clip(editor, "Delete keys", PoseThen::FromClip, [&](Clip& clip) { delete_keys(clip.keys, chosen); });
+  edit_clip(editor, "Delete keys", PoseThen::FromClip, [&](Clip& clip) { delete_clip_keys(clip, chosen); });
 }
 
 // Sets the playing range from the first to the last selected key. When fewer than two keys are selected, sets it to the
