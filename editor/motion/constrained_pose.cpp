@@ -4,11 +4,12 @@
 #include "core/motion/constraint_stack.h"
 #include "editor/shown/shown_pose.h"
 
+#include "editor/context/document_edits.h"
 namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kMostPoses = 64;
+constexpr std::size_t kMostPoses = 512;
 
 }  // namespace
 
@@ -62,3 +63,25 @@ void remember_free_pose(Editor& editor, const Document& document, const Pose& sh
 }
 
 }  // namespace limber::editor
+void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change) {
+  stop_playing(editor);
+  settle_frame(editor);
+  Document next = editor.document();
+  const Pose free = unconstrained_pose(editor), rest = rest_pose(*next.armature);
+  // A motion that cannot move the rig leaves the pose to the user, as no motion does.
+  const ClipOnRig* before = clip_on_rig(editor);
+  const bool is_bare = !before || (!before->retarget() && before->clip()->keys.empty() && !before->clip()->constraints);
+  if (is_bare && free != rest) key_changes(next, rest, free);
+  if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
+  auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
+  Clip clip = *shown;
+  change(clip);
+  if (clip.constraints && clip.constraints->list.empty()) clip.constraints = nullptr;
+  shown = std::make_shared<const Clip>(std::move(clip));
+  const Pose held = constrained_pose(ClipOnRig(shown, next.armature, clip_on_rig(editor)), free, next.frame);
+  next.pose = held == rest ? nullptr : std::make_shared<const Pose>(held);
+  remember_free_pose(editor, next, held, free);
+  drop_shown_pose(editor);
+  if (next != editor.document()) commit(editor, label, std::move(next));
+}
+

@@ -6,6 +6,10 @@
 #pragma once
 
 #include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "editor/motion/timeline.h"
 
@@ -36,3 +40,6 @@ Pose held_by_constraints(Editor& editor, const Pose& changed);
 void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);
 
 }  // namespace limber::editor
+// Changes the shown clip as one edit. The free pose stays as it is, with the user's changes, and the clip's constraints
+// hold again.
+void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change);

@@ -20,28 +20,6 @@ namespace {
 constexpr std::int64_t kMostFrames = 100'000;  // longer ranges are not baked into keys
 constexpr double kInFrontMm = 300;             // how far in front of its bone a new aim has its target
 
-// Changes the shown clip. The pose without constraints stays as it is, with the user's changes.
-void change_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change) {
-  stop_playing(editor);
-  settle_frame(editor);
-  Document next = editor.document();
-  const Pose free = unconstrained_pose(editor), rest = rest_pose(*next.armature);
-  const bool is_bare = !next.shown_clip() || (!next.shown_clip()->motion && next.shown_clip()->keys.empty() &&
-                                              !next.shown_clip()->constraints);
-  if (is_bare && free != rest) key_changes(next, rest, free);
-  if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
-  auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
-  Clip clip = *shown;
-  change(clip);
-  if (clip.constraints && clip.constraints->list.empty()) clip.constraints = nullptr;
-  shown = std::make_shared<const Clip>(std::move(clip));
-  const Pose held = constrained_pose(ClipOnRig(shown, next.armature, clip_on_rig(editor)), free, next.frame);
-  next.pose = held == rest ? nullptr : std::make_shared<const Pose>(held);
-  remember_free_pose(editor, next, held, free);
-  drop_shown_pose(editor);
-  if (next != editor.document()) commit(editor, label, std::move(next));
-}
-
 void change_list(Clip& clip, const std::function<void(Constraints&)>& change) {
   Constraints constraints = clip.constraints ? *clip.constraints : Constraints{};
   change(constraints);
@@ -179,12 +157,13 @@ void add_constraint(Editor& editor, ConstraintKind kind) {
   Constraints next = constraints_of(editor.document());
   next.list.push_back(added);
   require_applicable(editor, next, added.name);
-  change_clip(editor, rule.name, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
+  change_free_clip(editor, rule.name,
+                   [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
   editor.timeline->constraint = added.name;
 }
 
 void remove_constraint(Editor& editor, const std::string& name) {
-  change_clip(editor, "Remove constraint", [&](Clip& clip) {
+  change_free_clip(editor, "Remove constraint", [&](Clip& clip) {
     change_list(clip, [&](Constraints& constraints) {
       std::erase_if(constraints.list, [&](const Constraint& constraint) { return constraint.name == name; });
     });
@@ -199,7 +178,7 @@ void change_constraint(Editor& editor, const std::string& name, const std::strin
   change(named(next, name));
   if (next == constraints_of(editor.document())) return drop_shown_pose(editor);
   require_applicable(editor, next, name);
-  change_clip(editor, label, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
+  change_free_clip(editor, label, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
 }
 
 void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change) {
@@ -255,7 +234,7 @@ double shown_weight(const Editor& editor, const Constraint& constraint) {
 void set_weight(Editor& editor, const std::string& name, double weight) {
   settle_frame(editor);
   const int frame = editor.document().frame;
-  change_clip(editor, "Set weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
+  change_free_clip(editor, "Set weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
 }
 
 void preview_weight(Editor& editor, const std::string& name, double weight) {
@@ -269,7 +248,7 @@ void toggle_weight_key(Editor& editor, const std::string& name) {
   const int frame = editor.document().frame;
   const double weight = shown_weight(editor, *constraint);
   const bool is_keyed = has_weight_key(editor, *constraint, frame);
-  change_clip(editor, is_keyed ? "Delete weight key" : "Key weight", [&](Clip& clip) {
+  change_free_clip(editor, is_keyed ? "Delete weight key" : "Key weight", [&](Clip& clip) {
     if (is_keyed) delete_weight_key(clip.keys, name, frame);
     else insert_weight_key(clip.keys, name, frame, weight);
     // The weight without keys is what the last key had.
@@ -285,7 +264,7 @@ void switch_weight(Editor& editor, const std::string& name) {
   const int frame = editor.document().frame;
   const int later = frame + std::max(1, static_cast<int>(std::lround(frame_rate(editor) / 3)));
   const double weight = shown_weight(editor, *constraint);
-  change_clip(editor, "Switch weight", [&](Clip& clip) {
+  change_free_clip(editor, "Switch weight", [&](Clip& clip) {
     insert_weight_key(clip.keys, name, frame, weight);
     insert_weight_key(clip.keys, name, later, weight > 0.5 ? 0 : 1);
   });
@@ -294,7 +273,7 @@ void switch_weight(Editor& editor, const std::string& name) {
 }
 
 void set_weight_steps(Editor& editor, const std::string& name, Interpolation next) {
-  change_clip(editor, "Set steps of weight", [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
+  change_free_clip(editor, "Set steps of weight", [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
 }
 
 void apply_constraints(Editor& editor) {

@@ -82,8 +82,9 @@ void insert_key_here(Editor& editor) {
   const Pose pose = unconstrained_pose(editor);
   const int frame = editor.document().frame;
   const std::shared_ptr<const Armature> armature = editor.document().armature;
-  edit_clip(editor, "Insert key", is_constrained(editor.document()) ? PoseThen::FromClip : PoseThen::Stays,
-            [&](Clip& clip) { insert_key(clip.keys, *armature, pose, bones, frame); });
+  const auto insert = [&](Clip& clip) { insert_key(clip.keys, *armature, pose, bones, frame); };
+  if (is_constrained(editor.document())) change_free_clip(editor, "Insert key", insert);
+  else edit_clip(editor, "Insert key", PoseThen::Stays, insert);
 }
 
 void delete_key_here(Editor& editor) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "editor/context/document_edits.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/shown/shown_pose.h"
 
 namespace limber::editor {
@@ -198,6 +199,8 @@ void add_clip(Document& document, Clip clip) {
 void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit) {
   settle_frame(editor);
   Document next = editor.document();
+  const std::optional<Pose> free =
+      pose == PoseThen::Stays && is_constrained(next) ? std::optional(unconstrained_pose(editor)) : std::nullopt;
   if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
   auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
   Clip clip = *shown;
@@ -212,6 +215,7 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
   }
   shown = std::make_shared<const Clip>(std::move(clip));
   if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  if (free) remember_free_pose(editor, next, pose_of(next), *free);
   commit(editor, label, std::move(next));
 }
 
