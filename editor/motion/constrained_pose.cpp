@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/motion/constrained_pose.h"
 
+#include <algorithm>
+
 #include "core/motion/constraint_stack.h"
+#include "editor/context/document_edits.h"
 #include "editor/shown/shown_pose.h"
 
-#include "editor/context/document_edits.h"
 namespace limber::editor {
 
 namespace {
@@ -31,16 +33,18 @@ Pose unconstrained_pose(Editor& editor) {
   return pose;
 }
 
-Pose unconstrained_pose(Editor& editor, const Pose& changed) {
+Pose unconstrained_pose(Editor& editor, const Pose& changed, const std::vector<int>& set) {
   if (!is_constrained(editor.document())) return changed;
   const Pose before = pose_of(editor.document());
   Pose free = unconstrained_pose(editor);
   free.root_translation = changed.root_translation;
+  const auto is_set = [&](std::size_t bone) { return std::find(set.begin(), set.end(), bone) != set.end(); };
   for (std::size_t bone = 0; bone < free.rotation.size(); ++bone) {
     const glm::dquat &was = before.rotation[bone], &is = changed.rotation[bone];
     if (is == was) continue;
-    free.rotation[bone] =
-        free.rotation[bone] == was ? is : glm::normalize(is * glm::conjugate(was) * free.rotation[bone]);
+    free.rotation[bone] = is_set(bone) || free.rotation[bone] == was
+                              ? is
+                              : glm::normalize(is * glm::conjugate(was) * free.rotation[bone]);
   }
   return free;
 }
@@ -49,9 +53,9 @@ Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame) {
   return clip.constraints() ? clip.constraints()->constrained(free, clip.clip()->keys, frame) : free;
 }
 
-Pose held_by_constraints(Editor& editor, const Pose& changed) {
+Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set) {
   if (!is_constrained(editor.document())) return changed;
-  const Pose free = unconstrained_pose(editor, changed);
+  const Pose free = unconstrained_pose(editor, changed, set);
   return constrained_pose(*clip_on_rig(editor), free, editor.document().frame);
 }
 
@@ -62,7 +66,6 @@ void remember_free_pose(Editor& editor, const Document& document, const Pose& sh
   if (by_hand->poses.size() > kMostPoses) by_hand->poses.pop_back();
 }
 
-}  // namespace limber::editor
 void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change) {
   stop_playing(editor);
   settle_frame(editor);
@@ -85,3 +88,4 @@ void change_free_clip(Editor& editor, const std::string& label, const std::funct
   if (next != editor.document()) commit(editor, label, std::move(next));
 }
 
+}  // namespace limber::editor

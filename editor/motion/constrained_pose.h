@@ -31,15 +31,17 @@ bool is_constrained(const Document& document);
 Pose unconstrained_pose(Editor& editor);
 // Returns the free pose after the user has changed the document's pose to `changed`: bones that constraints have turned
 // are turned by as much, the others as they are in `changed`.
-Pose unconstrained_pose(Editor& editor, const Pose& changed);
+//   set  bones whose rotations were set and not turned. They too are as in `changed`; else each repetition would turn
+//        them further.
+Pose unconstrained_pose(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
 // Returns `free` with the constraints of a clip; unchanged if it has none.
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 // Returns the pose to show after the user has changed the document's pose to `changed`.
-Pose held_by_constraints(Editor& editor, const Pose& changed);
+Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
 // Remembers what the free pose of a pose is, at the frame of the document's shown clip.
 void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);
-
-}  // namespace limber::editor
 // Changes the shown clip as one edit. The free pose stays as it is, with the user's changes, and the clip's constraints
 // hold again.
 void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change);
+
+}  // namespace limber::editor

@@ -44,12 +44,14 @@ void take_change(Editor& editor, const ShownAngle& angle, bool changed, bool com
     stop_playing(editor);
     settle_frame(editor);
     edited = {angle.name, value};
-    preview_pose(editor, angle.pose_at(value));
+    const Pose pose = angle.pose_at(value);
+    preview_pose(editor, pose, changed_bones(pose_of(editor.document()), pose));
   }
   if (!committed || edited.name != angle.name) return;
   const double number = edited.value;
   edited = {};
-  commit_pose(editor, "Set " + angle.name, angle.pose_at(number));
+  const Pose pose = angle.pose_at(number);
+  commit_pose(editor, "Set " + angle.name, pose, changed_bones(pose_of(editor.document()), pose));
 }
 
 void draw_number_of(Editor& editor, const ShownAngle& angle, const Rect& rect, double shown) {

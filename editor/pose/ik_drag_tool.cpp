@@ -110,7 +110,9 @@ class Dragging final : public TransformTool {
     const Reach found = reach(*armature_, start, goals, settings);
     reached_ = found.reached;
     short_of_ = found.distance;
-    return mirrored_too(editor, before_, found.pose);
+    const Pose next = mirrored_too(editor, before_, found.pose);
+    mirrored_ = changed_bones(found.pose, next);
+    return next;
   }
 
   std::vector<FormField> parameters() const override {
@@ -125,9 +127,13 @@ class Dragging final : public TransformTool {
     if (!is_root_) chain_ = static_cast<int>(std::round(fields[4].value));
   }
 
-  void show(Editor& editor) override { preview_pose(editor, pose(editor)); }
+  void show(Editor& editor) override {
+    const Pose next = pose(editor);
+    preview_pose(editor, next, mirrored_);
+  }
   void keep(Editor& editor) override {
-    commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, pose(editor));
+    const Pose next = pose(editor);
+    commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, next, mirrored_);
   }
 
   std::shared_ptr<const Armature> armature_;
@@ -136,6 +142,7 @@ class Dragging final : public TransformTool {
   bool is_root_ = false, reached_ = true;
   glm::dvec3 from_{0}, target_{0};
   std::vector<ReachGoal> pins_;
+  std::vector<int> mirrored_;  // the bones that X-mirror turns too
   std::optional<glm::dvec3> pole_;
   double short_of_ = 0;
 };

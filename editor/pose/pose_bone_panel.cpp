@@ -35,12 +35,14 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, cons
     stop_playing(editor);
     settle_frame(editor);
     edited = {name, value};
-    preview_pose(editor, changed(value));
+    const Pose pose = changed(value);
+    preview_pose(editor, pose, changed_bones(pose_of(editor.document()), pose));
   }
   if (!committed || edited.name != name) return;
   const double number = edited.value;
   edited = {};
-  commit_pose(editor, label, changed(number));
+  const Pose pose = changed(number);
+  commit_pose(editor, label, pose, changed_bones(pose_of(editor.document()), pose));
 }
 
 // Draws number fields for x, y and z in one row, wider than the single field of other rows.

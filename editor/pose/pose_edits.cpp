@@ -58,28 +58,37 @@ Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones) {
   return pose;
 }
 
-void preview_pose(Editor& editor, const Pose& pose) { show_pose(editor, held_by_constraints(editor, pose)); }
-
-void commit_pose(Editor& editor, const std::string& label, Pose pose) {
-  commit_pose(editor, label, std::move(pose), editor.document());
+void preview_pose(Editor& editor, const Pose& pose, const std::vector<int>& set) {
+  show_pose(editor, held_by_constraints(editor, pose, set));
 }
 
-void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next) {
+void commit_pose(Editor& editor, const std::string& label, Pose pose, const std::vector<int>& set) {
+  commit_pose(editor, label, std::move(pose), editor.document(), set);
+}
+
+void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next, const std::vector<int>& set) {
   drop_shown_pose(editor);
   // In the Skin workspace, lets the views show the document's pose instead of a test pose, so that the user sees the
   // change.
   if (editor.workspace == Workspace::Skin) *editor.trial = {.posed = true};
   if (const Pose before = pose_of(next); pose != before) {
     const bool constrains = is_constrained(editor.document());
-    const Pose free = unconstrained_pose(editor, pose);
+    const Pose free = unconstrained_pose(editor, pose, set);
     if (editor.timeline->auto_key) key_changes(next, constrains ? unconstrained_pose(editor) : before, free);
     if (constrains) {
-      pose = held_by_constraints(editor, pose);
+      pose = held_by_constraints(editor, pose, set);
       remember_free_pose(editor, next, pose, free);
     }
     next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
   }
   if (next != editor.document()) commit(editor, label, std::move(next));
+}
+
+std::vector<int> changed_bones(const Pose& before, const Pose& after) {
+  std::vector<int> bones;
+  for (std::size_t bone = 0; bone < before.rotation.size(); ++bone)
+    if (before.rotation[bone] != after.rotation[bone]) bones.push_back(static_cast<int>(bone));
+  return bones;
 }
 
 const Anchors& anchors_of(const Document& document) {

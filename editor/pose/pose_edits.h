@@ -29,11 +29,15 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 
 // Shows the changed pose without an edit, as commit_pose() would commit it: constraints of the clip hold in it.
-void preview_pose(Editor& editor, const Pose& pose);
+//   set  bones whose rotations are set, as by a typed angle; the others are turned from where they were. Constraints
+//        tell these apart (editor/motion/constrained_pose.h).
+void preview_pose(Editor& editor, const Pose& pose, const std::vector<int>& set = {});
 // Commits the pose as one edit; does nothing when the document does not change.
-void commit_pose(Editor& editor, const std::string& label, Pose pose);
+void commit_pose(Editor& editor, const std::string& label, Pose pose, const std::vector<int>& set = {});
 //   next  the document to commit with the pose; it may contain other changes
-void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next);
+void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next, const std::vector<int>& set = {});
+// Returns the bones whose rotations differ.
+std::vector<int> changed_bones(const Pose& before, const Pose& after);
 
 // Returns the document's pins and poles; empty when the document has none.
 const Anchors& anchors_of(const Document& document);

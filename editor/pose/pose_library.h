@@ -16,6 +16,8 @@ const NamedPose* chosen_pose(const Editor& editor);  // the selected pose of the
 // Returns the document's pose with the selected bones blended towards the named pose.
 //   share  how far, [0, 1]; 1: the named pose
 Pose on_the_way_to(const Editor& editor, const NamedPose& named, double share);
+// Returns the bones whose rotations this sets (preview_pose()): those selected at 1, below it bones are only turned.
+std::vector<int> set_on_the_way(const Editor& editor, double share);
 void apply_pose(Editor& editor, const NamedPose& named, double share);
 
 std::vector<Operator> pose_library_operators();

@@ -134,9 +134,14 @@ Pose on_the_way_to(const Editor& editor, const NamedPose& named, double share) {
   return limited(editor, std::move(pose), bones);
 }
 
+std::vector<int> set_on_the_way(const Editor& editor, double share) {
+  return share >= 1 ? chosen_bones(editor) : std::vector<int>{};
+}
+
 void apply_pose(Editor& editor, const NamedPose& named, double share) {
   settle_frame(editor);
-  commit_pose(editor, (share < 1 ? "Blend to " : "Apply ") + named.name, on_the_way_to(editor, named, share));
+  commit_pose(editor, (share < 1 ? "Blend to " : "Apply ") + named.name, on_the_way_to(editor, named, share),
+              set_on_the_way(editor, share));
 }
 
 std::vector<Operator> pose_library_operators() {

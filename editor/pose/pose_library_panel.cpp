@@ -59,7 +59,7 @@ void take_press(Editor& editor, const NamedPose& pose, const std::string& name, 
   }
   if (pressed.held) {
     drag.moved = drag.moved || std::abs(way) >= kFirstPixels * scale;
-    if (drag.moved) preview_pose(editor, on_the_way_to(editor, pose, share));
+    if (drag.moved) preview_pose(editor, on_the_way_to(editor, pose, share), set_on_the_way(editor, share));
     return;
   }
   const bool moved = drag.moved;

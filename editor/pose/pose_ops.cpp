@@ -91,8 +91,9 @@ std::string needs_copy(const Editor& editor) {
 
 void clear_rotation(Editor& editor) {
   Pose pose = pose_of(editor.document());
-  for (int bone : chosen_bones(editor)) pose.rotation[bone] = {1, 0, 0, 0};
-  commit_pose(editor, "Clear rotation", std::move(pose));
+  const std::vector<int> bones = chosen_bones(editor);
+  for (int bone : bones) pose.rotation[bone] = {1, 0, 0, 0};
+  commit_pose(editor, "Clear rotation", std::move(pose), bones);
 }
 
 void clear_translation(Editor& editor) {
@@ -128,14 +129,15 @@ void paste_pose(Editor& editor, bool flip) {
       pose.rotation[b] = copied.rotation[b];
       changed.push_back(static_cast<int>(b));
     }
-  commit_pose(editor, flip ? "Paste flipped pose" : "Paste pose", limited(editor, std::move(pose), changed));
+  commit_pose(editor, flip ? "Paste flipped pose" : "Paste pose", limited(editor, std::move(pose), changed), changed);
 }
 
 void flip_pose(Editor& editor) {
   const std::shared_ptr<const Armature> armature = editor.document().armature;
   const std::vector<int> all = topmost(*armature, chosen_bones(editor));
   Pose pose = flipped(pose_of(editor.document()), *armature);
-  commit_pose(editor, "Flip pose", limited(editor, std::move(pose), all));
+  pose = limited(editor, std::move(pose), all);
+  commit_pose(editor, "Flip pose", pose, changed_bones(pose_of(editor.document()), pose));
 }
 
 // The document's pose, and the same pose with the selected bones at rest.

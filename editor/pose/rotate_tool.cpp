@@ -148,7 +148,9 @@ class Turning final : public TransformTool {
       next.rotation[bone] = glm::normalize(glm::conjugate(above) * world * above * before_.rotation[bone]);
     }
     const Pose asked = next;
-    next = limited(editor, mirrored_too(editor, before_, std::move(next)), bones_);
+    next = mirrored_too(editor, before_, std::move(next));
+    mirrored_ = changed_bones(asked, next);
+    next = limited(editor, std::move(next), bones_);
     held_.reset();
     for (int bone : bones_) {
       if (held_ != active_ && is_held(bone, asked, next)) held_ = bone;
@@ -204,13 +206,16 @@ class Turning final : public TransformTool {
     if (lock_.axis != before.axis || lock_.space != before.space) by_ring_ = false;
   }
 
-  void show(Editor& editor) override { preview_pose(editor, pose(editor)); }
+  void show(Editor& editor) override {
+    const Pose next = pose(editor);
+    preview_pose(editor, next, mirrored_);
+  }
   void keep(Editor& editor) override {
     const std::string what =
         bones_.size() == 1 ? armature_->bones[bones_[0]].name : std::to_string(bones_.size()) + " bones";
     Pose next = pose(editor);
     if (held_ && number_.typed()) editor.messages.info(held_text());
-    commit_pose(editor, "Rotate " + what, std::move(next));
+    commit_pose(editor, "Rotate " + what, std::move(next), mirrored_);
   }
 
   // Returns the active joint's angle and limits in a pose. Both are measured about the axis that the tool turns about.
@@ -249,7 +254,7 @@ class Turning final : public TransformTool {
 
   std::shared_ptr<const Armature> armature_;
   const Pose before_;
-  std::vector<int> bones_;
+  std::vector<int> bones_, mirrored_;  // those that the user turns, and those that X-mirror turns too
   int active_ = 0;
   bool trackball_;
   bool by_ring_, on_hinge_ = false;  // true if a ring is dragged; true if the ring's axis is the hinge's

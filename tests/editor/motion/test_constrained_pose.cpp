@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Constraints that hold while poses, keys and the constraints themselves are changed by hand.
+#include "tests/editor/motion/constrained_arm.h"
+
+namespace limber::test {
+
+TEST_CASE("constrained pose: rotations that are set under a constraint do not drift, those that are turned go on") {
+  ArmEditor test({planted_hand()}, kFore);
+  edit_clip(*test.editor, "Bend", PoseThen::FromClip, [](Clip& clip) {
+    clip.keys.bones["LeftForeArm"] = {{0, glm::angleAxis(0.3, glm::dvec3(1, 0, 0))}};
+  });
+  test.editor->timeline->auto_key = true;
+  const auto keyed = [&] { return shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10); };
+  run(*test.editor, "pose.clear_rotation");
+  const Pose cleared = pose_of(test.document());
+  CHECK(cleared.rotation[kFore] != glm::dquat(1, 0, 0, 0));  // the plant bends the elbow all the same
+  for (int time = 0; time < 3; ++time) {
+    run(*test.editor, "pose.clear_rotation");
+    CHECK(keyed() == glm::dquat(1, 0, 0, 0));
+    CHECK(pose_of(test.document()) == cleared);
+  }
+  const glm::dquat copied = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
+  test.editor->posing.copied = {{"LeftForeArm", copied}};
+  run(*test.editor, "pose.paste");
+  CHECK(keyed() == copied);
+  Pose typed = pose_of(test.document());
+  typed.rotation[kFore] = glm::angleAxis(0.9, glm::dvec3(0, 1, 0));
+  preview_pose(*test.editor, typed, {kFore});
+  const Pose previewed = shown_pose(*test.editor);
+  commit_pose(*test.editor, "Type", typed, {kFore});
+  CHECK(keyed() == typed.rotation[kFore]);
+  CHECK(pose_of(test.document()) == previewed);
+  Pose turned = pose_of(test.document());
+  const glm::dquat turn = glm::angleAxis(0.2, glm::dvec3(0, 1, 0));
+  turned.rotation[kFore] = turn * turned.rotation[kFore];
+  commit_pose(*test.editor, "Turn", turned);
+  CHECK(std::abs(glm::dot(keyed(), turn * typed.rotation[kFore])) > 1 - 1e-12);
+}
+
+TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand elsewhere, and so does a marker") {
+  ArmEditor test({planted_hand(0.5)}, kFore);
+  Pose turned = pose_of(test.document());
+  turned.rotation[kThigh] = glm::angleAxis(0.5, glm::dvec3(0, 0, 1));
+  commit_pose(*test.editor, "Turn", turned);
+  const Pose held = pose_of(test.document());
+  const auto is_held = [&] {
+    for (int bone = 0; bone < 5; ++bone)
+      CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
+  };
+  run(*test.editor, "motion.insert_key");
+  CHECK(shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));
+  CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftThigh"));
+  is_held();
+  // The marker replaces the clip, and what lies below the constraint is still known: it does not count twice.
+  run(*test.editor, "pose.clear_rotation");
+  const Pose cleared = pose_of(test.document());
+  run(*test.editor, "motion.marker");
+  CHECK(pose_of(test.document()) == cleared);
+  run(*test.editor, "select.all");
+  run(*test.editor, "motion.insert_key");
+  for (int bone = 0; bone < 5; ++bone)
+    CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], cleared.rotation[bone])) > 1 - 1e-12);
+  CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == glm::dquat(1, 0, 0, 0));
+}
+
+}  // namespace limber::test
