@@ -25,6 +25,7 @@
 #include "editor/files/project_session.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/motion/timeline.h"
+#include "editor/pose/pose_edits.h"
 #include "editor/rig/auto_rig.h"
 #include "editor/shown/frame_all.h"
 #include "editor/skin/weight_layers.h"
@@ -417,7 +418,9 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
             refuse("the project changed while the file was read", path, "import it again");
           Document next = e.document();
           import->change(next);
-          commit(e, imported(path), std::move(next));
+          if (kind == FileKind::Pose)
+            commit_pose(e, imported(path), pose_of(next), changed_bones(pose_of(e.document()), pose_of(next)));
+          else commit(e, imported(path), std::move(next));
           e.inputs.insert(e.inputs.end(), import->inputs.begin(), import->inputs.end());
           warn_of(e, path, import->warnings);
           if (kind == FileKind::Volume) {

@@ -6,6 +6,7 @@
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/form_dialog.h"
+#include "editor/motion/timeline.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_inbetween_ops.h"
 #include "editor/pose/pose_library.h"
@@ -63,16 +64,15 @@ void ask_flex(Editor& editor) {
     return std::string(text);
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
-    Document next = e.document();
-    Pose pose = pose_of(next);
-    flex(pose, *next.armature, fields[0].chosen, fields[1].value);
-    next.pose = std::make_shared<const Pose>(std::move(pose));
-    const std::string name = next.armature->bones[fields[0].chosen].name;
-    e.history.commit("Flex " + name, std::move(next));
+    settle_frame(e);
+    const Armature& armature = *e.document().armature;
+    const std::string name = armature.bones[fields[0].chosen].name;
+    Pose pose = pose_of(e.document());
+    flex(pose, armature, fields[0].chosen, fields[1].value);
+    commit_pose(e, "Flex " + name, std::move(pose));
     // The Rig workspace shows the body at rest, so nothing there tells that the bone has turned.
     if (e.workspace == Workspace::Rig)
       e.messages.ok(name + " is turned", "The Pose workspace shows it", "workspace.pose");
-    e.touch();
   };
   editor.open_dialog(
       make_form({"Flex a joint",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Constraints that hold while poses, keys and the constraints themselves are changed by hand.
+#include "core/pose/pose_io.h"
 #include "tests/editor/motion/constrained_arm.h"
 
 namespace limber::test {
@@ -61,6 +62,28 @@ TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand els
   for (int bone = 0; bone < 5; ++bone)
     CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], cleared.rotation[bone])) > 1 - 1e-12);
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == glm::dquat(1, 0, 0, 0));
+}
+
+TEST_CASE("constrained pose: a flexed joint and an imported pose are held by constraints, and keyed by auto-key") {
+  const TemporaryFolder folder;
+  ArmEditor test({planted_hand()}, kFore);
+  test.editor->timeline->auto_key = true;
+  test.play(
+      "click \"Edit/Pose/Flex a joint...\"\n double-click Angle/value\n type \"30\"\n key Return\n key Return\n "
+      "wait-idle");
+  CHECK(test.fact("edit") == "Flex LeftForeArm");
+  CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+  // The key stores the turn by 30 degrees, below the constraint.
+  const glm::dquat keyed = shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10);
+  CHECK(std::abs(keyed.w) == doctest::Approx(std::cos(glm::radians(15.0))));
+  Pose pose = rest_pose(*test.document().armature);
+  pose.rotation[kTrunk] = glm::angleAxis(-0.4, glm::dvec3(0, 0, 1));
+  write_pose(pose, *test.document().armature, folder / "pose.json");
+  test.play("drop " + std::string(folder / "pose.json") + "\n wait-job\n wait-idle");
+  CHECK(test.fact("edit") == "Import pose.json");
+  CHECK(std::abs(glm::dot(pose.rotation[kTrunk], pose_of(test.document()).rotation[kTrunk])) > 1 - 1e-9);
+  CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+  CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
 }
 
 }  // namespace limber::test
