@@ -275,6 +275,7 @@ void switch_weight(Editor& editor, const std::string& name) {
 void set_weight_steps(Editor& editor, const std::string& name, Interpolation next) {
   change_free_clip(editor, "Set steps of weight", [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
 }
+    for (int between = frame + 1; between < later; ++between) delete_weight_key(clip.keys, name, between);
 
 void apply_constraints(Editor& editor) {
   stop_playing(editor);

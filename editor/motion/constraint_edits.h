@@ -44,7 +44,7 @@ void set_weight(Editor& editor, const std::string& name, double weight);
 void preview_weight(Editor& editor, const std::string& name, double weight);
 void toggle_weight_key(Editor& editor, const std::string& name);
 // Keys the weight as it is at the shown frame, and the opposite one a third of a second later: 0 after more than a
-// half, else 1.
+// half, else 1. Keys between these two go.
 void switch_weight(Editor& editor, const std::string& name);
 void set_weight_steps(Editor& editor, const std::string& name, Interpolation next);
 

@@ -86,4 +86,27 @@ TEST_CASE("constrained pose: a flexed joint and an imported pose are held by con
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
 }
 
+TEST_CASE("constrained pose: a switched weight has no keys between, and its last deleted key is what stays") {
+  ArmEditor test({planted_hand()});
+  edit_clip(*test.editor, "Weights", PoseThen::FromClip, [](Clip& clip) {
+    clip.keys.weights["Plant LeftHand"] = {{0, 1}, {13, 0.7}, {16, 1}, {40, 1}};
+  });
+  set_weight(*test.editor, "Plant LeftHand", 1);  // at frame 10
+  run(*test.editor, "constraint.switch");
+  CHECK(weights(*test.editor) == std::map<int, double>{{0, 1}, {10, 1}, {20, 0}, {40, 1}});
+  edit_clip(*test.editor, "Weights", PoseThen::FromClip, [](Clip& clip) {
+    clip.keys.weights["Plant LeftHand"] = {{5, 1}, {15, 0}};
+    clip.range_start = 25;
+    clip.range_end = 29;
+  });
+  run(*test.editor, "motion.trim");
+  go_to_frame(*test.editor, 27);
+  CHECK(shown_weight(*test.editor, constraints_of(test.document()).list[0]) == 0);
+  CHECK(weights(*test.editor) == std::map<int, double>{{25, 0}});
+  test.editor->timeline->chosen = {25};
+  run(*test.editor, "motion.delete_keys");
+  CHECK(weights(*test.editor).empty());
+  CHECK(constraints_of(test.document()).list[0].weight == 0);
+}
+
 }  // namespace limber::test
