@@ -112,6 +112,14 @@ const Constraints& constraints_of(const Document& document) {
   return clip && clip->constraints ? *clip->constraints : kNone;
 }
 
+std::vector<std::size_t> constraints_of_no_bone(const Document& document) {
+  std::vector<std::size_t> found;
+  const auto& list = constraints_of(document).list;
+  for (std::size_t i = 0; document.armature && i < list.size(); ++i)
+    if (!document.armature->find(list[i].bone)) found.push_back(i);
+  return found;
+}
+
 std::vector<std::size_t> constraints_of_bone(const Document& document, int bone) {
   std::vector<std::size_t> found;
   const auto& list = constraints_of(document).list;

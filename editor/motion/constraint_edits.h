@@ -17,6 +17,8 @@ namespace limber::editor {
 const Constraints& constraints_of(const Document& document);
 // Returns the indices of a bone's constraints in that list.
 std::vector<std::size_t> constraints_of_bone(const Document& document, int bone);
+// Returns the indices of those whose bone the rig no longer has.
+std::vector<std::size_t> constraints_of_no_bone(const Document& document);
 // Returns the constraint that operators change: the one of the active bone that is unfolded, or its first one; nullptr
 // if the bone has none.
 const Constraint* active_constraint(const Editor& editor);

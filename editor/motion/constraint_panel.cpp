@@ -291,9 +291,15 @@ void draw_one(Editor& editor, Column& column, const Constraint& constraint, cons
 void draw_constraints(Editor& editor, Column& column) {
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   const auto bone = editor.selection.bone;
-  if (!rig || !bone || *bone >= std::ssize(rig->bones)) return;
+  const bool has_bone = rig && bone && *bone < std::ssize(rig->bones);
+  // Those whose bone is gone are shown with every bone, and without one: nothing else could select them.
+  std::vector<std::size_t> indices = constraints_of_no_bone(editor.document());
+  if (!has_bone && indices.empty()) return;
   const Look& look = editor.look;
-  const std::vector<std::size_t> indices = constraints_of_bone(editor.document(), *bone);
+  if (has_bone) {
+    const std::vector<std::size_t> own = constraints_of_bone(editor.document(), *bone);
+    indices.insert(indices.begin(), own.begin(), own.end());
+  }
   if (column.begin_section("Constraints", indices.empty() ? "" : std::to_string(indices.size()))) {
     column.space(4);
     // Copied, because an edit replaces the document.
@@ -305,11 +311,13 @@ void draw_constraints(Editor& editor, Column& column) {
                                       : "";
       draw_one(editor, column, constraints.list[index], problem);
     }
-    const Rect row = column.row(30);
-    operator_button(
-        editor, "constraint.add",
-        {{row.low.x + look.px(10), row.low.y + look.px(2)}, {row.high.x - look.px(10), row.high.y - look.px(2)}},
-        "Add constraint");
+    if (has_bone) {
+      const Rect row = column.row(30);
+      operator_button(
+          editor, "constraint.add",
+          {{row.low.x + look.px(10), row.low.y + look.px(2)}, {row.high.x - look.px(10), row.high.y - look.px(2)}},
+          "Add constraint");
+    }
     column.space(6);
   }
   column.end_section();

@@ -86,6 +86,15 @@ TEST_CASE("constrained pose: a flexed joint and an imported pose are held by con
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
 }
 
+TEST_CASE("constrained pose: what is left of a removed bone can be seen and removed without a selection") {
+  const Constraint gone{.name = "Aim Tail", .kind = ConstraintKind::Aim, .bone = "Tail", .place{0, -50, 0}};
+  ArmEditor test({gone, planted_hand()});
+  test.editor->selection = {};
+  test.play("wait-idle\n click \"Constraints/Aim Tail/Remove\"\n wait-idle");
+  REQUIRE(constraints_of(test.document()).list.size() == 1);
+  CHECK(constraints_of(test.document()).list[0].name == "Plant LeftHand");
+}
+
 TEST_CASE("constrained pose: a switched weight has no keys between, and its last deleted key is what stays") {
   ArmEditor test({planted_hand()});
   edit_clip(*test.editor, "Weights", PoseThen::FromClip, [](Clip& clip) {
