@@ -139,15 +139,12 @@ const Constraint* active_constraint(const Editor& editor) {
   const auto bone = editor.selection.bone;
   if (!document.armature || !bone || *bone >= std::ssize(document.armature->bones)) return nullptr;
   const Constraint* first = nullptr;
-  if (constraints_of(editor.document()).list.size() >= kMostConstraints)
-    throw Error("the clip has as many constraints as it can", rule.name, "remove one first");
   for (const std::size_t index : constraints_of_bone(document, *bone)) {
     const Constraint& constraint = constraints_of(document).list[index];
     if (constraint.name == editor.timeline->constraint) return &constraint;
     if (!first) first = &constraint;
   }
   return first;
-  place_target(added, armature, pose_of(editor.document()));
 }
 
 void add_constraint(Editor& editor, ConstraintKind kind) {
@@ -155,6 +152,8 @@ void add_constraint(Editor& editor, ConstraintKind kind) {
   settle_frame(editor);
   const Armature& armature = *editor.document().armature;
   const ConstraintRule& rule = constraint_rule(kind);
+  if (constraints_of(editor.document()).list.size() >= kMostConstraints)
+    throw Error("the clip has as many constraints as it can", rule.name, "remove one first");
   Constraint added{.kind = kind, .bone = armature.bones[*editor.selection.bone].name};
   if (const auto other = other_bone(editor); other && rule.target != ConstraintTarget::None)
     added.target = armature.bones[*other].name;
@@ -162,6 +161,7 @@ void add_constraint(Editor& editor, ConstraintKind kind) {
     throw Error("the constraint needs a target", rule.name, "select the target bone, then with Shift the bone");
   if (kind == ConstraintKind::Aim) added.aim = looking_axis(armature, *editor.selection.bone);
   added.name = unique_constraint_name(constraints_of(editor.document()), rule.name + " " + added.bone);
+  place_target(added, armature, pose_of(editor.document()));
   Constraints next = constraints_of(editor.document());
   next.list.push_back(added);
   require_applicable(editor, next, added.name);
@@ -190,6 +190,19 @@ void change_constraint(Editor& editor, const std::string& name, const std::strin
 }
 
 void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change) {
+  show_changed(editor, [&](Clip& clip) {
+    change_list(clip, [&](Constraints& constraints) { change(named(constraints, name)); });
+  });
+}
+
+void set_target(Editor& editor, const std::string& name, const std::string& bone) {
+  settle_frame(editor);
+  change_constraint(editor, name, "Set target", [&](Constraint& constraint) {
+    constraint.target = bone;
+    place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+  });
+}
+
 void set_planted_point(Editor& editor, const std::string& name, PlantPoint point) {
   settle_frame(editor);
   change_constraint(editor, name, "Set planted point", [&](Constraint& constraint) {
@@ -203,19 +216,6 @@ void keep_direction(Editor& editor, const std::string& name, bool keeps) {
   change_constraint(editor, name, "Keep direction", [&](Constraint& constraint) {
     constraint.keeps_rotation = keeps;
     if (keeps) place_target(constraint, *editor.document().armature, pose_of(editor.document()));
-  });
-}
-
-  show_changed(editor, [&](Clip& clip) {
-    change_list(clip, [&](Constraints& constraints) { change(named(constraints, name)); });
-  });
-}
-
-void set_target(Editor& editor, const std::string& name, const std::string& bone) {
-  settle_frame(editor);
-  change_constraint(editor, name, "Set target", [&](Constraint& constraint) {
-    constraint.target = bone;
-    place_target(constraint, *editor.document().armature, pose_of(editor.document()));
   });
 }
 
@@ -275,6 +275,7 @@ void switch_weight(Editor& editor, const std::string& name) {
   change_free_clip(editor, "Switch weight", [&](Clip& clip) {
     insert_weight_key(clip.keys, name, frame, weight);
     insert_weight_key(clip.keys, name, later, weight > 0.5 ? 0 : 1);
+    for (int between = frame + 1; between < later; ++between) delete_weight_key(clip.keys, name, between);
   });
   editor.messages.info(weight > 0.5 ? "Keys take over" : "The constraint takes over",
                        "From frame " + std::to_string(frame) + " to " + std::to_string(later));
@@ -283,7 +284,6 @@ void switch_weight(Editor& editor, const std::string& name) {
 void set_weight_steps(Editor& editor, const std::string& name, Interpolation next) {
   change_free_clip(editor, "Set steps of weight", [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
 }
-    for (int between = frame + 1; between < later; ++between) delete_weight_key(clip.keys, name, between);
 
 void apply_constraints(Editor& editor) {
   stop_playing(editor);

@@ -35,6 +35,9 @@ void change_constraint(Editor& editor, const std::string& name, const std::strin
 void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change);
 // Makes a bone the target, or with "" a place of the world. What is planted stays where it is now.
 void set_target(Editor& editor, const std::string& name, const std::string& bone);
+// Chooses the point of a planted hand or foot that stays, or whether its direction does. Both are then as they are now.
+void set_planted_point(Editor& editor, const std::string& name, PlantPoint point);
+void keep_direction(Editor& editor, const std::string& name, bool keeps);
 void aim_at_cross_hair(Editor& editor, const std::string& name);
 
 // ---- Weights

@@ -223,14 +223,28 @@ void draw_aim(Editor& editor, Column& column, const Constraint& constraint) {
            [chosen](Constraint& changed) { changed.aim = static_cast<BoneAxis>(chosen); });
 }
 
+// A forearm or shank without a hand or foot has no other point and no direction of its own.
+bool ends_in_hand_or_foot(Editor& editor, const Constraint& constraint) {
+  const ClipOnRig* clip = clip_on_rig(editor);
+  const ConstraintStack* stack = clip ? clip->constraints() : nullptr;
+  for (std::size_t i = 0; stack && i < stack->constraints()->list.size(); ++i)
+    if (stack->constraints()->list[i].name == constraint.name)
+      return stack->found(i) && has_planted_end(*stack->found(i));
+  return false;
+}
+
 void draw_plant(Editor& editor, Column& column, const Constraint& constraint) {
+  if (!ends_in_hand_or_foot(editor, constraint)) return;
+  const std::string name = constraint.name;
   int point = static_cast<int>(constraint.point);
-  if (choose(editor, column, "Point", {"Joint", "Tip"}, point))
-    return change(editor, constraint, "Set planted point",
-                  [point](Constraint& changed) { changed.point = static_cast<PlantPoint>(point); });
+  if (choose(editor, column, "Point", {"Joint", "Tip"}, point)) {
+    attempt(editor, "Set planted point",
+            [&](Editor& e) { set_planted_point(e, name, static_cast<PlantPoint>(point)); });
+    return;
+  }
   bool keeps = constraint.keeps_rotation;
   if (checkbox(editor, "Keep direction", column.property("Direction"), "Kept", keeps))
-    change(editor, constraint, "Keep direction", [keeps](Constraint& changed) { changed.keeps_rotation = keeps; });
+    attempt(editor, "Keep direction", [&](Editor& e) { keep_direction(e, name, keeps); });
 }
 
 void draw_inverse_kinematics(Editor& editor, Column& column, const Constraint& constraint) {

@@ -86,6 +86,45 @@ TEST_CASE("constrained pose: a flexed joint and an imported pose are held by con
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
 }
 
+TEST_CASE("constrained pose: a limb stays where it is when another point or its direction is planted") {
+  ArmEditor test({planted_hand()});
+  const Pose before = pose_of(test.document());
+  const auto apart = [&](const Pose& a, const Pose& b) {
+    double most = 0;
+    for (const int bone : {kFore, kHand})
+      most = std::max(most, glm::distance(tail_of(test.document(), a, bone), tail_of(test.document(), b, bone)));
+    return most;
+  };
+  set_planted_point(*test.editor, "Plant LeftHand", PlantPoint::Joint);
+  CHECK(apart(before, pose_of(test.document())) < 0.01);
+  CHECK(glm::distance(test.place(), tail_of(test.document(), kFore)) < 0.01);
+  keep_direction(*test.editor, "Plant LeftHand", false);
+  Pose turned = pose_of(test.document());
+  turned.rotation[kHand] = glm::angleAxis(0.8, glm::dvec3(0, 1, 0)) * turned.rotation[kHand];
+  commit_pose(*test.editor, "Turn hand", turned);
+  const Pose free = pose_of(test.document());
+  CHECK(apart(before, free) > 1);
+  keep_direction(*test.editor, "Plant LeftHand", true);
+  CHECK(apart(free, pose_of(test.document())) < 0.01);
+  // A forearm without a hand is planted by its end, whichever point is chosen.
+  Document handless = test.document();
+  Armature rig = *handless.armature;
+  rig.bones.erase(rig.bones.begin() + kHand);
+  handless.armature = std::make_shared<const Armature>(rig);
+  handless.clips = {std::make_shared<const Clip>(turning_trunk())};
+  handless.pose = pose_at_frame(handless);
+  test.editor->history.reset(handless, "Handless");
+  test.editor->selection.bone = kFore;
+  test.editor->selection.bones = {kFore};
+  run(*test.editor, "constraint.add_plant");
+  const Pose planted = pose_of(test.document());
+  set_planted_point(*test.editor, "Plant LeftForeArm", PlantPoint::Joint);
+  CHECK(apart(planted, pose_of(test.document())) < 0.01);
+  CHECK(glm::distance(constraints_of(test.document()).list[0].place, tail_of(test.document(), kFore)) < 0.01);
+  test.play("wait-idle");
+  CHECK_THROWS(test.play("click \"Constraints/Plant LeftForeArm/Keep direction\""));
+}
+
 TEST_CASE("constrained pose: what is left of a removed bone can be seen and removed without a selection") {
   const Constraint gone{.name = "Aim Tail", .kind = ConstraintKind::Aim, .bone = "Tail", .place{0, -50, 0}};
   ArmEditor test({gone, planted_hand()});
