@@ -60,3 +60,16 @@ Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bo
 }
 
 }  // namespace limber
+Constraint with_pose_as_rest(const Constraint& constraint, const Armature& armature, const Pose& pose) {
+  Constraint next = constraint;
+  const auto posed = posed_from_rest(armature, pose);
+  if (const auto bone = armature.find(constraint.bone))
+    next.rotation = next.rotation * glm::conjugate(posed[*bone].rotation);
+  if (const auto target = armature.find(constraint.target)) {
+    next.place = posed[*target] * next.place;
+    next.rotation = posed[*target].rotation * next.rotation;
+  }
+  next.rotation = glm::normalize(next.rotation);
+  return next;
+}
+

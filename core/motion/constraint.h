@@ -79,3 +79,7 @@ Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bo
                         const MirrorPlane& plane);
 
 }  // namespace limber
+// Returns the constraint for the rig that has the pose as its rest pose (core/pose/apply_pose_as_rest.h): its place and
+// rotation are the same in the world.
+Constraint with_pose_as_rest(const Constraint& constraint, const Armature& armature, const Pose& pose);
+

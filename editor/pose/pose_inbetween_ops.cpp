@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/motion/constraint.h"
 #include "core/pose/apply_pose_as_rest.h"
 #include "editor/context/document_edits.h"
 #include "editor/motion/constrained_pose.h"
@@ -86,6 +87,15 @@ void apply_as_rest(Editor& editor) {
   settle_frame(editor);
   drop_shown_pose(editor);
   Document next = editor.document();
+  for (auto& part : next.clips) {
+    if (!part->constraints) continue;
+    Clip clip = *part;
+    Constraints constraints = *clip.constraints;
+    for (Constraint& constraint : constraints.list)
+      constraint = with_pose_as_rest(constraint, *next.armature, pose_of(next));
+    clip.constraints = std::make_shared<const Constraints>(std::move(constraints));
+    part = std::make_shared<const Clip>(std::move(clip));
+  }
   next.armature = std::make_shared<const Armature>(with_pose_as_rest(*next.armature, pose_of(next)));
   next.pose = nullptr;
   const bool weights = next.weights != nullptr;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Constraints that hold while poses, keys and the constraints themselves are changed by hand.
+#include "core/motion/motion_edit.h"
 #include "core/pose/pose_io.h"
 #include "tests/editor/motion/constrained_arm.h"
 
@@ -155,6 +156,31 @@ TEST_CASE("constrained pose: a switched weight has no keys between, and its last
   run(*test.editor, "motion.delete_keys");
   CHECK(weights(*test.editor).empty());
   CHECK(constraints_of(test.document()).list[0].weight == 0);
+}
+
+TEST_CASE("constrained pose: a motion that does not move the rig leaves the pose to be keyed, and rest poses carry") {
+  ArmEditor test;
+  const Armature other{{{"Foo", -1, {0, 0, 0}, {0, 0, 9}}}};
+  Document document = arm();
+  document.clips = {std::make_shared<const Clip>(clip_of(
+      std::make_shared<const Motion>(motion_of_poses(other, 3, 30, [&](int) { return rest_pose(other); })), "foo"))};
+  Pose pose = rest_pose(*document.armature);
+  pose.rotation[kTrunk] = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
+  document.pose = std::make_shared<const Pose>(pose);
+  test.editor->history.reset(document, "Foo");
+  test.editor->selection.bones = {kHand, kThigh};
+  test.editor->selection.bone = kHand;
+  run(*test.editor, "constraint.add_plant");
+  REQUIRE(constraints_of(test.document()).list.size() == 1);
+  CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").at(0) == pose.rotation[kTrunk]);
+  // The pose becomes the rest pose: the hand is planted where it is.
+  const glm::dvec3 before = tail_of(test.document(), kHand);
+  run(*test.editor, "pose.apply_as_rest");
+  const Bone& thigh = test.document().armature->bones[kThigh];
+  CHECK(glm::distance(test.document().armature->bones[kHand].tail, before) < 1e-6);
+  CHECK(glm::distance(constraints_of(test.document()).list[0].place, before) < 1e-6);
+  CHECK(std::abs(constraints_of(test.document()).list[0].rotation.w) > 1 - 1e-9);
+  CHECK(glm::distance(thigh.tail, arm().armature->bones[kThigh].tail) > 5);
 }
 
 }  // namespace limber::test
