@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <type_traits>
 
+#include "core/motion/constraint_rule.h"
 #include "core/motion/key_curve.h"
 
 namespace limber {
@@ -38,6 +41,36 @@ std::string unique_constraint_name(const Constraints& constraints, const std::st
   return name;
 }
 
+void name_after_bones(std::vector<Constraint>& list, Keys& keys, const std::vector<std::string>& before) {
+  const auto is_by_bone = [&](std::size_t i) {
+    const std::string wanted = constraint_rule(list[i].kind).name + " " + before[i], &name = list[i].name;
+    const bool numbered =
+        name.starts_with(wanted + " ") && name.find_first_not_of("0123456789", wanted.size() + 1) == std::string::npos;
+    return before[i] != list[i].bone && (name == wanted || numbered);
+  };
+  // The others keep their names, so these are taken first.
+  Constraints named;
+  std::vector<std::size_t> renamed;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (is_by_bone(i)) renamed.push_back(i);
+    else named.list.push_back(list[i]);
+  }
+  std::map<std::string, std::string> now;
+  for (const std::size_t i : renamed) {
+    const std::string name = unique_constraint_name(named, constraint_rule(list[i].kind).name + " " + list[i].bone);
+    now[list[i].name] = name;
+    list[i].name = name;
+    named.list.push_back(list[i]);
+  }
+  const auto follow = [&](auto& by_name) {
+    std::remove_reference_t<decltype(by_name)> next;
+    for (auto& [name, value] : by_name) next[now.contains(name) ? now.at(name) : name] = std::move(value);
+    by_name = std::move(next);
+  };
+  follow(keys.weights);
+  follow(keys.weight_shapes);
+}
+
 Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bone& counterpart,
                         const MirrorPlane& plane) {
   Constraint mirrored = constraint;
@@ -59,7 +92,6 @@ Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bo
   return mirrored;
 }
 
-}  // namespace limber
 Constraint with_pose_as_rest(const Constraint& constraint, const Armature& armature, const Pose& pose) {
   Constraint next = constraint;
   const auto posed = posed_from_rest(armature, pose);
@@ -73,3 +105,4 @@ Constraint with_pose_as_rest(const Constraint& constraint, const Armature& armat
   return next;
 }
 
+}  // namespace limber

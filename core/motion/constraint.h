@@ -73,13 +73,18 @@ double weight_at(const Constraint& constraint, const Keys& keys, int frame);
 // Returns the name `wanted`, with a number appended if a constraint has this name already.
 std::string unique_constraint_name(const Constraints& constraints, const std::string& wanted);
 
+// Renames the constraints that are named by their kind and bone, as in "Plant LeftHand", where they went over to
+// another bone; keys of their weights go along.
+//   before  for each constraint, the bone that it had
+void name_after_bones(std::vector<Constraint>& list, Keys& keys, const std::vector<std::string>& before);
+
 // Returns the constraint with its place, rotation, axes and limits mirrored. Names stay.
 //   bone, counterpart  the bone that is constrained, and the one that the mirrored constraint belongs to, at rest
 Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bone& counterpart,
                         const MirrorPlane& plane);
 
-}  // namespace limber
 // Returns the constraint for the rig that has the pose as its rest pose (core/pose/apply_pose_as_rest.h): its place and
 // rotation are the same in the world.
 Constraint with_pose_as_rest(const Constraint& constraint, const Armature& armature, const Pose& pose);
 
+}  // namespace limber

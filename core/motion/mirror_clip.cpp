@@ -69,12 +69,15 @@ Clip mirrored_clip(const std::shared_ptr<const Clip>& clip, const std::shared_pt
   mirrored.keys.weight_shapes = std::move(keys.weight_shapes);
   if (!clip->constraints) return mirrored;
   Constraints constraints = *clip->constraints;
+  std::vector<std::string> bones;
   for (Constraint& constraint : constraints.list) {
+    bones.push_back(constraint.bone);
     if (const auto bone = armature->find(constraint.bone))
       constraint = mirror_image(constraint, armature->bones[*bone], armature->bones[pairs[*bone]], plane);
     constraint.bone = counterpart(constraint.bone);
     constraint.target = counterpart(constraint.target);
   }
+  name_after_bones(constraints.list, mirrored.keys, bones);
   mirrored.constraints = std::make_shared<const Constraints>(std::move(constraints));
   return mirrored;
 }

@@ -82,16 +82,19 @@ void take_list(Clip& clip, Constraints next) {
 void follow_constraints(Clip& clip, const Names& names) {
   if (!clip.constraints) return;
   Constraints next;
+  std::vector<std::string> bones;
   for (Constraint constraint : clip.constraints->list) {
     const auto bone = names.now(constraint.bone), target = names.now(constraint.target);
     if (!bone || !target) {
       drop_weights(clip, constraint.name);
       continue;
     }
+    bones.push_back(constraint.bone);
     constraint.bone = *bone;
     constraint.target = *target;
     next.list.push_back(constraint);
   }
+  name_after_bones(next.list, clip.keys, bones);
   take_list(clip, std::move(next));
 }
 
@@ -137,6 +140,7 @@ void carry_constraints(Clip& clip, const Armature& before, const Armature& after
                        const MirrorPlane& plane) {
   if (!clip.constraints) return;
   Constraints next;
+  std::vector<std::string> bones;
   for (Constraint constraint : clip.constraints->list) {
     if (gone_over.is_left_over(constraint.bone) || gone_over.is_left_over(constraint.target)) {
       drop_weights(clip, constraint.name);
@@ -150,13 +154,14 @@ void carry_constraints(Clip& clip, const Armature& before, const Armature& after
     const Constraint was = constraint;
     if (const auto bone = before.find(constraint.bone); bone && bone_goes)
       constraint = mirror_image(constraint, before.bones[*bone], after.bones[*bone], plane);
+    constraint.place = place_goes ? plane.place(was.place) : was.place;
+    constraint.rotation = place_goes ? plane.rotation(was.rotation) : was.rotation;
+    bones.push_back(constraint.bone);
     constraint.bone = gone_over.now(constraint.bone);
     constraint.target = gone_over.now(constraint.target);
     next.list.push_back(constraint);
   }
-    constraint.place = place_goes ? plane.place(was.place) : was.place;
-    constraint.rotation = place_goes ? plane.rotation(was.rotation) : was.rotation;
-    bones.push_back(constraint.bone);
+  name_after_bones(next.list, clip.keys, bones);
   take_list(clip, std::move(next));
 }
 

@@ -253,7 +253,7 @@ void draw_inverse_kinematics(Editor& editor, Column& column, const Constraint& c
   });
   chain.high = kLongestChain;
   chain.format = "%.0f";
-  chain.unit = "bones";
+  chain.unit = constraint.chain == 0 ? "(to the root)" : constraint.chain == 1 ? "bone" : "bones";
   draw_number(editor, column.property("Chain"), chain);
   bool keeps = constraint.keep_limits;
   if (checkbox(editor, "Joint limits", column.property("Limits"), "Kept", keeps))

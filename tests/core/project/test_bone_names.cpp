@@ -209,6 +209,27 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
   CHECK(over[0].axes == from_trunk.axes);
   CHECK(over[1].bone == "Arm.R");
   CHECK(over[1].place == to_leg.place);
+  // Names that say kind and bone say the new bone, with the keys of their weights. Names of the user stay.
+  Constraint first = to_leg, second = to_leg, own = to_leg;
+  first.name = "Plant Arm.L";
+  second.name = "Plant Arm.L 2";
+  own.name = "Plant Arm.L at last";
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{first, second, own}});
+  clip.keys.weights = {{"Plant Arm.L", {{1, 0.25}}}, {"Plant Arm.L 2", {{2, 0.5}}}};
+  Document called = before;
+  called.clips = {std::make_shared<const Clip>(clip)};
+  Document mirrored_names = called;
+  rename(called, "Arm.L", "Upper");
+  follow_mirrored(mirrored_names, rig, mirrored, {1});
+  for (const auto& [now, bone] : {std::pair{called, "Upper"}, {mirrored_names, "Arm.R"}}) {
+    const std::string name = std::string("Plant ") + bone;
+    const std::vector<Constraint>& list = now.clips[0]->constraints->list;
+    CHECK(list[0].name == name);
+    CHECK(list[1].name == name + " 2");
+    CHECK(list[2].name == "Plant Arm.L at last");
+    CHECK(now.clips[0]->keys.weights ==
+          std::map<std::string, std::map<int, double>>{{name, {{1, 0.25}}}, {name + " 2", {{2, 0.5}}}});
+  }
   // The constraints of a trunk that does not move do the same in the mirror.
   const auto after = std::make_shared<const Armature>(mirrored);
   for (const int frame : {0, 9, 20}) {
