@@ -23,7 +23,7 @@ using limber::test::LimbEditor;
 
 namespace {
 
-constexpr glm::ivec2 kWithSidebar{1120, 600};
+constexpr glm::ivec2 kWithSidebar{1120, 720};
 
 // The limb whose lower half follows one bone wholly, in the Pose workspace, seen from the front.
 struct LiveEditor : LimbEditor {
