@@ -183,4 +183,35 @@ TEST_CASE("constrained pose: a motion that does not move the rig leaves the pose
   CHECK(glm::distance(thigh.tail, arm().armature->bones[kThigh].tail) > 5);
 }
 
+TEST_CASE("constrained pose: X-mirror gives a constrained counterpart the mirrored rotation, time after time") {
+  ArmEditor test({}, kThigh);
+  Document document = arm();
+  Armature rig = *document.armature;
+  Bone other = rig.bones[kThigh];
+  other.name = "RightThigh";
+  other.head.x *= -1;
+  other.tail.x *= -1;
+  rig.bones.push_back(other);
+  document.armature = std::make_shared<const Armature>(rig);
+  Constraint stiff{.name = "Stiff", .kind = ConstraintKind::LimitRotation, .weight = 0.5, .bone = "RightThigh"};
+  stiff.minimum = stiff.maximum = glm::dvec3(0);
+  Clip clip = turning_trunk();
+  clip.constraints = std::make_shared<const Constraints>(Constraints{{stiff}});
+  document.clips = {std::make_shared<const Clip>(clip)};
+  document.frame = 10;
+  document.pose = pose_at_frame(document);
+  test.editor->history.reset(document, "Thighs");
+  test.editor->timeline->auto_key = true;
+  test.editor->transform_settings->x_mirror = true;
+  for (const double degrees : {30.0, 60.0, 90.0}) {
+    test.play("wait-idle\n move \"3D view/view\"\n key R\n key X\n key 3\n key 0\n key Return\n wait-idle");
+    const auto& keys = shown_clip(*test.editor)->keys.bones;
+    const glm::dquat left = keys.at("LeftThigh").at(10), right = keys.at("RightThigh").at(10);
+    CHECK(glm::degrees(2 * std::acos(std::abs(left.w))) == doctest::Approx(degrees));
+    // In the mirror x stays, and the turn about y and z goes the other way.
+    CHECK(std::abs(glm::dot(right, glm::dquat(left.w, left.x, -left.y, -left.z))) > 1 - 1e-9);
+    CHECK(std::abs(glm::dot(right, pose_of(test.document()).rotation[5])) < 1 - 1e-3);  // half of it is shown
+  }
+}
+
 }  // namespace limber::test
