@@ -6,6 +6,7 @@
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/form_dialog.h"
+#include "editor/motion/constrained_pose.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_inbetween_ops.h"
@@ -27,6 +28,11 @@ std::string needs_pose(const Editor& editor) {
 }
 
 void clear_pose(Editor& editor) {
+  if (is_constrained(editor.document())) {
+    settle_frame(editor);
+    const Pose rest = rest_pose(*editor.document().armature);
+    return commit_pose(editor, "Clear pose", rest, changed_bones(pose_of(editor.document()), rest));
+  }
   Document next = editor.document();
   next.pose.reset();
   editor.history.commit("Clear pose", std::move(next));

@@ -65,7 +65,7 @@ TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand els
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == glm::dquat(1, 0, 0, 0));
 }
 
-TEST_CASE("constrained pose: a flexed joint and an imported pose are held by constraints, and keyed by auto-key") {
+TEST_CASE("constrained pose: a flexed joint, an imported and a cleared pose are held by constraints, and keyed") {
   const TemporaryFolder folder;
   ArmEditor test({planted_hand()}, kFore);
   test.editor->timeline->auto_key = true;
@@ -85,6 +85,11 @@ TEST_CASE("constrained pose: a flexed joint and an imported pose are held by con
   CHECK(std::abs(glm::dot(pose.rotation[kTrunk], pose_of(test.document()).rotation[kTrunk])) > 1 - 1e-9);
   CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
   CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
+  run(*test.editor, "pose.clear");
+  CHECK(test.fact("edit") == "Clear pose");
+  CHECK(pose_of(test.document()).rotation[kTrunk] == glm::dquat(1, 0, 0, 0));
+  CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
+  CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").at(10) == glm::dquat(1, 0, 0, 0));
 }
 
 TEST_CASE("constrained pose: a limb stays where it is when another point or its direction is planted") {
