@@ -50,6 +50,8 @@ std::vector<std::array<int, 2>> stances_of(const std::vector<glm::dvec3>& places
   return spans_of(stands, rate);
 }
 
+int window_of(double rate) { return std::max(1, static_cast<int>(std::lround(kShortestStance * rate))); }
+
 glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
   glm::dvec3 sum(0);
   for (int f = first; f <= last; ++f) sum += values[f];
@@ -59,7 +61,7 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
 // Finds the spans in which a point rests, with the places.
 std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) {
   const int last = static_cast<int>(places.size()) - 1;
-  const int window = std::max(1, static_cast<int>(std::lround(kShortestStance * rate)));
+  const int window = window_of(rate);
   // At the ends of a rest the point is still to one side only.
   const auto is_still = [&](int f) {
     const auto moves = [&](int g) { return g < 0 || g > last ? 2 * kRest : glm::distance(places[f], places[g]); };
@@ -163,6 +165,31 @@ std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<Pl
       }
     }
   return plants;
+}
+
+std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature& armature,
+                                 const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate) {
+  const int last = static_cast<int>(poses.size()) - 1, window = window_of(rate);
+  std::vector<Plant> held;
+  for (const Plant& rest : rests) {
+    const PlantedLimb& limb = limbs[rest.limb];
+    const int trunk = armature.bones[limb.upper].parent;
+    bool moves = limb.is_leg || trunk < 0;
+    if (!moves) {
+      // Where the point would be if the trunk were as at rest.
+      const int from = std::max(0, rest.first - window), to = std::min(last, rest.last + window);
+      std::vector<glm::dvec3> places;
+      for (int f = from; f <= to; ++f) {
+        const RigidTransform posed = posed_from_rest(armature, poses[f])[trunk];
+        places.push_back(inverse(posed) * place_of(limb, rest.point, armature, poses[f]));
+      }
+      const glm::dvec3 place = mean_of(places, rest.first - from, rest.last - from);
+      moves = std::any_of(places.begin(), places.end(),
+                          [&](const glm::dvec3& at) { return glm::distance(at, place) > kRest; });
+    }
+    if (moves) held.push_back(rest);
+  }
+  return held;
 }
 
 }  // namespace limber

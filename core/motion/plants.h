@@ -53,6 +53,11 @@ std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<Pl
 std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                                   const std::vector<Pose>& poses, double rate);
 
+// Returns those of plants_at_rest() that the world holds: of a hand, only those during which, or at whose ends, the
+// hand moves relative to the trunk. A hand that is still relative to both hangs idle, and goes where the body goes.
+std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature& armature,
+                                 const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate);
+
 // Returns the plants without the frames in which the limb of `hold` is held, or comes there or leaves. A plant may fall
 // into two.
 std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& hold, int ease);

@@ -102,10 +102,11 @@ void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, co
 }
 
 // Returns what has to stay in place because it rests there in the recorded poses: a hand that was held before, when the
-// body is moved with its feet or what moves fast is filtered out, and likewise feet when one limb is held.
+// body is moved with its feet or what moves fast is filtered out, and likewise feet when one limb is held. Hands that
+// hang idle go with the body.
 std::vector<Plant> rests_to_keep(const Cleaning& cleaning, const Armature& rig, const std::vector<PlantedLimb>& limbs,
                                  const std::vector<Pose>& recorded, double rate) {
-  std::vector<Plant> rests = plants_at_rest(rig, limbs, recorded, rate);
+  std::vector<Plant> rests = held_by_world(plants_at_rest(rig, limbs, recorded, rate), rig, limbs, recorded, rate);
   if (cleaning.plants_feet) std::erase_if(rests, [&](const Plant& plant) { return limbs[plant.limb].is_leg; });
   if (cleaning.hold) rests = without_held(rests, *cleaning.hold, static_cast<int>(std::lround(cleaning.ease * rate)));
   return rests;

@@ -161,6 +161,40 @@ TEST_CASE("plants: what is held is not planted as well, and two holds of one lim
                        doctest::Contains("two places at once"), Error);
 }
 
+TEST_CASE("plants: hands that hang idle go with the body, and those that stay while the body moves or comes stay") {
+  const Armature rig = walker();
+  const auto limbs = planted_limbs(rig);
+  const auto hands_of = [&](const std::vector<Pose>& poses) {
+    std::vector<Plant> hands = held_by_world(plants_at_rest(rig, limbs, poses, 60), rig, limbs, poses, 60);
+    std::erase_if(hands, [&](const Plant& plant) { return limbs[plant.limb].is_leg; });
+    return hands;
+  };
+  std::vector<Pose> idle(120, rest_pose(rig));
+  for (int f = 0; f < 120; ++f) idle[f].root_translation = {0.6 * std::sin(f * 0.1), 0, 0};
+  CHECK(plants_at_rest(rig, limbs, idle, 60).size() == 6);
+  CHECK(hands_of(idle).empty());
+  // A foot is held far aside: the body goes along, and so do the hands, relative to which nothing changes.
+  std::vector<Plant> plants = held_by_world(plants_at_rest(rig, limbs, idle, 60), rig, limbs, idle, 60);
+  const Plant hold{0, PlantPoint::Tip, 40, 80,
+                   place_of(limbs[0], PlantPoint::Tip, rig, idle[60]) + glm::dvec3(300, 0, 0)};
+  plants = without_held(plants, hold, 9);
+  plants.push_back(hold);
+  const auto aside = planted(rig, limbs, idle, plants, 9);
+  REQUIRE(glm::distance(aside[60].root_translation, idle[60].root_translation) > 100);
+  for (const int bone : {limbs[2].upper, limbs[2].lower, limbs[3].upper, limbs[3].lower})
+    CHECK(std::abs(glm::dot(aside[60].rotation[bone], idle[60].rotation[bone])) == doctest::Approx(1));
+
+  // A hand on a rail while the body sways, and a hand that is put to a place while the body stands.
+  std::vector<Pose> sways = idle;
+  for (int f = 0; f < 120; ++f) sways[f].root_translation = {15 * std::sin(f * 0.1), 0, 0};
+  const glm::dvec3 hip = place_of(limbs[2], PlantPoint::Tip, rig, idle[60]) + glm::dvec3(0, -80, 200);
+  const auto on_rail = hands_of(planted(rig, limbs, sways, {{2, PlantPoint::Tip, 0, 119, hip}}, 9));
+  REQUIRE(on_rail.size() == 1);
+  CHECK(on_rail[0].limb == 2);
+  const auto put = hands_of(planted(rig, limbs, idle, {{2, PlantPoint::Tip, 40, 80, hip}}, 9));
+  CHECK(std::any_of(put.begin(), put.end(), [](const Plant& p) { return p.limb == 2 && p.first < 45 && p.last > 75; }));
+}
+
 TEST_CASE("plants: wrong frames and limbs are refused, and no frames have no plants") {
   const Armature rig = walker();
   const auto limbs = planted_limbs(rig);
