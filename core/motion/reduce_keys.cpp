@@ -44,7 +44,7 @@ class Spline {
   Spline(const std::vector<Value>& recorded, const std::vector<double>& allowed, Progress& progress)
       : recorded_(recorded),
         allowed_(allowed),
-        least_(*std::min_element(allowed.begin(), allowed.end())),
+        most_(*std::max_element(allowed.begin(), allowed.end())),
         progress_(progress) {}
 
   Curve fitted() {
@@ -100,8 +100,9 @@ class Spline {
     return any;
   }
 
-  // Frames that must be kept more closely count more, so that a span of theirs is not bent by the next one.
-  double weight_of(int frame) const { return (least_ / allowed_[frame]) * (least_ / allowed_[frame]); }
+  // Frames that must be kept more closely count more, so that a span of theirs is not bent by the next one. The others
+  // weigh 1, so that kPull is as little beside them as where all errors are equal.
+  double weight_of(int frame) const { return (most_ / allowed_[frame]) * (most_ / allowed_[frame]); }
 
   // Fits the speeds of the keys `low` to `high` to the frames of the spans beside them. A change of a key's speed moves
   // the curve, to first order, by the cubic Hermite functions of the two spans at the key.
@@ -188,7 +189,7 @@ class Spline {
 
   const std::vector<Value>& recorded_;
   const std::vector<double>& allowed_;
-  double least_;
+  double most_;
   Progress& progress_;
   Curve keys_;
 };

@@ -129,6 +129,22 @@ TEST_CASE("reducing keys: a curve of few keys is found again with no more of the
   CHECK(reduced.worst_bone == "Fore");
 }
 
+TEST_CASE("reducing keys: frames that are kept closely cost no keys far from them") {
+  const Armature armature = arm();
+  std::vector<Pose> poses = recorded(361);
+  for (int frame = 0; frame < 361; ++frame)  // a tremble, which differences of frames exaggerate
+    poses[frame].rotation[0] = turned({0.6 * std::sin(frame / 15.0) + 0.004 * std::sin(frame * 2.1), 0, 0.1});
+  AllowedErrors allowed = allowed_everywhere(armature, poses.size(), {.degrees = 0.5, .mm = 1});
+  const auto keys_from = [&](int frame) {
+    const ReducedKeys reduced = reduced_within(armature, poses, 0, allowed, no_progress());
+    const auto& keys = reduced.keys.bones.at("Upper");
+    return std::distance(keys.lower_bound(frame), keys.end());
+  };
+  const auto before = keys_from(60);
+  for (int frame = 0; frame < 20; ++frame) allowed.degrees[0][frame] = 1e-3;
+  CHECK(keys_from(60) <= before + 1);
+}
+
 TEST_CASE("reducing keys: one thread gives what two threads give, bit for bit") {
   const std::vector<Pose> poses = recorded(121);
   const auto by = [&](int threads) {
