@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/motion/plants.h"
 
@@ -14,6 +15,7 @@ namespace {
 // are for a leg of kUsualLeg and grow with its length.
 constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
 constexpr double kRest = 2;              // mm: how far a limb at rest is from its place, and moves in kShortestStance
+constexpr double kHeld = 0.3;            // mm: likewise for a limb that rests amid slow movement
 constexpr double kLowest = 0.02;         // share of the frames whose places are lower than what counts as the lowest
 constexpr double kShortestStance = 0.1;  // seconds; shorter ones are passed over
 constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
@@ -58,30 +60,56 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
   return sum / double(last - first + 1);
 }
 
-// Finds the spans in which a point rests, with the places.
-std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) {
-  const int last = static_cast<int>(places.size()) - 1;
-  const int window = window_of(rate);
+// Finds the spans of frames, of `within`, in which a point moves less than `near` in a window to one side at least.
+std::vector<std::array<int, 2>> still_spans(const std::vector<glm::dvec3>& places, const std::array<int, 2>& within,
+                                            int window, double near) {
   // At the ends of a rest the point is still to one side only.
   const auto is_still = [&](int f) {
-    const auto moves = [&](int g) { return g < 0 || g > last ? 2 * kRest : glm::distance(places[f], places[g]); };
-    return std::min(moves(f - window), moves(f + window)) < kRest;
+    const auto stays_to = [&](int g) {
+      return g >= 0 && g < std::ssize(places) && glm::distance(places[f], places[g]) < near;
+    };
+    return stays_to(f - window) || stays_to(f + window);
   };
+  std::vector<std::array<int, 2>> spans;
+  for (int f = within[0]; f <= within[1]; ++f) {
+    if (!is_still(f)) continue;
+    if (!spans.empty() && spans.back()[1] == f - 1) spans.back()[1] = f;
+    else spans.push_back({f, f});
+  }
+  return spans;
+}
+
+// Returns the rest in a span in which a point is still: the frames in which it is within `near` of one place. Nothing
+// if it drifts.
+std::optional<Plant> rest_in(const std::vector<glm::dvec3>& places, const std::array<int, 2>& span, int window,
+                             double near) {
+  auto [from, to] = span;
+  if (to - from < window) return {};
+  // The frames in the middle say where it rests; those in which it comes and leaves are left out.
+  const int quarter = (to - from + 1) / 4;
+  const glm::dvec3 place = mean_of(places, from + quarter, to - quarter);
+  const auto is_there = [&](int f) { return glm::distance(places[f], place) <= near; };
+  while (from <= to && !is_there(from)) ++from;
+  while (from <= to && !is_there(to)) --to;
+  // A limb that is slow for longer than it takes to come and to leave drifts.
+  bool stays = to - from >= window && from - span[0] <= window && span[1] - to <= window;
+  for (int f = from; f <= to; ++f) stays = stays && is_there(f);
+  if (!stays) return {};
+  return Plant{.first = from, .last = to, .place = mean_of(places, from, to)};
+}
+
+// Finds the spans in which a point rests, with the places.
+std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) {
+  const int window = window_of(rate);
   std::vector<Plant> rests;
-  for (int first = 0, end = 0; first <= last; first = end + 1) {
-    for (end = first; end <= last && is_still(end);) ++end;
-    int from = first, to = end - 1;
-    if (to - from < window) continue;
-    // The frames in the middle say where it rests; those in which it comes and leaves are left out.
-    const int quarter = (to - from + 1) / 4;
-    const glm::dvec3 place = mean_of(places, from + quarter, to - quarter);
-    const auto is_there = [&](int f) { return glm::distance(places[f], place) <= kRest; };
-    while (from <= to && !is_there(from)) ++from;
-    while (from <= to && !is_there(to)) --to;
-    // A limb that is slow for longer than it takes to come and to leave drifts.
-    bool stays = to - from >= window && from - first <= window && end - 1 - to <= window;
-    for (int f = from; f <= to; ++f) stays = stays && is_there(f);
-    if (stays) rests.push_back({.first = from, .last = to, .place = mean_of(places, from, to)});
+  for (const auto& span : still_spans(places, {0, static_cast<int>(places.size()) - 1}, window, kRest)) {
+    if (const auto rest = rest_in(places, span, window, kRest)) {
+      rests.push_back(*rest);
+      continue;
+    }
+    // A limb that was held where it moves slowly before or after is far stiller there than a drift.
+    for (const auto& inner : still_spans(places, span, window, kHeld))
+      if (const auto rest = rest_in(places, inner, window, kHeld)) rests.push_back(*rest);
   }
   return rests;
 }

@@ -111,6 +111,26 @@ TEST_CASE("plants: a limb rests while it is held, and neither where a swing turn
   CHECK(hands_of(still)[0].last == kFrames - 1);
 }
 
+TEST_CASE("plants: a limb that was held rests there, however slowly it moves before and after") {
+  const CleanWalk walk;
+  for (const double speed : {4.0, 12.0}) {  // mm/s
+    CAPTURE(speed);
+    std::vector<Pose> poses(kFrames, rest_pose(walk.rig));
+    for (int f = 0; f < kFrames; ++f)
+      poses[f].root_translation = {speed / kRate * (std::min(f, 50) + std::max(0, f - 70)), 0, 0};
+    std::vector<Plant> rests = plants_at_rest(walk.rig, walk.limbs, poses, kRate);
+    std::erase_if(rests, [&](const Plant& plant) { return walk.limbs[plant.limb].is_leg; });
+    REQUIRE(rests.size() == 2);
+    for (const Plant& rest : rests) {
+      CHECK(rest.first >= 45);
+      CHECK(rest.first <= 50);
+      CHECK(rest.last >= 70);
+      CHECK(rest.last <= 75);
+      CHECK(glm::distance(rest.place, place_of(walk.limbs[rest.limb], PlantPoint::Tip, walk.rig, poses[60])) < 0.1);
+    }
+  }
+}
+
 TEST_CASE("reduced keys: without plants nothing changes, and an error of zero is refused") {
   const CleanWalk walk;
   const PlantedKeys kept = reduced_with_plants(walk.rig, walk.limbs, walk.cleaned.poses, 0, {}, {}, 1, no_progress());
