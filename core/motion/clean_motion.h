@@ -21,6 +21,6 @@ struct CleanedMotion {
 // Throws Error as planted() does.
 CleanedMotion clean_motion(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                            const std::vector<Pose>& poses, double rate, bool plants_feet,
-                           const std::vector<Plant>& holds, double ease);
+                           const std::vector<Plant>& holds, double ease, Progress& progress = no_progress());
 
 }  // namespace limber

@@ -140,17 +140,14 @@ double length_of(const PlantedLimb& leg, const Armature& armature) {
 }  // namespace
 
 std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                  const std::vector<Pose>& poses, double rate) {
+                                  const std::vector<Pose>& poses, double rate, Progress& progress) {
   std::vector<Plant> plants;
   if (poses.empty()) return plants;
+  const LimbTracks tracks = limb_tracks(armature, limbs, poses, progress);
   for (int l = 0; l < std::ssize(limbs); ++l) {
     const PlantedLimb& limb = limbs[l];
     if (!limb.is_leg) continue;
-    std::vector<glm::dvec3> joint, tip;
-    for (const Pose& pose : poses) {
-      joint.push_back(place_of(limb, PlantPoint::Joint, armature, pose));
-      tip.push_back(place_of(limb, PlantPoint::Tip, armature, pose));
-    }
+    const auto& [joint, tip] = tracks[l];
     const double size = length_of(limb, armature) / kUsualLeg;
     std::vector<Plant> tips, joints;
     if (limb.end >= 0)
@@ -178,15 +175,14 @@ std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<Pl
 }
 
 std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                  const std::vector<Pose>& poses, double rate) {
+                                  const std::vector<Pose>& poses, double rate, Progress& progress) {
+  const LimbTracks tracks = limb_tracks(armature, limbs, poses, progress);
   std::vector<Plant> plants;
   for (int l = 0; l < std::ssize(limbs); ++l)
     for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip}) {
       // Of a hand the tip is what holds on to something.
       if (point == PlantPoint::Joint ? !limbs[l].is_leg : limbs[l].is_leg && limbs[l].end < 0) continue;
-      std::vector<glm::dvec3> places;
-      for (const Pose& pose : poses) places.push_back(place_of(limbs[l], point, armature, pose));
-      for (Plant rest : rests_of(places, rate)) {
+      for (Plant rest : rests_of(tracks[l][static_cast<int>(point)], rate)) {
         rest.limb = l;
         rest.point = point;
         plants.push_back(rest);
@@ -196,7 +192,8 @@ std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<Pl
 }
 
 std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature& armature,
-                                 const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate) {
+                                 const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate,
+                                 Progress& progress) {
   const int last = static_cast<int>(poses.size()) - 1, window = window_of(rate);
   std::vector<Plant> held;
   for (const Plant& rest : rests) {
@@ -208,6 +205,7 @@ std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature
       const int from = std::max(0, rest.first - window), to = std::min(last, rest.last + window);
       std::vector<glm::dvec3> places;
       for (int f = from; f <= to; ++f) {
+        if (progress.cancelled()) throw Cancelled();
         const RigidTransform posed = posed_from_rest(armature, poses[f])[trunk];
         places.push_back(inverse(posed) * place_of(limb, rest.point, armature, poses[f]));
       }

@@ -88,19 +88,12 @@ struct Pull {
 class Planter {
  public:
   Planter(const Armature& armature, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses,
-          const std::vector<Plant>& plants, int ease)
+          const std::vector<Plant>& plants, int ease, Progress& progress)
       : armature_(armature),
         limbs_(limbs),
         plants_(plants),
         ease_(ease),
-        tracks_(limbs.size()) {
-    for (const Pose& pose : poses) {
-      const PosedRig rig(armature, pose);
-      for (std::size_t l = 0; l < limbs.size(); ++l)
-        for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip})
-          tracks_[l][static_cast<int>(point)].push_back(point_of(rig, limbs[l], point));
-    }
-  }
+        tracks_(limb_tracks(armature, limbs, poses, progress)) {}
 
   // Returns how the body should move with its planted feet in a frame, mm: as they are pulled, in the mean of the legs.
   // The legs then keep their shape.
@@ -207,7 +200,7 @@ class Planter {
   const std::vector<PlantedLimb>& limbs_;
   const std::vector<Plant>& plants_;
   const int ease_;
-  std::vector<std::array<std::vector<glm::dvec3>, 2>> tracks_;  // of each limb's joint and tip in the given poses
+  const LimbTracks tracks_;  // in the given poses
 };
 
 // Returns the values averaged over the frames within `reach`, the near ones more.
@@ -287,6 +280,19 @@ glm::dvec3 place_of(const PlantedLimb& limb, PlantPoint point, const Armature& a
   return point_of(PosedRig(armature, pose), limb, point);
 }
 
+LimbTracks limb_tracks(const Armature& armature, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses,
+                       Progress& progress) {
+  LimbTracks tracks(limbs.size());
+  for (const Pose& pose : poses) {
+    if (progress.cancelled()) throw Cancelled();
+    const PosedRig rig(armature, pose);
+    for (std::size_t l = 0; l < limbs.size(); ++l)
+      for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip})
+        tracks[l][static_cast<int>(point)].push_back(point_of(rig, limbs[l], point));
+  }
+  return tracks;
+}
+
 std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& hold, int ease) {
   const int from = hold.first - ease, to = hold.last + ease;
   std::vector<Plant> left;
@@ -302,7 +308,8 @@ std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& h
 }
 
 std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                          const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease) {
+                          const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease,
+                          Progress& progress) {
   const int last = static_cast<int>(poses.size()) - 1;
   for (const Plant& plant : plants) {
     if (plant.limb < 0 || plant.limb >= std::ssize(limbs))
@@ -323,16 +330,23 @@ std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLim
                     "choose frames that do not overlap");
     }
   ease = std::clamp(ease, 0, kLongestEase);
-  const Planter planter(armature, limbs, poses, plants, ease);
+  const Planter planter(armature, limbs, poses, plants, ease, progress);
   std::vector<Pose> result = poses;
   std::vector<glm::dvec3> carrying(poses.size());
-  for (int f = 0; f <= last; ++f) carrying[f] = planter.carrying(poses[f], f);
+  for (int f = 0; f <= last; ++f) {
+    if (progress.cancelled()) throw Cancelled();
+    carrying[f] = planter.carrying(poses[f], f);
+  }
   carrying = averaged(carrying, ease);
   for (int f = 0; f <= last; ++f) result[f].root_translation += carrying[f];
   std::vector<double> sinking(poses.size());
-  for (int f = 0; f <= last; ++f) sinking[f] = planter.sinking(result[f], f);
+  for (int f = 0; f <= last; ++f) {
+    if (progress.cancelled()) throw Cancelled();
+    sinking[f] = planter.sinking(result[f], f);
+  }
   sinking = smooth_above(sinking, ease);
   for (int f = 0; f <= last; ++f) {
+    progress.update("planting", double(f) / double(poses.size()));
     result[f].root_translation.z -= sinking[f];
     result[f] = planter.plant(result[f], f);
   }

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/rig/pose.h"
 
 namespace limber {
@@ -42,21 +43,27 @@ struct Plant {
 // Returns the position of a point of a limb in a pose, world, mm.
 glm::dvec3 place_of(const PlantedLimb& limb, PlantPoint point, const Armature& armature, const Pose& pose);
 
+// The positions of each limb's joint and tip, by PlantPoint, in each pose, world, mm.
+using LimbTracks = std::vector<std::array<std::vector<glm::dvec3>, 2>>;
+LimbTracks limb_tracks(const Armature& armature, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses,
+                       Progress& progress = no_progress());
+
 // Finds the spans of frames in which a foot stands: its joint or its tip is low and slow. The place of each plant is
 // the mean of the point's places in the span.
 //   rate  frames per second
 std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                  const std::vector<Pose>& poses, double rate);
+                                  const std::vector<Pose>& poses, double rate, Progress& progress = no_progress());
 
 // Finds the spans of frames in which a foot or hand rests at one place to within two millimetres, such as those in
 // which it was planted or held before. Slow drifts and turning points of a swing are not among them.
 std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                  const std::vector<Pose>& poses, double rate);
+                                  const std::vector<Pose>& poses, double rate, Progress& progress = no_progress());
 
 // Returns those of plants_at_rest() that the world holds: of a hand, only those during which, or at whose ends, the
 // hand moves relative to the trunk. A hand that is still relative to both hangs idle, and goes where the body goes.
 std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature& armature,
-                                 const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate);
+                                 const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate,
+                                 Progress& progress = no_progress());
 
 // Returns the plants without the frames in which the limb of `hold` is held, or comes there or leaves. A plant may fall
 // into two.
@@ -65,9 +72,11 @@ std::vector<Plant> without_held(const std::vector<Plant>& plants, const Plant& h
 // Returns the poses with the points at their places. Plants of one point may follow each other closely, but not
 // overlap.
 //   ease  frames over which a limb comes to its place and leaves it
-// Throws Error for a plant without a limb or with frames that the motion does not have, and for plants that overlap.
+// Throws Error for a plant without a limb or with frames that the motion does not have, for plants that overlap, and
+// Cancelled.
 std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                          const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease);
+                          const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease,
+                          Progress& progress = no_progress());
 
 // How well a plant is kept, mm.
 struct PlantError {

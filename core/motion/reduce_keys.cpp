@@ -194,14 +194,6 @@ class Spline {
   Curve keys_;
 };
 
-// The keys of one bone, or of the shift, and how far they are off the recorded values.
-template <class Value>
-struct ReducedTrack {
-  std::map<int, Value> keys;
-  KeyShapes shapes;
-  double error = 0;
-};
-
 // Returns the keys of the recorded values. A track that is `rest` at every frame has none.
 template <class Value>
 ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start,
@@ -235,40 +227,50 @@ AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, c
 
 ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
                             const ReduceSettings& settings, Progress& progress) {
-  return reduced_within(armature, poses, start, allowed_everywhere(armature, poses.size(), settings), progress);
+  return KeyFitter(armature, poses, start).fitted(allowed_everywhere(armature, poses.size(), settings), progress);
 }
 
-ReducedKeys reduced_within(const Armature& armature, const std::vector<Pose>& poses, int start,
-                           const AllowedErrors& allowed, Progress& progress) {
+KeyFitter::KeyFitter(const Armature& armature, const std::vector<Pose>& poses, int start)
+    : armature_(armature),
+      poses_(poses),
+      start_(start),
+      allowed_{std::vector<std::vector<double>>(armature.bones.size()), {}},
+      tracks_(armature.bones.size()) {}
+
+ReducedKeys KeyFitter::fitted(const AllowedErrors& allowed, Progress& progress) {
   ReducedKeys result;
-  if (poses.empty()) return result;
-  std::vector<ReducedTrack<glm::dquat>> tracks(armature.bones.size());
-  parallel_for(std::ssize(tracks), 1, [&](std::int64_t begin, std::int64_t end) {
+  if (poses_.empty()) return result;
+  parallel_for(std::ssize(tracks_), 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t bone = begin; bone < end; ++bone) {
       if (progress.cancelled()) throw Cancelled();
+      if (allowed_.degrees[bone] == allowed.degrees[bone]) continue;
       std::vector<glm::dquat> recorded;
-      for (const Pose& pose : poses) recorded.push_back(pose.rotation[bone]);
-      tracks[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start, allowed.degrees[bone], progress);
+      for (const Pose& pose : poses_) recorded.push_back(pose.rotation[bone]);
+      tracks_[bone] = reduced(recorded, glm::dquat(1, 0, 0, 0), start_, allowed.degrees[bone], progress);
+      allowed_.degrees[bone] = allowed.degrees[bone];
     }
   });
-  for (std::size_t bone = 0; bone < tracks.size(); ++bone) {
-    const std::string& name = armature.bones[bone].name;
-    auto& [keys, shapes, error] = tracks[bone];
+  for (std::size_t bone = 0; bone < tracks_.size(); ++bone) {
+    const std::string& name = armature_.bones[bone].name;
+    const auto& [keys, shapes, error] = tracks_[bone];
     if (error > result.most_degrees) {
       result.most_degrees = error;
       result.worst_bone = name;
     }
     result.count += std::ssize(keys);
-    if (!keys.empty()) result.keys.bones[name] = std::move(keys);
-    if (!shapes.empty()) result.keys.shapes[name] = std::move(shapes);
+    if (!keys.empty()) result.keys.bones[name] = keys;
+    if (!shapes.empty()) result.keys.shapes[name] = shapes;
   }
-  std::vector<glm::dvec3> shift;
-  for (const Pose& pose : poses) shift.push_back(pose.root_translation);
-  ReducedTrack<glm::dvec3> root = reduced(shift, glm::dvec3(0), start, allowed.mm, progress);
-  result.count += std::ssize(root.keys);
-  result.most_mm = root.error;
-  result.keys.root = std::move(root.keys);
-  result.keys.root_shapes = std::move(root.shapes);
+  if (allowed_.mm != allowed.mm) {
+    std::vector<glm::dvec3> shift;
+    for (const Pose& pose : poses_) shift.push_back(pose.root_translation);
+    root_ = reduced(shift, glm::dvec3(0), start_, allowed.mm, progress);
+    allowed_.mm = allowed.mm;
+  }
+  result.count += std::ssize(root_.keys);
+  result.most_mm = root_.error;
+  result.keys.root = root_.keys;
+  result.keys.root_shapes = root_.shapes;
   return result;
 }
 

@@ -39,7 +39,31 @@ struct AllowedErrors {
   std::vector<double> mm;                    // of the body's shift, for each frame
 };
 AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, const ReduceSettings& settings);
-ReducedKeys reduced_within(const Armature& armature, const std::vector<Pose>& poses, int start,
-                           const AllowedErrors& allowed, Progress& progress);
+
+// The keys of one bone, or of the shift.
+template <class Value>
+struct ReducedTrack {
+  std::map<int, Value> keys;
+  KeyShapes shapes;
+  double error = 0;  // largest distance from the recorded values
+};
+
+// Fits keys to the same poses again and again. A bone whose allowed errors are as before is not fitted again.
+class KeyFitter {
+ public:
+  // Keeps references to the rig and the poses, which are those of the frames `start`, `start` + 1, ...
+  KeyFitter(const Armature& armature, const std::vector<Pose>& poses, int start);
+
+  // Throws Cancelled.
+  ReducedKeys fitted(const AllowedErrors& allowed, Progress& progress);
+
+ private:
+  const Armature& armature_;
+  const std::vector<Pose>& poses_;
+  const int start_;
+  AllowedErrors allowed_;  // of the tracks; empty: not fitted yet
+  std::vector<ReducedTrack<glm::dquat>> tracks_;
+  ReducedTrack<glm::dvec3> root_;
+};
 
 }  // namespace limber

@@ -16,9 +16,11 @@ constexpr double kSmallestAngle = 1e-4;  // degrees: moves a foot by microns
 constexpr double kSmallestShift = 1e-3;  // mm
 
 // Returns the poses that the keys give at the frames `start` to `start` + `count` - 1.
-std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int start, std::size_t count) {
+std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int start, std::size_t count,
+                                Progress& progress) {
   std::vector<Pose> poses(count, rest_pose(armature));
   for (std::size_t f = 0; f < count; ++f) {
+    if (progress.cancelled()) throw Cancelled();
     const double frame = start + static_cast<double>(f);
     for (std::size_t bone = 0; bone < armature.bones.size(); ++bone)
       if (const auto found = keys.bones.find(armature.bones[bone].name); found != keys.bones.end())
@@ -30,18 +32,12 @@ std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int 
 
 int carrier_of(const PlantedLimb& limb) { return limb.end >= 0 ? limb.end : limb.lower; }
 
-// The recorded places of a plant's point in its frames.
-std::vector<glm::dvec3> places_of(const Plant& plant, const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                  const std::vector<Pose>& poses) {
-  std::vector<glm::dvec3> places;
-  for (int f = plant.first; f <= plant.last; ++f)
-    places.push_back(place_of(limbs[plant.limb], plant.point, armature, poses[f]));
-  return places;
-}
-
-double largest_distance(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {
+// The largest distance of a plant's point in its frames from where it was recorded.
+double most_off_in(const Plant& plant, const LimbTracks& recorded, const LimbTracks& played) {
+  const auto point = static_cast<std::size_t>(plant.point);
   double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, glm::distance(a[i], b[i]));
+  for (int f = plant.first; f <= plant.last; ++f)
+    most = std::max(most, glm::distance(recorded[plant.limb][point][f], played[plant.limb][point][f]));
   return most;
 }
 
@@ -68,9 +64,9 @@ void tighten(AllowedErrors& allowed, const Plant& plant, const Armature& armatur
 }  // namespace
 
 std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                 const std::vector<Pose>& poses, double rate) {
-  std::vector<Plant> plants = plants_of_feet(armature, limbs, poses, rate);
-  for (const Plant& plant : plants_at_rest(armature, limbs, poses, rate))
+                                 const std::vector<Pose>& poses, double rate, Progress& progress) {
+  std::vector<Plant> plants = plants_of_feet(armature, limbs, poses, rate, progress);
+  for (const Plant& plant : plants_at_rest(armature, limbs, poses, rate, progress))
     if (!limbs[plant.limb].is_leg) plants.push_back(plant);
   return plants;
 }
@@ -81,16 +77,17 @@ PlantedKeys reduced_with_plants(const Armature& armature, const std::vector<Plan
   if (!(plant_mm > 0)) throw Error("the error must be positive", "planted feet", "allow at least a small error");
   AllowedErrors allowed = allowed_everywhere(armature, poses.size(), settings);
   std::vector<double> aims(plants.size(), plant_mm);
-  std::vector<std::vector<glm::dvec3>> recorded;
-  for (const Plant& plant : plants) recorded.push_back(places_of(plant, armature, limbs, poses));
+  const LimbTracks recorded = limb_tracks(armature, limbs, poses, progress);
+  KeyFitter fitter(armature, poses, start);
   PlantedKeys result;
   for (int round = 0;; ++round) {
-    result.reduced = reduced_within(armature, poses, start, allowed, progress);
-    const std::vector<Pose> played = poses_of_keys(armature, result.reduced.keys, start, poses.size());
+    result.reduced = fitter.fitted(allowed, progress);
+    const LimbTracks played = limb_tracks(
+        armature, limbs, poses_of_keys(armature, result.reduced.keys, start, poses.size(), progress), progress);
     result.most_off = 0;
     bool any = false;
     for (std::size_t i = 0; i < plants.size(); ++i) {
-      const double off = largest_distance(recorded[i], places_of(plants[i], armature, limbs, played));
+      const double off = most_off_in(plants[i], recorded, played);
       result.most_off = std::max(result.most_off, off);
       if (off <= plant_mm) continue;
       any = true;

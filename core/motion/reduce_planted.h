@@ -12,7 +12,7 @@ namespace limber {
 
 // Finds the feet that stand (plants_of_feet()), and the hands that rest at a place (plants_at_rest()).
 std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<PlantedLimb>& limbs,
-                                 const std::vector<Pose>& poses, double rate);
+                                 const std::vector<Pose>& poses, double rate, Progress& progress = no_progress());
 
 struct PlantedKeys {
   ReducedKeys reduced;

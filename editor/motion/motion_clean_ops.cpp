@@ -105,8 +105,9 @@ void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, co
 // body is moved with its feet or what moves fast is filtered out, and likewise feet when one limb is held. Hands that
 // hang idle go with the body.
 std::vector<Plant> rests_to_keep(const Cleaning& cleaning, const Armature& rig, const std::vector<PlantedLimb>& limbs,
-                                 const std::vector<Pose>& recorded, double rate) {
-  std::vector<Plant> rests = held_by_world(plants_at_rest(rig, limbs, recorded, rate), rig, limbs, recorded, rate);
+                                 const std::vector<Pose>& recorded, double rate, Progress& progress) {
+  std::vector<Plant> rests =
+      held_by_world(plants_at_rest(rig, limbs, recorded, rate, progress), rig, limbs, recorded, rate, progress);
   if (cleaning.plants_feet) std::erase_if(rests, [&](const Plant& plant) { return limbs[plant.limb].is_leg; });
   if (cleaning.hold) rests = without_held(rests, *cleaning.hold, static_cast<int>(std::lround(cleaning.ease * rate)));
   return rests;
@@ -133,9 +134,10 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
     return result;
   }
   if (cleaning.plants_feet || cleaning.hold) {
-    std::vector<Plant> holds = rests_to_keep(cleaning, rig, limbs, recorded, rate);
+    std::vector<Plant> holds = rests_to_keep(cleaning, rig, limbs, recorded, rate, progress);
     if (cleaning.hold) holds.push_back(*cleaning.hold);
-    CleanedMotion cleaned = clean_motion(rig, limbs, smooth, rate, cleaning.plants_feet, holds, cleaning.ease);
+    CleanedMotion cleaned =
+        clean_motion(rig, limbs, smooth, rate, cleaning.plants_feet, holds, cleaning.ease, progress);
     result.poses = std::move(cleaned.poses);
     cleaned.plants.resize(cleaned.plants.size() - holds.size());
     if (cleaning.hold) tell_of_hold(rig, limbs, *cleaning.hold, result);

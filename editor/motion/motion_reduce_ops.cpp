@@ -74,7 +74,7 @@ Reduced reduce(const Armature& rig, const std::vector<Pose>& poses, double rate,
                Progress& progress) {
   if (wanted.plant_mm <= 0) return {{reduced_to_keys(rig, poses, start, wanted.settings, progress)}};
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
-  const std::vector<Plant> plants = resting_limbs(rig, limbs, poses, rate);
+  const std::vector<Plant> plants = resting_limbs(rig, limbs, poses, rate, progress);
   return {reduced_with_plants(rig, limbs, poses, start, wanted.settings, plants, wanted.plant_mm, progress),
           plants.size()};
 }

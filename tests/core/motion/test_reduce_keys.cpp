@@ -136,13 +136,28 @@ TEST_CASE("reducing keys: frames that are kept closely cost no keys far from the
     poses[frame].rotation[0] = turned({0.6 * std::sin(frame / 15.0) + 0.004 * std::sin(frame * 2.1), 0, 0.1});
   AllowedErrors allowed = allowed_everywhere(armature, poses.size(), {.degrees = 0.5, .mm = 1});
   const auto keys_from = [&](int frame) {
-    const ReducedKeys reduced = reduced_within(armature, poses, 0, allowed, no_progress());
+    const ReducedKeys reduced = KeyFitter(armature, poses, 0).fitted(allowed, no_progress());
     const auto& keys = reduced.keys.bones.at("Upper");
     return std::distance(keys.lower_bound(frame), keys.end());
   };
   const auto before = keys_from(60);
   for (int frame = 0; frame < 20; ++frame) allowed.degrees[0][frame] = 1e-3;
   CHECK(keys_from(60) <= before + 1);
+}
+
+TEST_CASE("reducing keys: fitting again gives what fitting once gives, without another look at bones that stay") {
+  const Armature armature = arm();
+  const std::vector<Pose> poses = recorded(241);
+  AllowedErrors allowed = allowed_everywhere(armature, poses.size(), {});
+  KeyFitter fitter(armature, poses, 0);
+  CHECK(fitter.fitted(allowed, no_progress()).keys == reduced_to_keys(armature, poses, 0, {}, no_progress()).keys);
+  for (int frame = 30; frame < 60; ++frame) allowed.degrees[1][frame] = 0.01;
+  CHECK(fitter.fitted(allowed, no_progress()).keys ==
+        KeyFitter(armature, poses, 0).fitted(allowed, no_progress()).keys);
+  CancelledLater progress(4);  // one look for each bone, none within them
+  CHECK_NOTHROW(fitter.fitted(allowed, progress));
+  allowed.mm[7] = 0.01;
+  CHECK_THROWS_AS(fitter.fitted(allowed, progress), Cancelled);
 }
 
 TEST_CASE("reducing keys: one thread gives what two threads give, bit for bit") {

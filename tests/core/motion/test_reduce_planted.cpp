@@ -131,6 +131,18 @@ TEST_CASE("plants: a limb that was held rests there, however slowly it moves bef
   }
 }
 
+TEST_CASE("plants: a cancel takes effect while rests are sought, judged and planted") {
+  const CleanWalk walk;
+  const std::vector<Pose>& poses = walk.cleaned.poses;
+  const std::vector<Plant> rests = plants_at_rest(walk.rig, walk.limbs, poses, kRate);
+  Progress stopped;
+  stopped.cancel();
+  CHECK_THROWS_AS(plants_at_rest(walk.rig, walk.limbs, poses, kRate, stopped), Cancelled);
+  CHECK_THROWS_AS(plants_of_feet(walk.rig, walk.limbs, poses, kRate, stopped), Cancelled);
+  CHECK_THROWS_AS(held_by_world(rests, walk.rig, walk.limbs, poses, kRate, stopped), Cancelled);
+  CHECK_THROWS_AS(planted(walk.rig, walk.limbs, poses, rests, 9, stopped), Cancelled);
+}
+
 TEST_CASE("reduced keys: without plants nothing changes, and an error of zero is refused") {
   const CleanWalk walk;
   const PlantedKeys kept = reduced_with_plants(walk.rig, walk.limbs, walk.cleaned.poses, 0, {}, {}, 1, no_progress());
