@@ -76,29 +76,52 @@ std::string mm_text(double mm) {
   return text;
 }
 
+// The plant whose point is furthest off its place.
+struct WorstPlant {
+  const Plant* plant = nullptr;
+  double off = 0;
+};
+WorstPlant worst_of(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Plant>& plants,
+                    const std::vector<Pose>& poses) {
+  WorstPlant worst;
+  for (const Plant& plant : plants)
+    if (const double off = error_of(plant, rig, limbs, poses).from_place; !(off <= worst.off) && !std::isnan(worst.off))
+      worst = {&plant, off};
+  return worst;
+}
+
+// Says which limb does not reach the place where it stands, rests or is held.
+//   plants  all that had to stay in place
+//   told    the limb that the result's detail speaks of; -1: none
+void tell_of_short(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Plant>& plants,
+                   int told, Result& result) {
+  const WorstPlant worst = worst_of(rig, limbs, plants, result.poses);
+  result.is_short = !(worst.off <= kOff);
+  if (!result.is_short) return;
+  if (worst.plant->limb == told) result.detail += ": it does not reach";
+  else
+    result.detail +=
+        "; the " + limbs[worst.plant->limb].name + " does not reach its place and is " + mm_text(worst.off) + " off";
+}
+
 void tell_of_hold(const Armature& rig, const std::vector<PlantedLimb>& limbs, const Plant& hold, Result& result) {
   const double off = error_of(hold, rig, limbs, result.poses).from_place;
-  result.is_short = off > kOff;
-  result.detail = "It is " + mm_text(off) + " off its place at most" + (result.is_short ? ": it does not reach" : "");
+  result.detail = "The " + limbs[hold.limb].name + " is " + mm_text(off) + " off its place at most";
 }
 
 void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& before,
                   const std::vector<Plant>& feet, Result& result) {
-  double slid = 0, slides = 0, off = 0;
+  double slid = 0, slides = 0;
   for (const Plant& plant : feet) {
     slid = std::max(slid, error_of(plant, rig, limbs, before).slide);
-    const PlantError error = error_of(plant, rig, limbs, result.poses);
-    slides = std::max(slides, error.slide);
-    off = std::max(off, error.from_place);
+    slides = std::max(slides, error_of(plant, rig, limbs, result.poses).slide);
   }
-  result.is_short = off > kOff;
   if (feet.empty()) {
     result.detail = "No foot was found to stand: none is low and slow for a tenth of a second";
   } else {
     result.detail = "Feet stand " + std::to_string(feet.size()) + " times; there they slid by up to " + mm_text(slid) +
                     ", and now by " + mm_text(slides);
   }
-  if (result.is_short) result.detail += "; a leg is too short for its place";
 }
 
 // Returns what has to stay in place because it rests there in the recorded poses: a hand that was held before, when the
@@ -139,9 +162,10 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
     CleanedMotion cleaned =
         clean_motion(rig, limbs, smooth, rate, cleaning.plants_feet, holds, cleaning.ease, progress);
     result.poses = std::move(cleaned.poses);
-    cleaned.plants.resize(cleaned.plants.size() - holds.size());
+    const std::vector<Plant> feet(cleaned.plants.begin(), cleaned.plants.end() - std::ssize(holds));
     if (cleaning.hold) tell_of_hold(rig, limbs, *cleaning.hold, result);
-    else tell_of_feet(rig, limbs, recorded, cleaned.plants, result);
+    else tell_of_feet(rig, limbs, recorded, feet, result);
+    tell_of_short(rig, limbs, cleaned.plants, cleaning.hold ? cleaning.hold->limb : -1, result);
   } else {
     result.poses = smooth;
   }

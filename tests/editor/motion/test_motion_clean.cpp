@@ -21,7 +21,9 @@ constexpr double kRate = 60;
 
 // The editor with a walker and a clip in which its feet slide. The clip begins at frame 5.
 struct WalkerEditor : SmallEditor {
-  WalkerEditor() : SmallEditor({1280, 720}, {}, false) {
+  explicit WalkerEditor(std::vector<Pose> shown = sliding_steps(walker(), kFrames, 0.02))
+      : SmallEditor({1280, 720}, {}, false),
+        poses(std::move(shown)) {
     Document document = small_body();
     document.armature = std::make_shared<const Armature>(rig);
     Clip clip = clip_for(
@@ -52,7 +54,7 @@ struct WalkerEditor : SmallEditor {
 
   const Armature rig = walker();
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
-  const std::vector<Pose> poses = sliding_steps(rig, kFrames, 0.02);
+  const std::vector<Pose> poses;
 };
 
 // Returns the largest distance of a limb's tip between two lists of poses, mm.
@@ -122,6 +124,30 @@ TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with 
   for (int f = 0; f < kFrames; ++f)
     CHECK(glm::distance(place_of(left, PlantPoint::Tip, test.rig, after[f]),
                         place_of(left, PlantPoint::Tip, test.rig, before[f])) < 0.05);
+}
+
+TEST_CASE("cleaning clips: a hand that rested and does not reach its place any more is named") {
+  // An arm that is all but straight holds on to something ahead while the body sways. A foot is held far aside, so the
+  // body goes along and the hand cannot stay.
+  const Armature rig = walker();
+  const std::vector<PlantedLimb> limbs = planted_limbs(rig);
+  REQUIRE(limbs[0].name == "left foot");
+  REQUIRE(limbs[2].name == "left hand");
+  std::vector<Pose> poses(kFrames, rest_pose(rig));
+  for (int f = 0; f < kFrames; ++f) poses[f].root_translation = {15 * std::sin(f * 0.1), 0, 0};
+  const glm::dvec3 shoulder = rig.bones[limbs[2].upper].head;
+  poses = planted(rig, limbs, poses, {{2, PlantPoint::Tip, 0, kFrames - 1, shoulder + glm::dvec3(0, -500, -290)}}, 6);
+  WalkerEditor test(poses);
+  test.play(
+      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click Limb/list\n click \"Limb/left foot\"\n click "
+      "\"Result/New clip\"\n click \"Place/Position\"\n wait-idle\n click \"Position/text\"\n key Ctrl+A\n type "
+      "\"400, -150, 10\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
+  REQUIRE(test.editor->document().clips.size() == 2);
+  REQUIRE(!test.editor->messages.toasts.empty());
+  const Toast& toast = test.editor->messages.toasts.back();
+  CAPTURE(toast.detail);
+  CHECK(toast.severity == Severity::Warning);
+  CHECK(toast.detail.find("the left hand does not reach its place") != std::string::npos);
 }
 
 TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
