@@ -21,6 +21,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kOff = 3;                 // mm: a limb that stays further off its place does not reach it
+constexpr double kFarthest = 1e6;          // mm: upper limit on each of the typed x, y and z
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are cleaned at once
 
 enum class Becomes { NewClip, SameClip };
@@ -246,7 +247,7 @@ void ask_cleaning(Editor& editor) {
        [cleaning_of](Editor& e, const std::vector<FormField>& fields) { start_cleaning(e, cleaning_of(fields)); }}));
 }
 
-// Reads "x, y, z". Throws NotYet if the text is something else.
+// Reads "x, y, z". Throws NotYet if the text is something else, and Error if the position is beyond kFarthest.
 glm::dvec3 position_in(const std::string& text) {
   glm::dvec3 position(0);
   int end = 0;
@@ -254,6 +255,9 @@ glm::dvec3 position_in(const std::string& text) {
       std::sscanf(text.c_str(), " %lf%*[ ,;]%lf%*[ ,;]%lf %n", &position.x, &position.y, &position.z, &end) == 3;
   const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
   if (!three || end != std::ssize(text) || !finite) throw NotYet{"Type the position as x, y, z in mm: 120, -350, 1020"};
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(position[axis]) > kFarthest)
+      throw Error("the position is too far away", text, "type at most 1000000 mm for each of x, y and z");
   return position;
 }
 std::string position_text(const glm::dvec3& position) {
