@@ -275,20 +275,32 @@ glm::dvec3 hold_position(const Editor& editor, const std::vector<FormField>& fie
                                                                               : editor.views->cross_hair;
 }
 
+// Returns where the chosen limb is in the first frame in which it is to be held; nothing if the clip does not play yet.
+std::optional<glm::dvec3> place_before_hold(const Editor& editor, const std::vector<FormField>& fields) {
+  const ClipOnRig* clip = editor.timeline->prepared.get();
+  if (!clip || clip->clip().get() != shown_clip(editor) || !clip->problem().empty()) return {};
+  const Armature& rig = *clip->armature();
+  const int first = static_cast<int>(fields[kFrom].value);
+  return place_of(planted_limbs(rig)[static_cast<std::size_t>(fields[kLimb].chosen)], PlantPoint::Tip, rig,
+                  clip->at(first));
+}
+
 std::string hold_outcome(const Editor& editor, const std::vector<FormField>& fields) {
   require_frames(editor);
   const int first = static_cast<int>(fields[kFrom].value), last = static_cast<int>(fields[kTo].value);
   if (last < first) throw NotYet{"The last frame comes before the first one."};
-  const auto limb = static_cast<std::size_t>(fields[kLimb].chosen);
-  std::string words = "Holds the " + fields[kLimb].choices[limb] + " in " + frames_text(first, last) + ".";
+  const std::string& limb = fields[kLimb].choices[static_cast<std::size_t>(fields[kLimb].chosen)];
+  std::string words = "Holds the " + limb + " in " + frames_text(first, last) + ".";
   if (!shown_clip(editor)->keys.empty()) words += " Keys of the clip become part of the motion.";
-  if (static_cast<HoldPlace>(fields[kPlace].chosen) == HoldPlace::WhereItIs) return words;
+  const auto wish = static_cast<HoldPlace>(fields[kPlace].chosen);
+  if (wish == HoldPlace::WhereItIs) return words;
+  const std::optional<glm::dvec3> place = place_before_hold(editor, fields);
+  if (wish == HoldPlace::Position && fields[kPosition].text.empty() && place)
+    throw NotYet{"Type the position as x, y, z in mm. In frame " + std::to_string(first) + " the " + limb + " is at " +
+                 position_text(*place) + "."};
   const glm::dvec3 wanted = hold_position(editor, fields);
-  const ClipOnRig* clip = editor.timeline->prepared.get();
-  if (!clip || clip->clip().get() != shown_clip(editor) || !clip->problem().empty()) return words;
-  const Armature& rig = *clip->armature();
-  const glm::dvec3 place = place_of(planted_limbs(rig)[limb], PlantPoint::Tip, rig, clip->at(first));
-  return words + " In the first one it is " + mm_text(glm::distance(place, wanted)) + " from there.";
+  if (!place) return words;
+  return words + " In the first one it is " + mm_text(glm::distance(*place, wanted)) + " from there.";
 }
 
 void hold_limb(Editor& editor, const std::vector<FormField>& fields) {
@@ -312,10 +324,6 @@ void ask_hold(Editor& editor) {
   const auto [low, high] = playing_range(editor);
   const int frame = std::clamp(shown_frame(editor), low, high);
   const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 2)));
-  const ClipOnRig* clip = clip_on_rig(editor);
-  const glm::dvec3 position = clip && clip->problem().empty()
-                                  ? place_of(limbs.back(), PlantPoint::Tip, rig, clip->at(frame))
-                                  : editor.views->cross_hair;
   editor.open_dialog(make_form(
       {"Hold a hand or foot",
        "Keeps the tip of a limb in place for some frames; elbow or knee bend so that it does.",
@@ -327,7 +335,7 @@ void ask_hold(Editor& editor) {
                   "Where it is held: where it is in the first of these frames, at the cross-hair of the slices, or at "
                   "the position that is typed below.",
                   {"Where it is", "Cross-hair", "Position"}),
-        text_of("Position", "x, y and z in mm, LPS: for Place = Position.", position_text(position)), ease_field(),
+        text_of("Position", "x, y and z in mm, LPS: for Place = Position.", ""), ease_field(),
         becomes_field(Becomes::SameClip)},
        hold_outcome,
        hold_limb}));

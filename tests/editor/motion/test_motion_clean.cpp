@@ -161,6 +161,14 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
 
+  // A position is the user's: none is there before one is typed.
+  test.play(
+      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Position\"\n click Limb/list\n click "
+      "\"Limb/left foot\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
+  CHECK(test.editor->dialog);
+  test.play("key Escape\n wait-idle");
+  CHECK(test.editor->document().clips == old.clips);
+
   // A place that is no number of this world.
   for (const char* far : {"1e200, 0, 0", "0, 2000000, 0", "0, 0, nan"}) {
     CAPTURE(far);
