@@ -31,6 +31,9 @@ struct Wanted {
 struct Reduced {
   PlantedKeys keys;
   std::size_t plants = 0;  // number of times that a foot stands or a hand rests
+  double plant_mm = 0;     // how far off they may be
+
+  bool is_short() const { return plants > 0 && !(keys.most_off <= plant_mm); }
 };
 
 std::string summary_of(const Reduced& result) {
@@ -46,6 +49,10 @@ std::string summary_of(const Reduced& result) {
   if (result.plants > 0) {
     std::snprintf(text, sizeof text, "; feet and hands that stay are at most %.2g mm off", result.keys.most_off);
     words += text;
+    if (result.is_short()) {
+      std::snprintf(text, sizeof text, ", more than the %.2g mm that were asked for", result.plant_mm);
+      words += text;
+    }
   }
   return words;
 }
@@ -64,10 +71,11 @@ void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, const st
   take_in_clip(editor, source, rig, "Reduce to keys",
                keyed_clip(*source, reduced, range.low, range.high, is_new ? source->name + " keys" : source->name),
                is_new);
-  editor.messages.ok(std::to_string(range.high - range.low + 1) + " frames became " + std::to_string(reduced.count) +
-                         " keys of " + std::to_string(reduced.keys.bones.size()) +
-                         (reduced.keys.bones.size() == 1 ? " bone" : " bones"),
-                     summary_of(result));
+  const std::string line = std::to_string(range.high - range.low + 1) + " frames became " +
+                           std::to_string(reduced.count) + " keys of " + std::to_string(reduced.keys.bones.size()) +
+                           (reduced.keys.bones.size() == 1 ? " bone" : " bones");
+  if (result.is_short()) editor.messages.warn(line, summary_of(result));
+  else editor.messages.ok(line, summary_of(result));
 }
 
 Reduced reduce(const Armature& rig, const std::vector<Pose>& poses, double rate, int start, const Wanted& wanted,
@@ -76,7 +84,7 @@ Reduced reduce(const Armature& rig, const std::vector<Pose>& poses, double rate,
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   const std::vector<Plant> plants = resting_limbs(rig, limbs, poses, rate, progress);
   return {reduced_with_plants(rig, limbs, poses, start, wanted.settings, plants, wanted.plant_mm, progress),
-          plants.size()};
+          plants.size(), wanted.plant_mm};
 }
 
 void start_reducing(Editor& editor, const Wanted& wanted) {

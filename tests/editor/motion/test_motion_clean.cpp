@@ -150,6 +150,24 @@ TEST_CASE("cleaning clips: a hand that rested and does not reach its place any m
   CHECK(toast.detail.find("the left hand does not reach its place") != std::string::npos);
 }
 
+TEST_CASE("reducing clips: where feet cannot be kept as closely as asked, a warning says so") {
+  WalkerEditor test;
+  test.play("click \"Motion/Clip/Clean clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle");
+  const auto reduced_with = [&](const char* mm) {
+    test.play(std::string("click \"Motion/Clip/Reduce to keys...\"\n wait-idle\n double-click \"Planted "
+                          "feet/value\"\n key Ctrl+A\n type ") +
+              mm + "\n key Tab\n wait-idle\n click Reduce\n wait-job\n wait-idle");
+    REQUIRE(!test.editor->messages.toasts.empty());
+    return test.editor->messages.toasts.back();
+  };
+  CHECK(reduced_with("1").severity != Severity::Warning);
+  test.play("key Ctrl+Z\n wait-idle");
+  const Toast closer = reduced_with("0.00000001");
+  CAPTURE(closer.detail);
+  CHECK(closer.severity == Severity::Warning);
+  CHECK(closer.detail.find("more than the 1e-08 mm") != std::string::npos);
+}
+
 TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   WalkerEditor test;
   const Document old = test.editor->document();
