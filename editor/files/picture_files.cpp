@@ -9,6 +9,7 @@
 #include "editor/figure/video.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
+#include "editor/shown/preview_blend.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/icons.h"
 #include "render/image_io.h"
@@ -17,7 +18,6 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kFiner = 2;               // the posed body is as fine as in the 3D view at rest
 constexpr int kMostPictures = 100'000;  // upper limit on the pictures of one export
 
 Path numbered(const Path& path, int number) {
@@ -26,17 +26,20 @@ Path numbered(const Path& path, int number) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
 }
 
-// The frames of the clip that become pictures. A video has a fixed number of pictures per second, a clip any.
+// The frames of the clip that become pictures. A video has a fixed number of pictures per second, a clip any. Throws
+// Error if there are too many.
 std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
   const auto [low, high] = playing_range(editor);
-  std::vector<int> frames;
-  if (!is_video(path)) {
-    for (int frame = low; frame <= high; ++frame) frames.push_back(frame);
-    return frames;
+  const double step = is_video(path) ? frame_rate(editor) / kPicturesPerSecond : 1;
+  const double pictures = std::floor((double(high) - low + 0.5) / step) + 1;
+  if (!(pictures <= kMostPictures)) {
+    char count[32];
+    std::snprintf(count, sizeof count, "%.0f pictures", pictures);
+    throw Error("too many frames play", count, "set a shorter range");
   }
-  const double step = frame_rate(editor) / kPicturesPerSecond;
-  for (int i = 0; low + i * step <= high + 0.5; ++i)
-    frames.push_back(std::min(high, low + static_cast<int>(std::lround(i * step))));
+  std::vector<int> frames;
+  for (int i = 0; i < static_cast<int>(pictures); ++i)
+    frames.push_back(static_cast<int>(std::min<double>(high, low + std::round(i * step))));
   return frames;
 }
 
@@ -44,20 +47,20 @@ std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
 class PosedScenes {
  public:
   PosedScenes(Editor& editor, std::vector<int> frames)
-      : editor_(editor),
-        clip_(editor.document().clips[static_cast<std::size_t>(editor.document().clip)], editor.document().armature),
+      : clip_(editor.document().clips[static_cast<std::size_t>(editor.document().clip)], editor.document().armature),
         document_(editor.document()),
+        blend_(preview_blend(editor)),
         frames_(std::move(frames)),
-        maker_(kFiner, [&window = editor.host] { window.wake(); }) {
+        maker_(editor.live->lend()) {
     if (!clip_.problem().empty()) throw Error("the clip cannot be shown", clip_.clip()->name, clip_.problem());
   }
 
   // Returns true once the scene shows the frame of this picture.
   bool pose(int picture, render::Scene& scene) {
     const int frame = frames_[static_cast<std::size_t>(picture)];
-    const PoseWish wish = wish_for_pose(editor_, document_, clip_.at(frame));
-    maker_.ask(wish);
-    const std::optional<MapMaker::Made> made = maker_.take();
+    const PoseWish wish = wish_for_pose(document_, clip_.at(frame), blend_);
+    maker_->ask(wish);
+    const std::optional<MapMaker::Made> made = maker_->take();
     if (!made || !(made->wish == wish)) return false;
     if (!made->trouble.empty())
       throw Error("the volume cannot follow the pose", "frame " + std::to_string(frame), made->trouble);
@@ -67,11 +70,11 @@ class PosedScenes {
   }
 
  private:
-  Editor& editor_;
   const ClipOnRig clip_;
   const Document document_;
+  const Blend blend_;
   const std::vector<int> frames_;
-  MapMaker maker_;
+  const std::shared_ptr<MapMaker> maker_;  // makes maps as fine as those that the 3D view shows at rest
 };
 
 }  // namespace
@@ -130,6 +133,7 @@ std::string why_no_motion_pictures(const Editor& editor) {
   if (!document.armature) return "Import a rig first";
   if (!shown_clip(editor)) return "Import a motion first, or insert a key";
   if (!document.weights) return "Compute the weights first";
+  if (editor.live->is_lent()) return "The pictures of a motion are being drawn";
   return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
 }
 
@@ -137,8 +141,6 @@ void export_motion_pictures(Editor& editor, const Path& path) {
   if (const std::string why = why_no_motion_pictures(editor); !why.empty())
     throw Error("the motion cannot be shown", path.filename().string(), why);
   const std::vector<int> frames = frames_of_pictures(editor, path);
-  if (std::ssize(frames) > kMostPictures)
-    throw Error("too many frames play", std::to_string(frames.size()) + " pictures", "set a shorter range");
   agree_on_pictures(editor, path, static_cast<int>(frames.size()), [path, frames](Editor& e) {
     stop_playing(e);
     const auto scenes = std::make_shared<PosedScenes>(e, frames);

@@ -88,11 +88,11 @@ bool PoseWish::operator==(const PoseWish& other) const {
          same_motions(motions, other.motions) && same_motions(rig_motions, other.rig_motions);
 }
 
-PoseWish wish_for_pose(const Editor& editor, const Document& document, const Pose& pose) {
+PoseWish wish_for_pose(const Document& document, const Pose& pose, Blend blend) {
   PoseWish wish{
       {document.volume, document.tissues, document.weights, document.armature, document.seams, document.bone_map},
       {},
-      preview_blend(editor)};
+      blend};
   wish.pose = pose;
   wish.rig_motions = posed_from_rest(*document.armature, pose);
   if (!motions_of_weights(*document.weights, *document.armature, wish.rig_motions, wish.motions))
@@ -126,6 +126,13 @@ void MapMaker::ask(const PoseWish& wish) {
 std::optional<MapMaker::Made> MapMaker::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(made_, std::nullopt);
+}
+
+void MapMaker::forget() {
+  const std::lock_guard lock(mutex_);
+  asked_last_.reset();
+  waiting_.reset();
+  made_.reset();
 }
 
 bool MapMaker::busy() const {
@@ -169,11 +176,25 @@ void MapMaker::work() {
   }
 }
 
-LivePose::LivePose(const std::function<void()>& wake) : swift_(1, wake), thorough_(2, wake) {}
+LivePose::LivePose(const std::function<void()>& wake)
+    : swift_(1, wake),
+      thorough_(std::make_shared<MapMaker>(2, wake)) {}
+
+std::shared_ptr<MapMaker> LivePose::lend() {
+  was_lent_ = true;
+  thorough_->forget();
+  return thorough_;
+}
 
 void LivePose::follow(Editor& editor) {
   if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
-  if (auto made = thorough_.take()) fine_ = std::move(*made), editor.touch();
+  if (was_lent_ && !is_lent()) {
+    was_lent_ = false;
+    thorough_->forget();
+    editor.touch();
+  }
+  if (!was_lent_)
+    if (auto made = thorough_->take()) fine_ = std::move(*made), editor.touch();
   const std::optional<DenseWish> dense = choose(editor);
   metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
 }
@@ -253,7 +274,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   }
   if (fine_.wish == wish_ && fine_.map) show(fine_);
   else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
-  else if (shown_) thorough_.ask(wish_);
+  else if (shown_ && !was_lent_) thorough_->ask(wish_);
   if (painting) return {};
   return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose,
                    wish_.blend,     document.seams,   document.bone_map};

@@ -53,7 +53,7 @@ struct PoseWish {
 };
 
 // Returns the request for the document's body in a pose. Throws Error if the weights belong to another rig.
-PoseWish wish_for_pose(const Editor& editor, const Document& document, const Pose& pose);
+PoseWish wish_for_pose(const Document& document, const Pose& pose, Blend blend);
 
 class MapMaker {
  public:
@@ -71,6 +71,7 @@ class MapMaker {
 
   void ask(const PoseWish& wish);  // replaces a request that still waits; ignores a repeated request
   std::optional<Made> take();      // returns a new result; nothing if there is none since the last call
+  void forget();                   // drops the request that waits and the new result; a repeated request counts again
   bool busy() const;
 
  private:
@@ -105,14 +106,21 @@ class LivePose {
   const std::string& trouble() const { return trouble_; }
   bool posed() const { return posed_; }  // true if the views show the volume in a pose other than rest
   LiveMetrics& metrics() { return metrics_; }
-  bool busy() const { return swift_.busy() || thorough_.busy(); }
+  bool busy() const { return swift_.busy() || thorough_->busy(); }
+
+  // Lends the maker of fine maps, as to an export, while the result is kept: the views then show coarse maps. A maker
+  // of one's own would need the memory of another body, and ending it would wait until its map is computed.
+  std::shared_ptr<MapMaker> lend();
+  bool is_lent() const { return thorough_.use_count() > 1; }
 
  private:
   std::optional<DenseWish> choose(Editor& editor);
   void follow(const Solve& solve, double now);
   void show(const MapMaker::Made& made);
 
-  MapMaker swift_, thorough_;
+  MapMaker swift_;
+  std::shared_ptr<MapMaker> thorough_;
+  bool was_lent_ = false;
   MapMaker::Made coarse_, fine_;  // newest map of swift_ (coarse, fast) and of thorough_ (fine, slow)
   PoseWish wish_;
   double since_ = 0;  // Editor::now when wish_ changed last, s

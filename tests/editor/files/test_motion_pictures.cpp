@@ -2,7 +2,9 @@
 // The motion that plays as pictures: each shows the body as the 3D view does at rest in that frame.
 #include <doctest/doctest.h>
 
+#include "editor/files/picture_files.h"
 #include "editor/motion/timeline.h"
+#include "editor/pose/live_preview.h"
 #include "editor/shown/frame_all.h"
 #include "render/image_io.h"
 #include "tests/editor/small_clip.h"
@@ -55,6 +57,74 @@ TEST_CASE(
   }
   CHECK_FALSE(std::filesystem::exists(folder / "steps-0004.png"));
   CHECK(difference(render::read_png(folder / "steps-0000.png"), render::read_png(folder / "steps-0003.png")) > 0.05);
+}
+
+TEST_CASE(
+    "motion pictures: a method chosen while they are drawn changes none, and a cancelled export leaves no trace") {
+  LimbEditor test({900, 640});
+  Document document = bending_limb();
+  document.weights = half_weights(*document.volume);
+  test.editor->history.reset(std::move(document), "Open limb");
+  const TemporaryFolder folder;
+  test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle\n click resample.dqs\n wait-job\n wait-idle");
+  edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
+    clip.range_start = 50;
+    clip.range_end = 59;
+  });
+  go_to_frame(*test.editor, 59);
+  test.play("wait-idle\n wait 1\n wait-idle");
+  const auto fine = test.editor->live->map();
+  REQUIRE(fine);
+
+  export_motion_pictures(*test.editor, folder / "as-set.png");
+  CHECK(why_no_motion_pictures(*test.editor) == "The pictures of a motion are being drawn");
+  test.play("wait-job\n wait-idle");
+  export_motion_pictures(*test.editor, folder / "chosen.png");
+  for (int i = 0; i < 3; ++i) test.player.step();
+  test.play("click resample.lbs");
+  CHECK(test.editor->live->is_lent());  // otherwise it was chosen too late
+  test.play("wait-job\n wait-idle");
+  for (int picture = 0; picture < 10; ++picture) {
+    const std::string number = "-000" + std::to_string(picture) + ".png";
+    CHECK(difference(render::read_png(folder / ("as-set" + number)), render::read_png(folder / ("chosen" + number))) ==
+          0);
+  }
+  export_motion_pictures(*test.editor, folder / "linear.png");
+  test.play("wait-job\n wait-idle");
+  CHECK(difference(render::read_png(folder / "as-set-0009.png"), render::read_png(folder / "linear-0009.png")) > 0.05);
+
+  // After a cancelled export the 3D view becomes fine again.
+  test.play("click resample.dqs\n wait-job\n wait-idle");
+  export_motion_pictures(*test.editor, folder / "cancelled.png");
+  test.player.step();
+  for (const JobStatus& job : test.editor->jobs.statuses()) test.editor->jobs.cancel(job.id);
+  test.play("wait-job\n wait-idle\n wait 1\n wait-idle");
+  CHECK(why_no_motion_pictures(*test.editor) == "");
+  CHECK_FALSE(std::filesystem::exists(folder / "cancelled-0009.png"));
+  REQUIRE(test.editor->live->map());
+  CHECK(test.editor->live->map()->step == fine->step);
+}
+
+TEST_CASE("motion pictures: too many are refused before they are listed") {
+  LimbEditor test({900, 640});
+  Document document = bending_limb();
+  document.weights = half_weights(*document.volume);
+  test.editor->history.reset(std::move(document), "Open limb");
+  const TemporaryFolder folder;
+  // Two thousand million frames, and a video of a clip that shows a frame in 100 seconds.
+  edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
+    clip.range_start = -1'000'000'000;
+    clip.range_end = 1'000'000'000;
+  });
+  CHECK_THROWS_WITH_AS(export_motion_pictures(*test.editor, folder / "long.png"),
+                       doctest::Contains("2000000001 pictures"), Error);
+  edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
+    clip.range_start = 0;
+    clip.range_end = 100;
+    clip.rate = 0.01;
+  });
+  CHECK_THROWS_WITH_AS(export_motion_pictures(*test.editor, folder / "slow.mp4"), doctest::Contains("too many frames"),
+                       Error);
 }
 
 TEST_CASE("motion pictures: without weights or a clip it is said what is missing") {
