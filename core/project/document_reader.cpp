@@ -258,7 +258,7 @@ void get(ByteReader& in, RetargetMap& map) {
 void get(ByteReader& in, Clip& clip) {
   clip.name = in.text();
   clip.rate = in.get<double>();
-  in.require(std::isfinite(clip.rate) && clip.rate > 0);
+  in.require(clip.rate >= 0.01 && clip.rate <= 10'000);  // as clip_of() has them
   for (int* number : {&clip.start, &clip.first, &clip.last, &clip.range_start, &clip.range_end})
     *number = get_frame(in);
   in.require(clip.first >= 0 && clip.first <= clip.last &&

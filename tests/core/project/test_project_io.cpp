@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/project/project_io.h"
 
+#include <cmath>
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -297,4 +298,21 @@ TEST_CASE("project: where there is no room, and in a folder that is read-only, a
   CHECK(bytes_of_file(path) == before);
   update_project(project, path, mark, Unused::Remove, writer);
   CHECK(same_contents(read_project(path).document, project.document));
+}
+
+TEST_CASE("project: a clip's rate that no clip can have is refused") {
+  const TemporaryFolder folder;
+  for (const double rate : {1e-9, 1e9, std::nan("")}) {
+    CAPTURE(rate);
+    Project project;
+    project.document.clips = {std::make_shared<const Clip>(Clip{.name = "steps", .rate = rate})};
+    DocumentWriter writer;
+    create_project(project, folder / "a.limber", writer);
+    CHECK(message_of([&] { read_project(folder / "a.limber"); }) != "");
+  }
+  Project project;
+  project.document.clips = {std::make_shared<const Clip>(Clip{.name = "steps", .rate = 0.01})};
+  DocumentWriter writer;
+  create_project(project, folder / "b.limber", writer);
+  CHECK(read_project(folder / "b.limber").document.clips.size() == 1);
 }
