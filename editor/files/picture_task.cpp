@@ -44,8 +44,6 @@ struct Drawing {
 
 // Draws a share of the task's next picture. Returns true when the picture is complete.
 bool draw_share(Drawing& drawing, const PictureTask& task) {
-  if (task.prepare && !drawing.prepared) drawing.prepared = task.prepare(drawing.picture, drawing.scene);
-  if (task.prepare && !drawing.prepared) return false;
   drawing.view->draw(drawing.scene, task.camera(drawing.picture), task.size, drawing.time += 1);
   if (!drawing.view->complete()) return false;
   if (drawing.view->scale() > 1)  // nothing is averaged at rest, so the picture has stayed coarse
@@ -60,6 +58,9 @@ bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board&
     return !board.picture;
   };
   if (drawing.drawn && !taken()) return true;  // the task's progress wakes the editor again
+  // While the scene is awaited, nothing has to be drawn, and the task's progress wakes the editor.
+  if (task.prepare && !drawing.prepared) drawing.prepared = task.prepare(drawing.picture, drawing.scene);
+  if (task.prepare && !drawing.prepared) return true;
   editor.touch();
   if (!drawing.drawn) drawing.drawn = draw_share(drawing, task);
   if (!drawing.drawn || !taken()) return true;
