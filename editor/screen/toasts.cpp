@@ -181,8 +181,11 @@ void draw_toasts(Editor& editor) {
     const Shape shape = shape_of(editor, toast, width);
     bottom = free_bottom(editor, {{right - width, bottom - shape.height}, {right, bottom}});
     const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
-    if (draw_toast(editor, toast, shape, rect, static_cast<int>(shown))) closed = at;
-    if (life_of(toast.severity) < 1e9) editor.wake_at(toasts[at].since + life_of(toast.severity) - kFadeOut);
+    const std::size_t count = toasts.size();
+    const bool closes = draw_toast(editor, toast, shape, rect, static_cast<int>(shown));
+    if (toasts.size() != count || toasts[at].line != toast.line) return;  // its button has changed the list
+    if (closes) closed = at;
+    if (life_of(toast.severity) < 1e9) editor.wake_at(toast.since + life_of(toast.severity) - kFadeOut);
     bottom = rect.low.y - look.px(kGap);
   }
   if (closed < toasts.size()) toasts.erase(toasts.begin() + static_cast<std::ptrdiff_t>(closed));
