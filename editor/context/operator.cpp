@@ -73,7 +73,7 @@ static void tell_why_not(Editor& editor, const Operator& op, const std::string& 
                                  {"Skin", "workspace.skin"},
                                  {"Pose", "workspace.pose"},
                                  {"Resample", "workspace.resample"}}) {
-    if (reason != std::string("Switch to the ") + name + " workspace first") continue;
+    if (!reason.starts_with(std::string("Switch to the ") + name)) continue;
     for (Toast& toast : editor.messages.toasts)
       if (toast.line == op.label && toast.detail == reason) toast.action = id;
   }
