@@ -9,6 +9,7 @@
 #include "editor/figure/video.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
+#include "editor/shown/fem_live_view.h"
 #include "editor/shown/preview_blend.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/icons.h"
@@ -134,6 +135,7 @@ std::string why_no_motion_pictures(const Editor& editor) {
   if (!shown_clip(editor)) return "Import a motion first, or insert a key";
   if (!document.weights) return "Compute the weights first";
   if (editor.live->is_lent()) return "The pictures of a motion are being drawn";
+  if (watched_solve(editor)) return "A solve is watched: show the volume at rest first";
   return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
 }
 

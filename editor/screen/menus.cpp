@@ -185,6 +185,7 @@ std::vector<Menu> menus() {
         "> Whole clip", "motion.mirror_clip", "motion.loop_clip", "motion.join_clip", "motion.speed", "motion.bake",
         "<", "-",
         "motion.clean", "motion.hold", "motion.close_gap", "motion.reduce_keys", "-",
+        "> Export", "file.export_motion", "file.export_motion_pictures", "<", "-",
         "motion.delete_clip", "<",
         "-", "motion.play", "motion.play_reverse", "motion.frame_back", "motion.frame_forward", "motion.first",
         "motion.last",
@@ -206,9 +207,7 @@ std::vector<Menu> menus() {
         "> Markers", "motion.marker", "motion.rename_marker", "motion.delete_marker", "<",
         "> Range", "motion.set_start", "motion.set_end", "motion.preview_range", "motion.clear_range",
         "motion.view_all", "motion.view_selected", "motion.show_seconds", "<",
-        "> Onion skin and paths", "motion.onion_skin", "motion.onion_frames", "-", "motion.paths", "<",
-        "-",
-        "> Export", "file.export_motion", "file.export_motion_pictures", "<"}},
+        "> Onion skin and paths", "motion.onion_skin", "motion.onion_frames", "-", "motion.paths", "<"}},
       {"Help", {"help.guide", "help.keys", "help.tour", "help.new", "-", "search.commands", "view.console",
         "help.last_error", "help.system_facts", "-", "help.about"}},
   };

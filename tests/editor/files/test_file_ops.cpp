@@ -197,7 +197,8 @@ std::vector<Proof> proofs_of_files() {
                 return render::read_png(p).rgba != render::read_png(p.parent_path() / "turn-0009.png").rgba;
               })},
       {"file.export_motion_pictures",
-       "click \"Motion/Export/Motion as pictures...\"\n wait-idle\n key Ctrl+A\n type steps\n key Return\n wait-job",
+       "click \"Motion/Clip/Export/Motion as pictures...\"\n wait-idle\n key Ctrl+A\n type steps\n key Return\n "
+       "wait-job",
        writes("steps-0001.png",
               [](const Path& p, const Document&) {
                 return render::read_png(p).rgba != render::read_png(p.parent_path() / "steps-0000.png").rgba;
