@@ -9,10 +9,13 @@
 //   volume, and sends it open         File ->
 //   checks header and sizes again     <- Header, voxels, End or an Error's text
 //
-// Voxels come through a pipe of 1 MB, so that the volume is in memory only once and decoding runs in parallel with the
-// program's own work. The program checks at least every 20 ms whether the user has cancelled. It kills a reader that
-// sends nothing for too long (see ReaderSettings). When a reader crashes, is killed or breaks the protocol, the program
-// throws one Error.
+// Of voxels that are stored as they are, without an encoding, the reader only tells where they lie in the file that it
+// was sent last. The program checks that the file has these bytes, and reads them itself.
+//
+// Other voxels come through a pipe of 1 MB, so that the volume is in memory only once and decoding runs in parallel
+// with the program's own work. The program checks at least every 20 ms whether the user has cancelled. It kills a
+// reader that sends nothing for too long (see ReaderSettings). When a reader crashes, is killed or breaks the protocol,
+// the program throws one Error.
 //
 // When the program does not find limber_reader (Limber used as a library in another program), files are parsed in this
 // process, and DICOM is refused, because GDCM ends its process on some damaged files.

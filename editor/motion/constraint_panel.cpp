@@ -9,6 +9,7 @@
 #include "editor/context/operator_button.h"
 #include "editor/motion/constraint_edits.h"
 #include "editor/shown/shown_pose.h"
+#include "editor/ui/axis_fields.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
 
@@ -157,18 +158,10 @@ void draw_target(Editor& editor, Column& column, const Constraint& constraint) {
   attempt(editor, "Set target", [&](Editor& e) { set_target(e, name, bone); });
 }
 
-// Draws three numbers in one row, marked by the colours of the axes.
+// Draws three numbers in one row.
 void draw_three(Editor& editor, Column& column, const std::string& title, const std::array<Number, 3>& numbers) {
-  const Look& look = editor.look;
-  Rect rect = column.property(title);
-  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
-  const float width = (rect.width() - 2 * look.px(4)) / 3;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float x = std::round(rect.low.x + static_cast<float>(axis) * (width + look.px(4)));
-    const Rect field{{x, rect.low.y}, {std::round(x + width), rect.high.y}};
-    draw_number(editor, {{field.low.x + look.px(3), field.low.y}, field.high}, numbers[static_cast<std::size_t>(axis)]);
-    fill({field.low, {field.low.x + look.px(3), field.high.y}}, look.theme.axis[axis]);
-  }
+  const std::array<Rect, 3> fields = lay_axis_fields(editor.look, column, title);
+  for (std::size_t axis = 0; axis < 3; ++axis) draw_number(editor, fields[axis], numbers[axis]);
 }
 
 void draw_place(Editor& editor, Column& column, const Constraint& constraint) {

@@ -10,6 +10,7 @@
 #include "editor/context/operator_button.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/pose_edits.h"
+#include "editor/ui/axis_fields.h"
 #include "editor/ui/input_fields.h"
 
 namespace limber::editor {
@@ -45,20 +46,13 @@ void draw_number(Editor& editor, const Rect& rect, const std::string& name, cons
   commit_pose(editor, label, pose, changed_bones(pose_of(editor.document()), pose));
 }
 
-// Draws number fields for x, y and z in one row, wider than the single field of other rows.
+// Draws number fields for x, y and z in one row.
 void draw_three(Editor& editor, Column& column, const std::string& title, const std::string& label,
                 const glm::dvec3& shown, double farthest, const std::function<void(Pose&, int axis, double)>& set) {
-  const Look& look = editor.look;
-  Rect rect = column.property(title);
-  rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
-  const float width = (rect.width() - 2 * look.px(4)) / 3;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float x = std::round(rect.low.x + static_cast<float>(axis) * (width + look.px(4)));
-    const Rect field{{x, rect.low.y}, {std::round(x + width), rect.high.y}};
-    draw_number(editor, {{field.low.x + look.px(3), field.low.y}, field.high}, title + " " + "XYZ"[axis], label,
-                shown[axis], farthest, "%.1f", "", [&](Pose& pose, double number) { set(pose, axis, number); });
-    fill({field.low, {field.low.x + look.px(3), field.high.y}}, look.theme.axis[axis]);
-  }
+  const std::array<Rect, 3> fields = lay_axis_fields(editor.look, column, title);
+  for (int axis = 0; axis < 3; ++axis)
+    draw_number(editor, fields[static_cast<std::size_t>(axis)], title + " " + "XYZ"[axis], label, shown[axis], farthest,
+                "%.1f", "", [&](Pose& pose, double number) { set(pose, axis, number); });
 }
 
 // Returns the rotation with one component of its quaternion set to `value`, and the other three scaled so that the
