@@ -7,28 +7,44 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
+#include <type_traits>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "core/platform/memory_pages.h"
 #include "core/volume/float_lanes.h"
+#include "core/volume/step_lanes.h"
 
 namespace limber {
 
 namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
+constexpr int kBrickVoxels = kBrick * kBrick * kBrick;
+constexpr int kRows = 4;  // number of rows of a brick, eight voxels each, whose lines are searched at once
 
-using Eight = FloatLanes<kBrick / 4>;  // one voxel of each of eight neighbouring lines
+// One voxel of each of the neighbouring lines that are searched at once.
+template <class Value>
+using Across = std::conditional_t<std::is_same_v<Value, float>, FloatLanes<kRows * kBrick / 4>, StepLanes<kRows>>;
 
-// Eight lines of voxels that bricks of tissue make up. Air, with the value zero, bounds them at both ends.
+// Returns the square of a number of steps; for whole numbers at most the largest of the type.
+template <class Value>
+Value squared_length(double steps, double spacing) {
+  return static_cast<Value>(
+      std::min(spacing * spacing * steps * steps, static_cast<double>(std::numeric_limits<Value>::max())));
+}
+
+// Lines of voxels that bricks of tissue make up. Air, with the value zero, bounds them at both ends.
+template <class Value>
 struct Lines {
-  std::vector<Eight> f;      // the values at each position
-  std::vector<Eight> least;  // the least values of each brick
-  std::vector<float> rise;   // squared length of a number of steps, mm^2
+  std::vector<Across<Value>> f;      // the values at each position
+  std::vector<Across<Value>> least;  // the least values of each brick
+  std::vector<Value> rise;           // squared length of a number of steps
 
   Lines(std::size_t bricks, double spacing) : f(bricks * kBrick), least(bricks), rise(bricks * kBrick + 1) {
     for (std::size_t steps = 0; steps < rise.size(); ++steps)
-      rise[steps] = static_cast<float>(spacing * spacing * double(steps * steps));
+      rise[steps] = squared_length<Value>(static_cast<double>(steps), spacing);
   }
 
   void find_least() {
@@ -39,14 +55,15 @@ struct Lines {
   }
 };
 
-// Returns the minimum over j of f[j] + rise[|i - j|], for eight lines at once. Bricks whose least values cannot lower
-// it any more are passed over.
-Eight lowest_around(const Lines& lines, int i) {
+// Returns the minimum over j of f[j] + rise[|i - j|], for all lines at once. Bricks whose least values cannot lower it
+// any more are passed over.
+template <class Value>
+Across<Value> lowest_around(const Lines<Value>& lines, int i) {
   const int own = i / kBrick, bricks = static_cast<int>(lines.least.size());
-  const float* rise = lines.rise.data();
-  Eight lowest = lines.f[i];
-  lower(lowest, Eight{}, rise[i + 1]);
-  lower(lowest, Eight{}, rise[bricks * kBrick - i]);
+  const Value* rise = lines.rise.data();
+  Across<Value> lowest = lines.f[i];
+  lower(lowest, Across<Value>{}, rise[i + 1]);
+  lower(lowest, Across<Value>{}, rise[bricks * kBrick - i]);
   const auto visit = [&](int brick) {
     for (int j = brick * kBrick; j < (brick + 1) * kBrick; ++j) lower(lowest, lines.f[j], rise[std::abs(j - i)]);
   };
@@ -62,44 +79,11 @@ Eight lowest_around(const Lines& lines, int i) {
   return lowest;
 }
 
-}  // namespace
-
-TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing) : tissue_(&tissue) {
-  const std::size_t count = tissue.bricks().size() * kBrickVoxels;
-  squared_.resize(count);
-  want_large_pages(squared_.data(), static_cast<std::int64_t>(count * sizeof(float)));
-  pass_along_x(spacing.x);
-  pass_across(1, spacing.y);
-  pass_across(2, spacing.z);
-  if (spacing.x == spacing.y && spacing.y == spacing.z) store_as_steps(spacing.x * spacing.x);
-}
-
-// Replaces squared depths by whole multiples of `squared_step`, if they all are, bit for bit, and fit into 16 bits.
-void TissueDepth::store_as_steps(double squared_step) {
-  constexpr std::int64_t kGrain = 64 * kBrickVoxels;
-  const std::int64_t count = std::ssize(squared_);
-  steps_.resize(count);
-  want_large_pages(steps_.data(), count * std::int64_t{sizeof(std::uint16_t)});
-  squared_step_ = squared_step;
-  std::atomic<bool> fits = true;
-  parallel_for(count, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    const double steps_per_mm2 = 1 / squared_step;
-    bool same = true;
-    for (auto i = begin; i < end; ++i) {
-      const int steps = static_cast<int>(squared_[i] * steps_per_mm2 + 0.5);
-      steps_[i] = static_cast<std::uint16_t>(steps);
-      same &= static_cast<float>(squared_step * steps_[i]) == squared_[i];
-    }
-    if (!same) fits = false;
-  });
-  if (fits) squared_ = {};
-  else steps_ = {};
-}
-
+// Calls body(bricks) for each run of adjacent tissue bricks along the axis. Either end of a run borders on air.
 template <class Body>
-void TissueDepth::for_each_column(int axis, const Body& body) {
+void for_each_column(const TissueVoxels& tissue, int axis, const Body& body) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const glm::ivec3 bricks = tissue_->brick_grid();
+  const glm::ivec3 bricks = tissue.brick_grid();
   parallel_for(std::int64_t{bricks[u]} * bricks[v], 4, [&](std::int64_t begin, std::int64_t end) {
     std::vector<int> column;
     for (auto c = begin; c < end; ++c) {
@@ -107,7 +91,7 @@ void TissueDepth::for_each_column(int axis, const Body& body) {
       at[u] = static_cast<int>(c % bricks[u]);
       at[v] = static_cast<int>(c / bricks[u]);
       for (; at[axis] <= bricks[axis]; ++at[axis]) {
-        const int brick = at[axis] < bricks[axis] ? tissue_->brick_at(at * kBrick) : -1;
+        const int brick = at[axis] < bricks[axis] ? tissue.brick_at(at * kBrick) : -1;
         if (brick >= 0) {
           column.push_back(brick);
         } else if (!column.empty()) {
@@ -120,48 +104,83 @@ void TissueDepth::for_each_column(int axis, const Body& body) {
 }
 
 // Computes the squared distance to the nearest air voxel along x, for each tissue voxel.
-void TissueDepth::pass_along_x(double spacing) {
-  const double squared_spacing = spacing * spacing;
-  for_each_column(0, [&](const std::vector<int>& column) {
+template <class Value>
+void pass_along_x(const TissueVoxels& tissue, double spacing, Value* squared) {
+  for_each_column(tissue, 0, [&](const std::vector<int>& column) {
     for (int line = 0; line < kBrick * kBrick; ++line) {
       const auto at = [&](int x) {
         return std::int64_t{column[x / kBrick]} * kBrickVoxels + line * kBrick + x % kBrick;
       };
       const auto is_tissue = [&](int x) {
-        return tissue_->bricks()[column[x / kBrick]].mask[line / kBrick] >> (line % kBrick * kBrick + x % kBrick) & 1;
+        return tissue.bricks()[column[x / kBrick]].mask[line / kBrick] >> (line % kBrick * kBrick + x % kBrick) & 1;
       };
       const int size = static_cast<int>(column.size()) * kBrick;
       for (int x = 0; x < size; ++x) {
         if (!is_tissue(x)) continue;
         const int begin = x;
         while (x < size && is_tissue(x)) ++x;
-        for (int i = begin; i < x; ++i) {
-          const double steps = std::min(i + 1 - begin, x - i);
-          squared_[at(i)] = static_cast<float>(squared_spacing * steps * steps);
-        }
+        for (int i = begin; i < x; ++i) squared[at(i)] = squared_length<Value>(std::min(i + 1 - begin, x - i), spacing);
       }
     }
   });
 }
 
-void TissueDepth::pass_across(int axis, double spacing) {
+// Adds the squared distances along y or z.
+template <class Value>
+void pass_across(const TissueVoxels& tissue, int axis, double spacing, Value* squared) {
   const int along = axis == 1 ? kBrick : kBrick * kBrick,
             across = axis == 1 ? kBrick * kBrick : kBrick;  // strides within a brick
-  for_each_column(axis, [&](const std::vector<int>& column) {
-    Lines lines(column.size(), spacing);
-    for (int slice = 0; slice < kBrick; ++slice) {
-      const auto at = [&](int i) {
-        return &squared_[std::int64_t{column[i / kBrick]} * kBrickVoxels + slice * across + i % kBrick * along];
+  constexpr std::size_t kRowBytes = kBrick * sizeof(Value);
+  for_each_column(tissue, axis, [&](const std::vector<int>& column) {
+    Lines<Value> lines(column.size(), spacing);
+    const int size = static_cast<int>(lines.f.size());
+    for (int first = 0; first < kBrick; first += kRows) {
+      const auto row = [&](int i, int r) {
+        return squared + std::int64_t{column[i / kBrick]} * kBrickVoxels + (first + r) * across + i % kBrick * along;
       };
-      const int size = static_cast<int>(lines.f.size());
-      for (int i = 0; i < size; ++i) std::memcpy(&lines.f[i], at(i), sizeof(Eight));
+      for (int i = 0; i < size; ++i)
+        for (int r = 0; r < kRows; ++r)
+          std::memcpy(reinterpret_cast<char*>(&lines.f[i]) + r * kRowBytes, row(i, r), kRowBytes);
       lines.find_least();
       for (int i = 0; i < size; ++i) {
-        const Eight lowest = lowest_around(lines, i);
-        std::memcpy(at(i), &lowest, sizeof(Eight));
+        const Across<Value> lowest = lowest_around(lines, i);
+        for (int r = 0; r < kRows; ++r)
+          std::memcpy(row(i, r), reinterpret_cast<const char*>(&lowest) + r * kRowBytes, kRowBytes);
       }
     }
   });
+}
+
+// Returns whether no number is above `most`.
+bool are_all_within(const ZeroedVector<std::uint16_t>& numbers, int most) {
+  std::atomic<bool> within = true;
+  parallel_for(std::ssize(numbers), 1 << 18, [&](std::int64_t begin, std::int64_t end) {
+    std::uint16_t largest = 0;
+    for (auto i = begin; i < end; ++i) largest = std::max(largest, numbers[i]);
+    if (largest > most) within = false;
+  });
+  return within;
+}
+
+}  // namespace
+
+TissueDepth::TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing, int most_steps) : tissue_(&tissue) {
+  if (spacing.x == spacing.y && spacing.y == spacing.z) {
+    squared_step_ = spacing.x * spacing.x;
+    measure(steps_, glm::dvec3(1));
+    if (are_all_within(steps_, most_steps)) return;
+    steps_ = {};
+  }
+  measure(squared_, spacing);
+}
+
+template <class Value>
+void TissueDepth::measure(ZeroedVector<Value>& squared, const glm::dvec3& spacing) const {
+  squared.resize(tissue_->bricks().size() * kBrickVoxels);
+  want_large_pages(squared.data(), std::ssize(squared) * std::int64_t{sizeof(Value)});
+  pass_along_x(*tissue_, spacing.x, squared.data());
+  pass_across(*tissue_, 1, spacing.y, squared.data());
+  pass_across(*tissue_, 2, spacing.z, squared.data());
 }
 
 double TissueDepth::operator()(const glm::dvec3& rest) const {

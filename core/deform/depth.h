@@ -5,14 +5,16 @@
 // border between them runs where both are equally deep.
 //
 // There is one pass per axis over columns of tissue bricks. Along x, the nearest air is at the nearer end of a run of
-// tissue. Along y and z every voxel searches outwards, eight lines at a time, until it is further away than the
+// tissue. Along y and z every voxel searches outwards, several lines at a time, until it is further away than the
 // distance found so far [as Saito & Toriwaki 1994]. It passes over bricks whose least value is too large, so that deep
 // inside a body it takes one step for eight voxels.
+//
+// Where voxels are cubes, squared depths are whole multiples of a voxel's squared edge. They are computed and stored as
+// these numbers: exactly, and in half the memory of floats.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "core/volume/tissue_voxels.h"
 
@@ -21,8 +23,9 @@ namespace limber {
 class TissueDepth {
  public:
   // Keeps a reference to `tissue`, which must outlive this object.
-  //   spacing  size of a voxel, mm
-  TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing);
+  //   spacing     size of a voxel, mm
+  //   most_steps  the squared depth, in squared edges of voxels, above which floats are used for cubes too
+  TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing, int most_steps = 65534);
 
   // Returns the depth of a voxel's centre in mm; 0 in air and outside the grid.
   float at_voxel(const glm::ivec3& voxel) const {
@@ -38,23 +41,19 @@ class TissueDepth {
 
  private:
   static constexpr int kBrickVoxels = 512;
-  // Calls body(bricks) for each run of adjacent tissue bricks along the axis. Either end of a run borders on air.
-  template <class Body>
-  void for_each_column(int axis, const Body& body);
-  void pass_along_x(double spacing);
-  void pass_across(int axis, double spacing);
+  // Computes squared depths, in the square of the unit of `spacing`.
+  template <class Value>
+  void measure(ZeroedVector<Value>& squared, const glm::dvec3& spacing) const;
 
   float at(std::int64_t place) const {
     return std::sqrt(steps_.empty() ? squared_[place] : static_cast<float>(squared_step_ * steps_[place]));
   }
-  void store_as_steps(double squared_step);
 
   const TissueVoxels* tissue_;
-  // 512 squared depths per tissue brick. Those of most volumes are whole multiples of a voxel's squared edge: they are
-  // stored as these numbers, in half the memory.
-  ZeroedVector<float> squared_;  // mm^2; empty: see steps_
-  ZeroedVector<std::uint16_t> steps_;
-  double squared_step_ = 0;  // mm^2
+  // 512 squared depths per tissue brick, in one of these two.
+  ZeroedVector<float> squared_;        // mm^2; empty: see steps_
+  ZeroedVector<std::uint16_t> steps_;  // in units of squared_step_
+  double squared_step_ = 0;            // mm^2
 };
 
 }  // namespace limber
