@@ -43,7 +43,7 @@ PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_
 // The posed cells of a brick that bends. Cells share corners; near a seam, each has its own corners.
 class BentBrick {
  public:
-  // Computes the brick's corners into `room` if the lattice does not store them. `room` must outlive this object.
+  // Writes the brick's corners into `room`, which must outlive this object.
   BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lowest_(lattice.tissue().bricks()[brick].corner) {
     if (lattice.is_split(brick))
@@ -66,7 +66,7 @@ class BentBrick {
 // at once. Only near a cell's border, where the rounded (fixed-point) corners decide, are cells rasterized one by one.
 class RigidBrick {
  public:
-  // Computes the brick's corners into `room` if cells must be rasterized one by one. `room` must outlive this object.
+  // Writes the brick's corners into `room` if cells must be rasterized one by one. `room` must outlive this object.
   RigidBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lattice_(lattice),
         brick_(brick),
@@ -152,7 +152,7 @@ bool rasterize_some(const PosedLattice& lattice, std::int64_t brick, const std::
   return true;
 }
 
-VoxelRange voxels_of(const PosedLattice::FixedBox& box) { return {(box.low + (kFixedOne - 1)) >> 16, box.high >> 16}; }
+VoxelRange voxels_of(const FixedBox& box) { return {(box.low + (kFixedOne - 1)) >> 16, box.high >> 16}; }
 
 }  // namespace
 

@@ -2,7 +2,6 @@
 #include "core/deform/lattice.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 
@@ -10,15 +9,11 @@
 #include "core/deform/brick_motions.h"
 #include "core/deform/settled_flesh.h"
 #include "core/deform/split_corners.h"
-#include "core/platform/memory_pages.h"
 
 namespace limber {
 
 namespace {
 
-// Upper limit on the memory of stored corners, in bytes. The corners of a whole body would exceed it, so they are not
-// stored.
-constexpr std::int64_t kKeptBytes = std::int64_t{48} << 20;
 constexpr int kSeveral = BrickMotions::kSeveral;
 
 bool is_full(const TissueVoxels::Brick& brick) {
@@ -73,32 +68,27 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   BrickMotions brick_motions(tissue, weights, posed_from_rest);
   moves_as_ = std::move(brick_motions.moves_as);
   rigid_ = std::move(brick_motions.around);
-  const bool keeps = count * std::int64_t{sizeof(Corners)} <= kKeptBytes;
-  if (keeps) {
-    kept_ = std::make_unique_for_overwrite<Corners[]>(count);
-    kept_at_.resize(count);
-    want_large_pages(kept_.get(), count * std::int64_t{sizeof(Corners)});
-  }
+  kept_ = KeptCorners(rigid_);
   if (count == 0) return;
   output_.base = base(posed_from_rest[weights.chunk(0).front().bone[0]]);
   poser_.set_output(output_);
   for (const RigidTransform& posed : posed_from_rest) rest_from_posed_.push_back(backward(posed));
   progress.update("pose", 0);
-  std::atomic<std::int32_t> kept = 0;
   parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) throw Cancelled();
     Corners room;
     for (auto brick = begin; brick < end; ++brick) {
       const BrickBounds posed = compute(brick, room);
+      const bool bends = rigid_[brick] == kSeveral;
       bounds_[brick] = posed.box;
       still_[brick] = posed.still;
-      split_[brick] =
-          tissue.seams() && rigid_[brick] == kSeveral && tissue.seams()->is_near_brick(tissue.bricks()[brick].corner);
+      split_[brick] = bends && tissue.seams() && tissue.seams()->is_near_brick(tissue.bricks()[brick].corner);
       if (split_[brick]) {
         bounds_[brick] = split_bounds(brick);
         still_[brick] = false;
+      } else if (bends) {
+        kept_.keep(brick, posed.box, room);
       }
-      if (keeps && rigid_[brick] == kSeveral) kept_[kept_at_[brick] = kept++] = room;
     }
   });
   progress.update("pose", 1);
@@ -118,7 +108,7 @@ void PosedLattice::split_corners(std::int64_t brick, SplitBrick& corners) const 
   });
 }
 
-PosedLattice::FixedBox PosedLattice::split_bounds(std::int64_t brick) const {
+FixedBox PosedLattice::split_bounds(std::int64_t brick) const {
   SplitBrick corners;
   split_corners(brick, corners);
   FixedBox box{FixedPoint(INT32_MAX), FixedPoint(INT32_MIN)};
@@ -134,9 +124,8 @@ PosedLattice::FixedBox PosedLattice::split_bounds(std::int64_t brick) const {
 }
 
 const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& room) const {
-  if (rigid_[brick] == kSeveral && kept_) return kept_[kept_at_[brick]];
   if (rigid_[brick] == kSeveral) {
-    compute(brick, room);
+    if (split_[brick] || !kept_.read(brick, bounds_[brick], room)) compute(brick, room);
     return room;
   }
   const TissueVoxels::Brick& cells = tissue_->bricks()[brick];

@@ -9,9 +9,8 @@
 // whole numbers, is exact too. The output lattice is the volume's own, or one with another spacing that shares its
 // outermost corner.
 //
-// Corners are computed brick by brick, and stored only if all of them take little memory: those of a whole body would
-// take 150 MB. All bricks that share a corner compute it equally, bit for bit: weights are added as whole numbers, with
-// bones in ascending order.
+// Corners are computed brick by brick, and kept until the output needs them no more (kept_corners.h). All bricks that
+// share a corner compute it equally, bit for bit: weights are added as whole numbers, with bones in ascending order.
 //
 // Much of a posed limb follows one bone with full weight, or bones with the same motion: a hand whose fingers keep
 // still moves with the forearm. Bones with the same motion count as one, the first of them. Corners that follow one
@@ -20,13 +19,13 @@
 #pragma once
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/deform/corner_poser.h"
+#include "core/deform/kept_corners.h"
 #include "core/deform/output_lattice.h"
 #include "core/deform/skinning.h"
 #include "core/skin/skin_weights.h"
@@ -51,20 +50,16 @@ inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) {
 
 class PosedLattice {
  public:
-  static constexpr int kSide = TissueVoxels::kBrick + 1;
+  static constexpr int kSide = KeptCorners::kSide;
   // The posed corners of a brick's voxels. Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner +
   // (i, j, k). Corners that belong to no tissue voxel of the brick are not set.
-  using Corners = std::array<FixedPoint, kSide * kSide * kSide>;
+  using Corners = KeptCorners::Corners;
   static int place(int i, int j, int k) { return i + kSide * (j + kSide * k); }
 
   // The posed corners of a brick near a seam, where every voxel has its own. The eight corners of voxel (i, j, k) of
   // the brick begin at 8 * (i + 8 * (j + 8 * k)); bits 0, 1, 2 of a corner's index are x, y, z. Corners of air voxels
   // are not set.
   using SplitBrick = std::array<FixedPoint, 8 * TissueVoxels::kBrick * TissueVoxels::kBrick * TissueVoxels::kBrick>;
-
-  struct FixedBox {
-    FixedPoint low, high;
-  };
 
   // Keeps references: volume, tissue, weights and settled must outlive the lattice.
   //   posed_from_rest  motions of the bones of `weights`
@@ -87,8 +82,11 @@ class PosedLattice {
   int only_bone(std::int64_t brick) const { return rigid_[brick]; }
   // Returns the affine map from posed points to rest points, for tissue that follows the bone with full weight.
   const AffineTransform& rest_from_posed(int bone) const { return rest_from_posed_[bone]; }
-  // Returns the brick's posed corners. Computes them into `room` if they are not stored.
+  // Writes the brick's posed corners into `room` and returns them.
   const Corners& corners(std::int64_t brick, Corners& room) const;
+  // Gives back the memory of corners of bricks that lie entirely below `z` in the output. They are computed anew if
+  // they are asked for later. No other function of the lattice may run meanwhile.
+  void forget_corners_below(int z) const { kept_.forget_below(z); }
   // Returns whether the brick bends and a seam is near, so that each of its voxels has its own corners.
   bool is_split(std::int64_t brick) const { return split_[brick]; }
   void split_corners(std::int64_t brick, SplitBrick& corners) const;
@@ -117,8 +115,7 @@ class PosedLattice {
   std::vector<AffineTransform> rest_from_posed_;  // values of rest_from_posed() for each bone
   std::vector<int> moves_as_;                     // for each bone, the first bone with the same motion
   std::vector<int> rigid_;                        // values of only_bone() for each brick
-  std::unique_ptr<Corners[]> kept_;               // stored corners of the bricks that bend; null: not stored
-  std::vector<std::int32_t> kept_at_;             // index in kept_ of the corners of each brick that bends
+  mutable KeptCorners kept_;                      // corners of the bricks that bend; what is missing is computed anew
 };
 
 }  // namespace limber

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -78,6 +79,7 @@ class PosedVoxels {
         settings_(settings),
         output_(body.output),
         mends_(body.mends),
+        has_tets_(body.tets != nullptr),
         posed_(posed),
         rest_points_(output_.range, mends_ ? room_for_rest(body.lattice.tissue()) : 0,
                      [this](InverseMap& map, const VoxelRange& range) { fill(map, range); }),
@@ -106,11 +108,13 @@ class PosedVoxels {
         [&](const TileCounts& tile) {
           if (const int next = tile.range.low.z - output_.range.low.z; !tile.range.empty() && next != low) {
             unsure_ = drop_covered(tiles_, under_skin_, unsure_, low);
+            forget_corners_below(tile.range.low.z);
             low = next;
           }
           add(tile);
         });
     drop_covered(tiles_, under_skin_, unsure_, low);
+    forget_corners_below(INT_MAX);
   }
 
   // The posed labels, unless lay_in_rows() has moved them to the posed volume.
@@ -232,6 +236,11 @@ class PosedVoxels {
       for (const Tile& tile : seen) add(tile);
     }
     progress.update(stage, 1);
+  }
+
+  void forget_corners_below(int z) const {
+    const bool fills_again = settings_.mass_exact || (mends_ && has_tets_);  // see soft_borders()
+    if (!fills_again) lattice_.forget_corners_below(z);
   }
 
   SoftBorders soft_borders(Progress& progress) const {
@@ -454,7 +463,7 @@ class PosedVoxels {
   const TissueDepth* depth_;
   const ResampleSettings& settings_;
   const OutputGrid& output_;
-  const bool mends_;
+  const bool mends_, has_tets_;
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
   LabelSet flesh_;          // soft tissues without skin

@@ -30,7 +30,7 @@ enum class Message : std::uint32_t {
   // End.
   Hello,  // kMessageVersion and the Protection in force
   Header,
-  Voxels,  // the next voxels' bytes, in storage order
+  Voxels,  // the next voxels' bytes, in storage order: their number, 64 bits, and they themselves (sparse_bytes.h)
   // Where the next voxels' bytes lie in the file of the last Opened message: FileBytes. The program reads them itself.
   PlainVoxels,
   End,     // the reader's warnings
@@ -50,7 +50,7 @@ struct MessageHead {
 };
 
 // Version of the message format. Every change of the format needs a new version.
-constexpr std::uint32_t kMessageVersion = 2;
+constexpr std::uint32_t kMessageVersion = 3;
 
 struct Order {
   VolumeLocation location;

@@ -13,6 +13,7 @@
 #include "core/platform/process.h"
 #include "core/volume_io/dicom.h"
 #include "core/volume_io/reader_messages.h"
+#include "core/volume_io/sparse_bytes.h"
 
 namespace limber {
 
@@ -84,6 +85,7 @@ void deliver(OpenedVolume opened) {
   say(Message::Header, bytes_of(opened.header));
   if (!opened.voxels) return say(Message::End, bytes_of(std::vector<std::string>{}));
   std::vector<char> chunk(kChunk);
+  std::string message;
   const std::int64_t bytes = opened.header.grid.voxel_count() * size_of(opened.header.voxel_type);
   for (std::int64_t done = 0; done < bytes;) {
     if (const std::optional<FileBytes> plain = opened.voxels->pass_plain()) {
@@ -91,9 +93,11 @@ void deliver(OpenedVolume opened) {
       done += plain->bytes;
       continue;
     }
-    const auto some = static_cast<std::size_t>(std::min<std::int64_t>(kChunk, bytes - done));
+    const std::uint64_t some = std::min<std::int64_t>(kChunk, bytes - done);
     opened.voxels->read(chunk.data(), some);
-    say(Message::Voxels, {chunk.data(), some});
+    message.assign(reinterpret_cast<const char*>(&some), sizeof some);
+    pack_sparsely({chunk.data(), some}, message);
+    say(Message::Voxels, message);
     done += static_cast<std::int64_t>(some);
   }
   say(Message::End, bytes_of(opened.voxels->finish()));

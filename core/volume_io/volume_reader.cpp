@@ -14,6 +14,7 @@
 #include "core/platform/pipe.h"
 #include "core/platform/process.h"
 #include "core/volume_io/reader_messages.h"
+#include "core/volume_io/sparse_bytes.h"
 
 namespace limber {
 
@@ -230,7 +231,7 @@ class ReaderVoxels final : public VoxelSource {
       if (left_ == 0) next_voxels();
       const std::size_t now = std::min(bytes, left_);
       if (plain_at_) read_plain(out, now);
-      else talk_.read(out, now);
+      else talk_.require(packed_.read(out, now));
       out += now;
       bytes -= now;
       left_ -= now;
@@ -238,7 +239,7 @@ class ReaderVoxels final : public VoxelSource {
   }
 
   std::vector<std::string> finish() override {
-    talk_.require(left_ == 0 && promised_ == 0);
+    talk_.require(left_ == 0 && promised_ == 0 && packed_.is_done());
     return texts_from(await(Message::End), damaged());
   }
 
@@ -248,19 +249,27 @@ class ReaderVoxels final : public VoxelSource {
   }
 
   void next_voxels() {
+    talk_.require(packed_.is_done());
     const MessageHead head = next_of(Message::Voxels, Message::PlainVoxels);
-    FileBytes plain{0, static_cast<std::int64_t>(std::min<std::uint64_t>(head.size, INT64_MAX))};
+    std::string bytes = talk_.read_bytes(head);
     plain_at_.reset();
-    if (head.kind == Message::PlainVoxels) {
-      talk_.require(head.size == sizeof plain && opened_);
-      talk_.read(&plain, sizeof plain);
+    std::int64_t count = 0;
+    if (head.kind == Message::Voxels) {
+      talk_.require(bytes.size() >= sizeof count);
+      std::memcpy(&count, bytes.data(), sizeof count);
+      packed_ = SparseBytes(std::move(bytes), sizeof count);
+    } else {
+      FileBytes plain;
+      talk_.require(bytes.size() == sizeof plain && opened_);
+      std::memcpy(&plain, bytes.data(), sizeof plain);
       talk_.require(plain.offset >= 0 && plain.bytes <= opened_->size() &&
                     plain.offset <= opened_->size() - plain.bytes);
+      count = plain.bytes;
       plain_at_ = plain.offset;
     }
-    talk_.require(plain.bytes > 0 && plain.bytes <= promised_);
-    left_ = static_cast<std::size_t>(plain.bytes);
-    promised_ -= plain.bytes;
+    talk_.require(count > 0 && count <= promised_);
+    left_ = static_cast<std::size_t>(count);
+    promised_ -= count;
   }
 
   // Reads from the opened file itself, a few megabytes at a time, so that the user can cancel.
@@ -333,6 +342,7 @@ class ReaderVoxels final : public VoxelSource {
   Conversation talk_;
   std::int64_t promised_ = 0;        // voxel bytes that the header promised and no Voxels message has announced yet
   std::size_t left_ = 0;             // bytes not yet read of the current Voxels or PlainVoxels message
+  SparseBytes packed_;               // with Voxels: the message's voxels
   std::optional<PlainFile> opened_;  // the file that was sent last
   std::optional<std::int64_t> plain_at_;  // with PlainVoxels: offset of the next byte in opened_
 };

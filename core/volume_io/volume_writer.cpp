@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/base/error.h"
+#include "core/platform/memory_pages.h"
 #include "core/volume_io/vector_volume_io.h"
 #include "core/volume_io/volume_files.h"
 #include "core/volume_io/volume_format.h"
@@ -24,6 +25,17 @@ const VolumeFormat::Written& writer_of(const Path& path) {
 }
 
 void write(const Voxels& voxels, const Path& path) { writer_of(path).write(voxels, path); }
+
+// Calls body(labels, count, is_air) for one short stretch of labels after the other. Most of a body's grid is air,
+// which need not be looked at voxel by voxel. A stretch with is_air has only air.
+template <class Body>
+void in_stretches(const Label* labels, std::size_t count, const Body& body) {
+  constexpr std::size_t kStretch = 64;
+  for (std::size_t done = 0; done < count; done += kStretch) {
+    const std::size_t some = std::min(kStretch, count - done);
+    body(labels + done, some, is_all_zero(labels + done, some * sizeof(Label)));
+  }
+}
 
 // Returns a voxel type that holds all values from `lowest` to `highest`. This is `wanted` when it suffices, else the
 // narrowest wider type of its family (signed, unsigned or real). A negative `lowest` turns an unsigned type into a
@@ -70,7 +82,11 @@ std::vector<Path> files_written_as(const Path& path) {
 void write_volume(const LabelVolume& volume, const Path& path, const TissueTable& tissues, const FileType& type) {
   writer_of(path);
   std::vector<std::uint8_t> present(65536);
-  for (Label label : volume.voxels) present[label] = 1;
+  in_stretches(volume.voxels.data(), volume.voxels.size(), [&](const Label* labels, std::size_t count, bool air) {
+    if (air) present[0] = 1;
+    else
+      for (std::size_t i = 0; i < count; ++i) present[labels[i]] = 1;
+  });
   std::vector<double> value_of(65536);
   for (std::size_t label = 0; label < value_of.size(); ++label) value_of[label] = static_cast<double>(label);
   for (const Tissue& tissue : tissues.tissues) value_of[tissue.label] = tissue.label == 0 ? 0 : tissue.file_value;
@@ -93,9 +109,13 @@ void write_volume(const LabelVolume& volume, const Path& path, const TissueTable
     for (std::size_t label = 0; label < stored.size(); ++label)
       if (present[label]) stored[label] = static_cast<T>(value_of[label]);
     voxels.fill = [&volume, stored = std::move(stored)](std::int64_t first, std::size_t count, void* to) {
-      const Label* from = &volume.voxels[static_cast<std::size_t>(first)];
       T* out = static_cast<T*>(to);
-      for (std::size_t i = 0; i < count; ++i) out[i] = stored[from[i]];
+      in_stretches(&volume.voxels[static_cast<std::size_t>(first)], count,
+                   [&](const Label* labels, std::size_t some, bool air) {
+                     if (air) std::fill_n(out, some, stored[0]);
+                     else std::transform(labels, labels + some, out, [&](Label label) { return stored[label]; });
+                     out += some;
+                   });
     };
   });
   write(voxels, path);

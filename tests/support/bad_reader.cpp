@@ -85,6 +85,31 @@ class PlainLie final : public VoxelSource {
   FileBytes bytes_;
 };
 
+// Voxels whose message holds these bytes.
+class SparseLie final : public VoxelSource {
+ public:
+  explicit SparseLie(std::string message) : message_(std::move(message)) {}
+  void read(void*, std::size_t) override {
+    say(Message::Voxels, message_.size());
+    if (::write(STDOUT_FILENO, message_.data(), message_.size()) < 0) ::_exit(1);
+    say(Message::End, 0);
+    ::_exit(0);
+  }
+  std::vector<std::string> finish() override { return {}; }
+
+ private:
+  std::string message_;
+};
+
+// A message of `count` voxels in one span, and `more` after it.
+std::string sparse_message(std::uint64_t count, std::uint32_t zeros, std::uint32_t others, const std::string& more) {
+  ByteWriter message;
+  message.put(count);
+  message.put(zeros);
+  message.put(others);
+  return message.take() + more;
+}
+
 class Crash final : public VoxelSource {
  public:
   void read(void*, std::size_t) override { ::raise(SIGBUS); }
@@ -125,6 +150,14 @@ OpenedVolume misbehave(std::shared_ptr<VolumeFiles> files, Holding holding) {
                                               {"plain long", {0, kMost}},
                                               {"plain negative", {0, -8}}};
   if (const auto lie = lies.find(what); lie != lies.end()) opened.voxels = std::make_unique<PlainLie>(lie->second);
+  const std::map<std::string, std::string> sparse{{"sparse short", "1234"},
+                                                  {"sparse none", std::string(8, '\0')},
+                                                  {"sparse few", sparse_message(8, 7, 0, "")},
+                                                  {"sparse beyond", sparse_message(8, 0, 0xffffffff, "12345678")},
+                                                  {"sparse long", sparse_message(8, 8, 1, "1")},
+                                                  {"sparse after", sparse_message(8, 8, 0, "12345678")},
+                                                  {"sparse promise", sparse_message(std::uint64_t{1} << 60, 9, 0, "")}};
+  if (const auto lie = sparse.find(what); lie != sparse.end()) opened.voxels = std::make_unique<SparseLie>(lie->second);
   return opened;
 }
 

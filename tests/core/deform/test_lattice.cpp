@@ -75,3 +75,23 @@ TEST_CASE("lattice: corners of one bone alone lie where its motion carries them,
     CHECK(furthest < 1.0 / kFixedOne);
   }
 }
+
+TEST_CASE("lattice: corners that were forgotten are computed anew, bit for bit") {
+  const Bar bar;
+  const PosedLattice lattice(bar.volume, bar.tissue, bar.weights, bar.bent(), Blend::DualQuaternion, glm::dvec3(1));
+  const auto posed = [&] {
+    std::vector<FixedPoint> corners;
+    PosedLattice::Corners room;
+    for (std::int64_t b = 0; b < std::ssize(bar.tissue.bricks()); ++b) {
+      const auto& all = lattice.corners(b, room);
+      bar.tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
+        const glm::ivec3 at = v - bar.tissue.bricks()[b].corner;
+        corners.push_back(all[PosedLattice::place(at.x, at.y, at.z)]);
+      });
+    }
+    return corners;
+  };
+  const auto kept = posed();
+  lattice.forget_corners_below(INT32_MAX);
+  CHECK(posed() == kept);
+}
