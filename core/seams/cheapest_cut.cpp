@@ -36,7 +36,10 @@ class CheapestCut {
         kinds_(kinds),
         seams_(seams),
         of_limb_(of_limb),
-        of_other_(of_other) {}
+        of_other_(of_other),
+        layer_(layers_of(kinds)) {
+    layer_[0] = Layer::Deep;
+  }
 
   std::vector<std::uint8_t> run() const {
     const std::vector<double> cost = costs();
@@ -118,21 +121,26 @@ class CheapestCut {
 
   // Returns the cost of a cut that makes v a surface voxel; the flesh lies in the direction `inward`. If fat or muscle
   // is less deep below this surface than it usually is below skin at the air, the cost is higher than `own_cost`. The
-  // depth of bone is ignored, because bone lies near the skin in a hand but deep in a thigh.
+  // depth of bone is ignored, because bone lies near the skin in a hand but deep in a thigh. Only the first voxel of
+  // fat and the first of muscle count: the deeper a layer lies, the less it surprises.
   SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward) const {
-    const int axis = inward >> 1, reach = std::max(of_limb_.reach(axis), of_other_.reach(axis));
+    const int axis = inward >> 1, step = inward & 1 ? 1 : -1, last = inward & 1 ? volume_.grid.size[axis] - 1 : 0;
+    const int steps = std::min(std::max(of_limb_.reach(axis), of_other_.reach(axis)) - 1, step * (last - v[axis]));
+    const Label* label = &volume_.voxels[volume_.grid.index(v)];
     SurfaceCost cost{own_cost, own_cost};
-    for (int k = 1; k < reach && !seams_.is_cut_towards(v, inward); ++k) {
-      v[axis] += inward & 1 ? 1 : -1;
-      const Label label = volume_.at_or_air(v);
-      const Layer deepest = layer_of(kinds_[label]);
-      if (label == 0 || deepest == Layer::Deep) break;
+    Layer met = Layer::Sheet;
+    for (int k = 1; k <= steps && met < Layer::Muscle; ++k, v[axis] += step) {
+      if (has_seams_ && seams_.is_cut_towards(v, inward)) break;
+      label += step * stride_[axis];
+      const Layer deepest = layer_[*label];
+      if (deepest == Layer::Deep) break;
       for (const Layer layer : {Layer::Fat, Layer::Muscle}) {
-        if (layer > deepest) continue;
+        if (layer <= met || layer > deepest) continue;
         const double most = kCostOfLayer[static_cast<int>(layer)];
         cost.of_limb = std::max(cost.of_limb, most * of_limb_.surprise(axis, layer, k));
         cost.of_other = std::max(cost.of_other, most * of_other_.surprise(axis, layer, k));
       }
+      met = std::max(met, deepest);
     }
     return cost;
   }
@@ -143,7 +151,11 @@ class CheapestCut {
   const LabelVolume& volume_;
   const std::vector<TissueKind>& kinds_;
   const Seams& seams_;
+  const bool has_seams_ = !seams_.empty();
   const SkinLayers &of_limb_, &of_other_;
+  std::vector<Layer> layer_;  // layer of each label; air ends a ray as deep tissue does
+  const std::array<std::int64_t, 3> stride_{1, volume_.grid.size.x,
+                                            std::int64_t{volume_.grid.size.x} * volume_.grid.size.y};
 };
 
 }  // namespace

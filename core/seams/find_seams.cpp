@@ -106,8 +106,7 @@ class SeamFinder {
       if (!label.empty()) label[place] = volume_.at(v);
       bone_[place] = held_by_[place];
       distance[place] = held_by_[place] == kSoft ? std::numeric_limits<float>::infinity() : 0;
-      if (held_by_[place] == kSoft) return TissueFront::kNoSource;
-      return has_soft_beside(v) ? held_by_[place] : TissueFront::kNoSource;
+      return held_by_[place];  // kSoft is TissueFront::kNoSource
     });
     front.spread(
         distance,
@@ -125,12 +124,6 @@ class SeamFinder {
   SkinLayers skin_layers(const std::vector<bool>& of_bones) const {
     return SkinLayers(*rays_, volume_.grid.spacing,
                       [&](std::int64_t place) { return bone_[place] != kSoft && of_bones[bone_[place]]; });
-  }
-
-  bool has_soft_beside(const glm::ivec3& v) const {
-    bool found = false;
-    for_each_joined(v, [&](int, const glm::ivec3&, std::int64_t there) { found |= held_by_[there] == kSoft; });
-    return found;
   }
 
   TissueKind kind_at(const glm::ivec3& v) const { return kind_[volume_.at(v)]; }

@@ -32,6 +32,12 @@ Layer layer_of(TissueKind kind) {
   }
 }
 
+std::vector<Layer> layers_of(const std::vector<TissueKind>& kinds) {
+  std::vector<Layer> layers(kinds.size());
+  std::transform(kinds.begin(), kinds.end(), layers.begin(), layer_of);
+  return layers;
+}
+
 namespace {
 
 // Returns the length of rays along an axis, in voxels.
@@ -39,27 +45,44 @@ int steps_along(const glm::dvec3& spacing, int axis) {
   return std::clamp(static_cast<int>(kDeepest / spacing[axis]), 2, int{std::numeric_limits<std::uint16_t>::max()});
 }
 
-// Casts a ray inward from a skin voxel. Returns nothing when the ray meets air or never leaves the skin.
-//   inward  direction of the ray, 0 to 5: towards lower x, higher x, lower y, higher y, lower z, higher z
-std::optional<SkinRay> cast(const LabelVolume& volume, const std::vector<TissueKind>& kind, glm::ivec3 voxel,
-                            int inward) {
-  const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume.grid.spacing, axis);
-  SkinRay ray{0, static_cast<std::uint8_t>(axis), {}};
-  ray.first.fill(static_cast<std::uint16_t>(steps));
-  for (int k = 0; k < steps; ++k, voxel[axis] += step) {
-    const Label label = volume.at_or_air(voxel);
-    if (label == 0) return std::nullopt;
-    for (int l = 1; l <= static_cast<int>(layer_of(kind[label])); ++l)
-      ray.first[l] = std::min(ray.first[l], static_cast<std::uint16_t>(k));
+// Casts rays inward from skin.
+class SkinCaster {
+ public:
+  SkinCaster(const LabelVolume& volume, const std::vector<TissueKind>& kind)
+      : volume_(volume), layer_(layers_of(kind)) {}
+
+  // Casts a ray from a voxel of skin. Returns nothing when the ray meets air or never leaves the skin.
+  //   inward  direction of the ray, 0 to 5: towards lower x, higher x, lower y, higher y, lower z, higher z
+  std::optional<SkinRay> cast(const glm::ivec3& voxel, int inward) const {
+    const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume_.grid.spacing, axis);
+    const glm::ivec3& size = volume_.grid.size;
+    const int last = inward & 1 ? size[axis] - 1 : 0;
+    if (step * (last - voxel[axis]) + 1 < steps) return std::nullopt;  // there is air outside the grid
+    const std::int64_t stride = step * (axis == 0 ? 1 : axis == 1 ? size.x : std::int64_t{size.x} * size.y);
+    std::int64_t at = volume_.grid.index(voxel);
+    SkinRay ray{0, static_cast<std::uint8_t>(axis), {}};
+    ray.first.fill(static_cast<std::uint16_t>(steps));
+    int met = 0;
+    for (int k = 0; k < steps; ++k, at += stride) {
+      const Label label = volume_.voxels[at];
+      if (label == 0) return std::nullopt;
+      for (const int layer = static_cast<int>(layer_[label]); met < layer;)
+        ray.first[++met] = static_cast<std::uint16_t>(k);
+    }
+    return met > 0 ? std::optional(ray) : std::nullopt;
   }
-  return ray.first[1] < steps ? std::optional(ray) : std::nullopt;
-}
+
+ private:
+  const LabelVolume& volume_;
+  const std::vector<Layer> layer_;
+};
 
 }  // namespace
 
 std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& tissue,
                                const std::vector<TissueKind>& kind) {
   constexpr std::int64_t kGrain = 64;  // bricks per block of a parallel loop
+  const SkinCaster caster(volume, kind);
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<std::vector<SkinRay>> found((bricks + kGrain - 1) / kGrain);
   parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -69,7 +92,7 @@ std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& ti
         glm::ivec3 w = v;
         w[direction >> 1] += direction & 1 ? 1 : -1;
         if (!volume.grid.contains(w) || volume.at(w) != 0) continue;
-        if (auto ray = cast(volume, kind, v, direction ^ 1)) {
+        if (auto ray = caster.cast(v, direction ^ 1)) {
           ray->place = place;
           found[begin / kGrain].push_back(*ray);
         }

@@ -24,6 +24,8 @@ enum class Layer : std::uint8_t { Sheet, Fat, Muscle, Deep };
 constexpr int kLayers = 4;
 
 Layer layer_of(TissueKind kind);
+// Returns the layer of each label, from the tissue kind of each label.
+std::vector<Layer> layers_of(const std::vector<TissueKind>& kinds);
 
 // A ray that enters the body through skin, with the depths at which it first meets fat, muscle and deeper tissue.
 struct SkinRay {
