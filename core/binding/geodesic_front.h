@@ -11,6 +11,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -154,22 +155,24 @@ class TissueFront {
       const glm::ivec3 voxel(small_voxel), corner(here.corner);
       const float before = here.to_corner;
       const int brick_here = tissue_.brick_at(voxel);
+      const Neighbours around = neighbours_of(voxel, brick_here, place);
+      const std::array<float, 6> straight_on = straight_to_neighbours(corner, voxel);
       for (int direction = 0; direction < 6; ++direction) {
-        const glm::ivec3 w = voxel + kSteps[direction];
-        const auto [brick, there] = brick_and_place(w, voxel, brick_here);
-        if (there < 0 || corner == w) continue;
+        const auto [brick, there] = around[direction];
+        if (there < 0) continue;
         Domain& beyond = brick == brick_here ? domain : domains_[domain_of(brick)];
         const bool is_own = &beyond == &domain;
         // The length of the path that goes straight on is a lower bound: if the path must bend, it is longer.
-        float way = before + straight(corner, w);
-        if (is_own && !is_shorter(here.source, there, way)) continue;
+        float way = before + straight_on[direction];
+        if (is_own ? !is_shorter(here.source, std::int64_t{there}, way) : straight_on[direction] == 0) continue;
         const bool near_seam = seams && is_near_seam[brick];
         if (near_seam && seams->is_cut_towards(voxel, direction)) continue;
+        const glm::ivec3 w = voxel + kSteps[direction];
         const bool bends = !tissue_.holds(w - step_towards(w - corner)) || (near_seam && seams->touches(w));
         const float to_bend = before + straight(corner, voxel);
         if (bends) way = to_bend + straight(voxel, w);
         const Step step{
-            static_cast<std::int32_t>(there), glm::i16vec3(w),
+            there, glm::i16vec3(w),
             bends ? Way{small_voxel, here.source, to_bend, way} : Way{here.corner, here.source, before, way}};
         if (is_own) accept(step, domain, bucket, is_shorter, take);
         else domain.sent[&beyond - domains_.data()].push_back(step);
@@ -215,17 +218,48 @@ class TissueFront {
 
   std::size_t domain_of(std::int64_t brick) const { return brick * domains_.size() / tissue_.bricks().size(); }
 
-  // Returns the brick of `voxel` and its index in the list of tissue voxels (-1: air, or outside the grid). `voxel` is
-  // a neighbour of the voxel `beside`, which lies in `brick`.
-  std::pair<int, std::int64_t> brick_and_place(const glm::ivec3& voxel, const glm::ivec3& beside, int brick) const {
-    const glm::ivec3 differs = voxel ^ beside;
-    const bool is_in_brick = ((differs.x | differs.y | differs.z) & ~(TissueVoxels::kBrick - 1)) == 0;
-    if (!is_in_brick) {
-      if (!grid_.contains(voxel)) return {-1, -1};
-      brick = tissue_.brick_at(voxel);
-      if (brick < 0) return {-1, -1};
-    }
-    return {brick, TissueVoxels::index_in(tissue_.bricks()[brick], voxel & 7)};
+  // A neighbour of a voxel: its brick, and its index in the list of tissue voxels (-1: air, or outside the grid).
+  struct Neighbour {
+    std::int32_t brick, place;
+  };
+  using Neighbours = std::array<Neighbour, 6>;
+
+  // Returns the neighbours of a voxel in the directions kSteps. Those in the voxel's own row and slice are found by
+  // counting only the tissue voxels between.
+  //   brick, place  the voxel's brick, and its index in the list of tissue voxels
+  Neighbours neighbours_of(const glm::ivec3& voxel, int brick, std::int32_t place) const {
+    constexpr int kLast = TissueVoxels::kBrick - 1;
+    const TissueVoxels::Brick& here = tissue_.bricks()[brick];
+    const glm::ivec3 in = voxel & kLast;
+    const int bit = in.x + TissueVoxels::kBrick * in.y;
+    const std::uint64_t slice = here.mask[in.z];
+    const auto holds = [&](int at) { return (slice >> at & 1) != 0; };
+    const auto in_slice = [&](int direction) {
+      return Neighbour{brick, static_cast<std::int32_t>(
+                                  TissueVoxels::index_in(here, {in.x, in.y, direction & 1 ? in.z + 1 : in.z - 1}))};
+    };
+    return {in.x > 0 ? Neighbour{brick, holds(bit - 1) ? place - 1 : -1} : beyond_brick(voxel, 0),
+            in.x < kLast ? Neighbour{brick, holds(bit + 1) ? place + 1 : -1} : beyond_brick(voxel, 1),
+            in.y > 0 ? Neighbour{brick, holds(bit - 8) ? place - bits_in_byte(slice >> (bit - 8)) : -1}
+                     : beyond_brick(voxel, 2),
+            in.y < kLast ? Neighbour{brick, holds(bit + 8) ? place + bits_in_byte(slice >> bit) : -1}
+                         : beyond_brick(voxel, 3),
+            in.z > 0 ? in_slice(4) : beyond_brick(voxel, 4),
+            in.z < kLast ? in_slice(5) : beyond_brick(voxel, 5)};
+  }
+  Neighbour beyond_brick(const glm::ivec3& voxel, int direction) const {
+    const glm::ivec3 w = voxel + kSteps[direction];
+    if (!grid_.contains(w)) return {-1, -1};
+    const int brick = tissue_.brick_at(w);
+    if (brick < 0) return {-1, -1};
+    return {brick, static_cast<std::int32_t>(TissueVoxels::index_in(tissue_.bricks()[brick], w & 7))};
+  }
+  // Returns the number of bits that are set in the lowest byte of a word.
+  static int bits_in_byte(std::uint64_t word) {
+    std::uint32_t byte = word & 0xff;
+    byte -= byte >> 1 & 0x55;
+    byte = (byte & 0x33) + (byte >> 2 & 0x33);
+    return static_cast<int>((byte + (byte >> 4)) & 0xf);
   }
 
   std::vector<bool> bricks_near_seams() const {
@@ -244,6 +278,18 @@ class TissueFront {
     return {step(way.x), step(way.y), step(way.z)};
   }
 
+  // Returns straight() from a corner to each of the neighbours of a voxel.
+  std::array<float, 6> straight_to_neighbours(const glm::ivec3& corner, const glm::ivec3& voxel) const {
+    const auto squared = [&](const glm::ivec3& way) {
+      const glm::vec3 length = glm::vec3(way) * spacing_;
+      return length * length;
+    };
+    const glm::ivec3 way = voxel - corner;
+    const glm::vec3 here = squared(way), lower = squared(way - 1), higher = squared(way + 1);
+    return {std::sqrt(lower.x + here.y + here.z), std::sqrt(higher.x + here.y + here.z),
+            std::sqrt(here.x + lower.y + here.z), std::sqrt(here.x + higher.y + here.z),
+            std::sqrt(here.x + here.y + lower.z), std::sqrt(here.x + here.y + higher.z)};
+  }
   float straight(const glm::ivec3& a, const glm::ivec3& b) const {
     const glm::vec3 way = glm::vec3(b - a) * spacing_;
     return std::sqrt(glm::dot(way, way));
