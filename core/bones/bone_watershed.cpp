@@ -99,11 +99,13 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
   // voxel.
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<TissueVoxels::Brick> bone(bricks);
+  LabelSet bone_labels(kinds.size());
+  std::transform(kinds.begin(), kinds.end(), bone_labels.begin(), is_bone);
   parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t b = begin; b < end; ++b) {
       bone[b] = {tissue.bricks()[b].corner, 0, {}};
-      tissue.for_each(b, b + 1, [&](std::int64_t, const glm::ivec3& v) {
-        if (is_bone(kinds[volume.at(v)])) bone[b].mask[v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
+      tissue.for_each_of(b, volume, bone_labels, [&](std::int64_t, const glm::ivec3& v) {
+        bone[b].mask[v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
       });
       for (int z = 1; z < TissueVoxels::kBrick; ++z)
         bone[b].below[z] = static_cast<std::uint16_t>(bone[b].below[z - 1] + std::popcount(bone[b].mask[z - 1]));
@@ -115,21 +117,24 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
   BoneGraph graph;
   graph.resize(size);
   const LabelWalls walls(volume, tissue, kinds);
-  const auto neighbour = [&](const glm::ivec3& v, const glm::ivec3& w) {
-    if (!volume.grid.contains(w)) return kOutside;
-    const Label label = volume.at(w);
-    return is_bone(kinds[label]) && !walls.between(volume.at(v), label)
-               ? static_cast<std::int32_t>(TissueVoxels::index_in(bone[tissue.brick_at(w)], w & 7))
-               : kNotBone;
+  // Returns the neighbour w of a voxel of brick b with a label.
+  const auto neighbour = [&](std::int64_t b, Label label, const glm::ivec3& w) {
+    const bool is_in_brick = (w >> 3) == (bone[b].corner >> 3);
+    if (!is_in_brick && !volume.grid.contains(w)) return kOutside;
+    const std::int64_t brick = is_in_brick ? b : tissue.brick_at(w);
+    const auto found = brick < 0 ? kNotBone : static_cast<std::int32_t>(TissueVoxels::index_in(bone[brick], w & 7));
+    return found >= 0 && walls.between(label, volume.at(w)) ? kNotBone : found;
   };
   parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
-    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
-      const std::int64_t i = TissueVoxels::index_in(bone[tissue.brick_at(v)], v & 7);
-      if (i < 0) return;
-      graph.place[i] = place;
-      graph.voxel[i] = v;
-      for (int k = 0; k < 26; ++k) graph.neighbour[i][k] = neighbour(v, v + kOffsets[k]);
-    });
+    for (std::int64_t b = begin; b < end; ++b) {
+      std::int64_t i = bone[b].first;
+      tissue.for_each_of(b, volume, bone_labels, [&](std::int64_t place, const glm::ivec3& v) {
+        graph.place[i] = place;
+        graph.voxel[i] = v;
+        for (int k = 0; k < 26; ++k) graph.neighbour[i][k] = neighbour(b, volume.at(v), v + kOffsets[k]);
+        ++i;
+      });
+    }
   });
   return graph;
 }
