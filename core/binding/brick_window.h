@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -25,10 +26,11 @@ struct BrickWindow {
   // Step in the arrays to the neighbour towards -x, +x, -y, +y, -z, +z.
   static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
 
-  std::array<std::int32_t, 1000> place;  // index in the list of tissue voxels; -1: air
-  std::array<float, 1000> soft;          // conductivity; 0 for all voxels that are not soft
-  std::array<int, 6> beside;             // index of the neighbouring brick in each direction; -1: none
-  const Seams* seams = nullptr;          // null: no seam is near this brick
+  std::array<std::int32_t, 1000> place;    // index in the list of tissue voxels; -1: air
+  std::array<float, 1000> soft;            // conductivity; 0 for all voxels that are not soft
+  std::array<std::uint64_t, 8> soft_bits;  // the brick's soft voxels, one word per z slice: bit x + 8 y
+  std::array<int, 6> beside;               // index of the neighbouring brick in each direction; -1: none
+  const Seams* seams = nullptr;            // null: no seam is near this brick
 
   // Returns the index of voxel v in the arrays; v is relative to the brick's lowest corner, [-1, 8] along each axis.
   static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }
@@ -43,32 +45,61 @@ struct BrickWindow {
     if (seams && !seams->is_near_brick(here.corner)) seams = nullptr;
     place.fill(-1);
     soft.fill(0);
-    from.tissue.for_each(brick, brick + 1,
-                         [&](std::int64_t p, const glm::ivec3& v) { set(from, v - here.corner, v, p); });
+    for (int z = 0; z < TissueVoxels::kBrick; ++z) soft_bits[z] = look_at(from, here, z, kAll, {0, 0, z});
     for (int direction = 0; direction < 6; ++direction) look_beside(from, here.corner, direction);
   }
 
+  // Calls body(voxel relative to the brick's lowest corner, index in the arrays) for every soft voxel of the brick, in
+  // the order of the list of tissue voxels.
+  template <class Body>
+  void for_soft(const Body& body) const {
+    for (int z = 0; z < TissueVoxels::kBrick; ++z)
+      for (std::uint64_t bits = soft_bits[z]; bits; bits &= bits - 1) {
+        const glm::ivec3 v(std::countr_zero(bits) & 7, std::countr_zero(bits) >> 3, z);
+        body(v, at(v));
+      }
+  }
+
  private:
-  void set(const Source& from, const glm::ivec3& from_corner, const glm::ivec3& voxel, std::int64_t its_place) {
-    place[at(from_corner)] = static_cast<std::int32_t>(its_place);
-    if (from.held_by[its_place] == kSoft) soft[at(from_corner)] = from.conductivity[from.volume.at(voxel)];
+  static constexpr std::uint64_t kAll = ~std::uint64_t{0};
+
+  // Fills in those voxels of slice z of a brick whose bits (x + 8 y) are set. Returns the bits of the soft ones.
+  //   to  where the voxel of bit 0 goes, relative to the lowest corner of the window's brick
+  std::uint64_t look_at(const Source& from, const TissueVoxels::Brick& brick, int z, std::uint64_t which,
+                        const glm::ivec3& to) {
+    const glm::ivec3 corner = brick.corner + glm::ivec3(0, 0, z);
+    const Label* label = &from.volume.voxels[from.volume.grid.index(corner)];
+    const std::int64_t row = from.volume.grid.size.x;
+    std::int64_t next = brick.first + brick.below[z];
+    std::uint64_t soft_ones = 0;
+    for (std::uint64_t bits = brick.mask[z] & which; bits; bits &= bits - 1, ++next) {
+      const int bit = std::countr_zero(bits), x = bit & 7, y = bit >> 3;
+      if (which != kAll) next = TissueVoxels::index_in(brick, {x, y, z});
+      const int its = at(to) + x + 10 * y;
+      place[its] = static_cast<std::int32_t>(next);
+      if (from.held_by[next] != kSoft) continue;
+      soft[its] = from.conductivity[label[x + y * row]];
+      soft_ones |= std::uint64_t{1} << bit;
+    }
+    return soft_ones;
   }
 
   // Fills the layer of voxels that lies in the neighbouring brick in a direction.
   void look_beside(const Source& from, const glm::ivec3& corner, int direction) {
-    const int axis = direction >> 1, side = direction & 1 ? TissueVoxels::kBrick : -1;
-    glm::ivec3 first = corner;
-    first[axis] += side;
-    beside[direction] = from.volume.grid.contains(first) ? from.tissue.brick_at(first) : -1;
+    constexpr std::uint64_t kLowest[2] = {0x0101010101010101, 0xff};  // the lowest voxels of a slice along x and y
+    const int axis = direction >> 1, last = TissueVoxels::kBrick - 1;
+    const bool is_higher = direction & 1;
+    glm::ivec3 to(0);
+    to[axis] = is_higher ? TissueVoxels::kBrick : -TissueVoxels::kBrick;
+    beside[direction] = from.volume.grid.contains(corner + to) ? from.tissue.brick_at(corner + to) : -1;
     if (beside[direction] < 0) return;
     const auto& there = from.tissue.bricks()[beside[direction]];
-    glm::ivec3 v;
-    v[axis] = side;
-    int &a = v[(axis + 1) % 3], &b = v[(axis + 2) % 3];
-    for (a = 0; a < TissueVoxels::kBrick; ++a)
-      for (b = 0; b < TissueVoxels::kBrick; ++b)
-        if (const std::int64_t found = TissueVoxels::index_in(there, v & 7); found >= 0)
-          set(from, v, corner + v, found);
+    if (axis == 2) {
+      look_at(from, there, is_higher ? 0 : last, kAll, {0, 0, is_higher ? TissueVoxels::kBrick : -1});
+      return;
+    }
+    const std::uint64_t which = is_higher ? kLowest[axis] : kLowest[axis] << (axis == 0 ? last : last * 8);
+    for (int z = 0; z <= last; ++z) look_at(from, there, z, which, to + glm::ivec3(0, 0, z));
   }
 };
 

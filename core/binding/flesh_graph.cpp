@@ -2,6 +2,7 @@
 #include "core/binding/flesh_graph.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -73,10 +74,22 @@ template <class Body>
 void HeatGraph::for_soft(std::int64_t brick, Window& window, const Body& body) const {
   window.look(source(), brick);
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-  tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
-    if (const int here = Window::at(v - corner); window.soft[here] > 0) body(v, place, here);
-  });
+  window.for_soft([&](const glm::ivec3& in, int here) { body(corner + in, window.place[here], here); });
 }
+
+namespace {
+// Unlinks the cells of a brick from those beyond one of its sides, which are left out of the system.
+void unlink_side(std::int64_t brick, int direction, HeatSystem& system) {
+  const int axis = direction >> 1;
+  glm::ivec3 in;
+  in[axis] = direction & 1 ? TissueVoxels::kBrick - 1 : 0;
+  int &a = in[(axis + 1) % 3], &b = in[(axis + 2) % 3];
+  for (a = 0; a < TissueVoxels::kBrick; ++a)
+    for (b = 0; b < TissueVoxels::kBrick; ++b)
+      if (const int slot = HeatSystem::slot_of(in); slot < HeatSystem::kColour)
+        system.conductance_of_red(brick, direction, slot) = 0;
+}
+}  // namespace
 
 void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const {
   std::vector<glm::ivec3> corners;
@@ -96,21 +109,23 @@ void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system
   system.reset(std::move(corners), std::move(beside), volume_.grid.spacing);
   parallel_for(std::ssize(bricks), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Window window;
-    for (std::int64_t b = begin; b < end; ++b)
+    for (std::int64_t b = begin; b < end; ++b) {
+      float* red_conductance = &system.conductance_of_red(b, 0, 0);
       for_soft(bricks[b], window, [&](const glm::ivec3& v, std::int64_t place, int here) {
-        const glm::ivec3 in = v - system.corners[b];
-        const int slot = HeatSystem::slot_of(in);
+        const int slot = HeatSystem::slot_of(v - system.corners[b]);
+        const bool is_red = slot < HeatSystem::kColour;
         float diagonal = 0;
         for (int direction = 0; direction < 6; ++direction) {
           const float g = conductance(window, v, here, direction);
           diagonal += g;
-          if (slot >= HeatSystem::kColour || g == 0 || window.soft[here + Window::kTo[direction]] == 0) continue;
-          const int beyond = in[direction >> 1] + (direction & 1 ? 1 : -1);
-          const bool is_left_out = (beyond < 0 || beyond > 7) && system.beside[b][direction] == system.brick_count();
-          if (!is_left_out) system.conductance_of_red(b, direction, slot) = g;
+          if (is_red && window.soft[here + Window::kTo[direction]] > 0)
+            red_conductance[direction * HeatSystem::kColour + slot] = g;
         }
         system.add_cell(b, slot, diagonal + attraction(place, v));
       });
+      for (int direction = 0; direction < 6; ++direction)
+        if (system.beside[b][direction] == system.brick_count()) unlink_side(b, direction, system);
+    }
   });
 }
 
@@ -193,34 +208,65 @@ void HeatGraph::add_outside(const std::vector<std::int32_t>& bricks, int lanes, 
   });
 }
 
+namespace {
+using Slices = std::array<std::uint64_t, 8>;  // voxels of a brick, one word per z slice: bit x + 8 y
+
+// Returns the faces of a brick's voxels towards higher x, y and z that seams cut.
+std::array<Slices, 3> cut_faces(const BrickWindow& window, const glm::ivec3& corner) {
+  std::array<Slices, 3> cut{};
+  if (!window.seams) return cut;
+  window.for_soft([&](const glm::ivec3& in, int) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (window.is_cut(corner + in, 2 * axis + 1)) cut[axis][in.z] |= std::uint64_t{1} << (in.x + 8 * in.y);
+  });
+  return cut;
+}
+
+// Adds to `reached` all voxels of `within` that are connected to it through faces that are not cut. All voxels lie in
+// one octant, whose lowest slice is `first`.
+void spread_in_octant(Slices& reached, const Slices& within, const std::array<Slices, 3>& cut, int first) {
+  const int last = first + 3;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (int z = first; z <= last; ++z) {
+      const std::uint64_t before = reached[z], free_x = ~cut[0][z], free_y = ~cut[1][z];
+      std::uint64_t around =
+          (before & free_x) << 1 | (before >> 1 & free_x) | (before & free_y) << 8 | (before >> 8 & free_y);
+      if (z > first) around |= reached[z - 1] & ~cut[2][z - 1];
+      if (z < last) around |= reached[z + 1] & ~cut[2][z];
+      reached[z] = before | (around & within[z]);
+      grows |= reached[z] != before;
+    }
+  }
+}
+}  // namespace
+
 // Finds the coarse cells of a brick. A coarse cell is a connected set of soft voxels in one octant (4^3 voxels) of the
 // brick. The cells are appended to `found`, and `cell_of` gets their indices there.
 void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of,
                            std::vector<CoarseCell>& found) const {
-  std::array<glm::ivec3, 64> open;
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;
-  for_soft(brick, window, [&](const glm::ivec3& seed_voxel, std::int64_t seed, int) {
-    if (cell_of[seed] >= 0) return;
-    const auto cell = static_cast<std::int32_t>(found.size());
-    const glm::ivec3 octant = seed_voxel >> 2;
-    found.push_back({glm::i16vec3(octant), static_cast<std::int32_t>(brick)});
-    cell_of[seed] = cell;
-    int open_count = 0;
-    open[open_count++] = seed_voxel;
-    while (open_count > 0) {
-      const glm::ivec3 v = open[--open_count];
-      for (int direction = 0; direction < 6; ++direction) {
-        glm::ivec3 w = v;
-        w[direction >> 1] += direction & 1 ? 1 : -1;
-        if ((w >> 2) != octant) continue;
-        const int there = Window::at(w - corner);
-        const std::int32_t place = window.place[there];
-        if (window.soft[there] == 0 || cell_of[place] >= 0 || window.is_cut(v, direction)) continue;
-        cell_of[place] = cell;
-        open[open_count++] = w;
+  window.look(source(), brick);
+  const std::array<Slices, 3> cut = cut_faces(window, corner);
+  Slices open = window.soft_bits;
+  for (int seed_z = 0; seed_z < TissueVoxels::kBrick; ++seed_z)
+    while (open[seed_z]) {
+      const int seed = std::countr_zero(open[seed_z]), first = seed_z & 4;
+      const glm::ivec3 octant(seed >> 2 & 1, seed >> 5, seed_z >> 2);
+      const std::uint64_t slice_of_octant = std::uint64_t{0x0f0f0f0f} << (4 * octant.x + 32 * octant.y);
+      Slices within{}, reached{};
+      for (int z = first; z < first + 4; ++z) within[z] = open[z] & slice_of_octant;
+      reached[seed_z] = std::uint64_t{1} << seed;
+      spread_in_octant(reached, within, cut, first);
+      for (int z = first; z < first + 4; ++z) {
+        for (std::uint64_t bits = reached[z]; bits; bits &= bits - 1) {
+          const int bit = std::countr_zero(bits);
+          cell_of[window.place[Window::at({bit & 7, bit >> 3, z})]] = static_cast<std::int32_t>(found.size());
+        }
+        open[z] &= ~reached[z];
       }
+      found.push_back({glm::i16vec3((corner >> 2) + octant), static_cast<std::int32_t>(brick)});
     }
-  });
 }
 
 namespace {
