@@ -49,7 +49,8 @@ int steps_along(const glm::dvec3& spacing, int axis) {
 class SkinCaster {
  public:
   SkinCaster(const LabelVolume& volume, const std::vector<TissueKind>& kind)
-      : volume_(volume), layer_(layers_of(kind)) {}
+      : volume_(volume),
+        layer_(layers_of(kind)) {}
 
   // Casts a ray from a voxel of skin. Returns nothing when the ray meets air or never leaves the skin.
   //   inward  direction of the ray, 0 to 5: towards lower x, higher x, lower y, higher y, lower z, higher z
