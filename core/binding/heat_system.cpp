@@ -23,12 +23,24 @@ Four load(const float* from) {
   return four;
 }
 void store(const Four& four, float* to) { std::memcpy(to, &four, sizeof four); }
-// Return the four cells of a row shifted by one cell along x: before() fetches the missing first cell from the row of
-// the brick towards -x, after() the missing last cell from the row of the brick towards +x.
-Four before(const Four& previous_row, const Four& row) {
-  return __builtin_shufflevector(previous_row, row, 3, 4, 5, 6);
+// Return the four cells of a row shifted by one cell along x. The cell that is missing, `previous` or `next`, lies in
+// the brick towards -x or +x.
+Four before(float previous, const Four row) {
+  Four shifted = __builtin_shufflevector(row, row, 0, 0, 1, 2);
+  shifted[0] = previous;
+  return shifted;
 }
-Four after(const Four& row, const Four& next_row) { return __builtin_shufflevector(row, next_row, 1, 2, 3, 4); }
+Four after(const Four row, float next) {
+  Four shifted = __builtin_shufflevector(row, row, 1, 2, 3, 3);
+  shifted[3] = next;
+  return shifted;
+}
+
+// Returns the sum plus the products of two rows, added one after the other.
+double plus_product(double sum, const Four a, const Four b) {
+  for (int k = 0; k < kRow; ++k) sum += double(a[k]) * b[k];
+  return sum;
+}
 
 // Sets `values` to `count` zeros. New memory is already zero; reused memory is cleared on several threads.
 void make_zeros(std::size_t count, HeatValues& values) {
@@ -95,15 +107,18 @@ HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
   return total;
 }
 
-// Calls body(lane, place, flow) for every row of one colour in a brick. `lane` is the index of a right-hand side.
-// `place` is the index of the row's first cell in vectors of that colour. `flow` is the heat that the row's four cells
-// receive from their neighbours of the other colour, whose temperatures are `other`.
+// Calls body(lane, slot, place, flow) for every row of one colour in a brick. `lane` is the index of a right-hand side.
+// `slot` is the index of the row's first cell among the brick's cells of that colour, and `place` its index in vectors
+// of that colour. `flow` is the heat that the row's four cells receive from their neighbours of the other colour, whose
+// temperatures are `other`.
 template <bool kRed, class Body>
 void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body& body) const {
+  constexpr std::int64_t kLane = HeatSystem::kColour;  // values of a right-hand side in a brick
   const auto& beside = system_.beside[brick];
   const auto conductances = [&](std::int64_t of_brick, int direction, int row) {
-    return load(&system_.conductance[(of_brick * 6 + direction) * HeatSystem::kColour + kRow * row]);
+    return &system_.conductance[(of_brick * 6 + direction) * HeatSystem::kColour + kRow * row];
   };
+  const auto values = [&](std::int64_t of_brick, int row) { return &other[at(of_brick, 0) + kRow * row]; };
   for (int row = 0; row < 64; ++row) {
     const int y = row & 7, z = row >> 3;
     // A row of the other colour is shifted by one voxel along x. If y + z is even, the red row has the lower first
@@ -115,33 +130,34 @@ void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body&
                            z < 7 ? row + 8 : row - 56};
     Four g[6];
     if constexpr (kRed) {
-      for (int direction = 0; direction < 6; ++direction) g[direction] = conductances(brick, direction, row);
+      for (int direction = 0; direction < 6; ++direction) g[direction] = load(conductances(brick, direction, row));
     } else {
-      g[0] = conductances(brick, 1, row);
-      g[1] = conductances(brick, 0, row);
-      if (own_first) g[0] = before(conductances(beside[0], 1, row), g[0]);
-      else g[1] = after(g[1], conductances(beside[1], 0, row));
-      for (int k = 0; k < 4; ++k) g[2 + k] = conductances(brick_of[k], 2 + (k ^ 1), row_of[k]);
+      g[0] = load(conductances(brick, 1, row));
+      g[1] = load(conductances(brick, 0, row));
+      if (own_first) g[0] = before(conductances(beside[0], 1, row)[kRow - 1], g[0]);
+      else g[1] = after(g[1], *conductances(beside[1], 0, row));
+      for (int k = 0; k < 4; ++k) g[2 + k] = load(conductances(brick_of[k], 2 + (k ^ 1), row_of[k]));
     }
+    const float *same_row = values(brick, row), *rows[4];
+    const float* beyond = own_first ? values(beside[0], row) + kRow - 1 : values(beside[1], row);
+    for (int k = 0; k < 4; ++k) rows[k] = values(brick_of[k], row_of[k]);
     for (int lane = 0; lane < lanes_; ++lane) {
-      const auto values = [&](std::int64_t of_brick, int of_row) {
-        return load(&other[at(of_brick, lane) + kRow * of_row]);
-      };
-      const Four same = values(brick, row);
-      Four flow = own_first ? g[0] * before(values(beside[0], row), same) + g[1] * same
-                            : g[0] * same + g[1] * after(same, values(beside[1], row));
-      for (int k = 0; k < 4; ++k) flow += g[2 + k] * values(brick_of[k], row_of[k]);
-      body(lane, at(brick, lane) + kRow * row, flow);
+      const Four same = load(same_row + lane * kLane);
+      const float next = beyond[lane * kLane];
+      Four flow = own_first ? g[0] * before(next, same) + g[1] * same : g[0] * same + g[1] * after(same, next);
+      for (int k = 0; k < 4; ++k) flow += g[2 + k] * load(rows[k] + lane * kLane);
+      body(lane, kRow * row, at(brick, lane) + kRow * row, flow);
     }
   }
 }
 
 void HeatSolver::relax_reds(const HeatValues& blacks, bool with_sources) {
   for_bricks([&](std::int64_t brick) {
-    const float* diagonal = &system_.diagonal[brick * HeatSystem::kSlots];
-    gather<true>(brick, blacks, [&](int, std::int64_t place, Four flow) {
-      if (with_sources) flow += load(&red_source_[place]);
-      store(flow / load(diagonal + place % HeatSystem::kColour), &red_[place]);
+    const float *diagonal = &system_.diagonal[brick * HeatSystem::kSlots], *sources = red_source_.data();
+    float* red = red_.data();
+    gather<true>(brick, blacks, [=](int, int slot, std::int64_t place, Four flow) {
+      if (with_sources) flow += load(sources + place);
+      store(flow / load(diagonal + slot), red + place);
     });
   });
 }
@@ -155,10 +171,10 @@ HeatSolver::Sums HeatSolver::start() {
   });
   relax_reds(black_, true);
   for_bricks([&](std::int64_t brick) {
-    const float* diagonal = &system_.diagonal[brick * HeatSystem::kSlots + HeatSystem::kColour];
-    gather<false>(brick, red_, [&](int, std::int64_t place, const Four& flow) {
-      store(load(&residual_[place]) + flow - load(diagonal + place % HeatSystem::kColour) * load(&black_[place]),
-            &residual_[place]);
+    const float *diagonal = diagonal_of_blacks(brick), *black = black_.data();
+    float* residual = residual_.data();
+    gather<false>(brick, red_, [=](int, int slot, std::int64_t place, const Four flow) {
+      store(load(residual + place) + flow - load(diagonal + slot) * load(black + place), residual + place);
     });
   });
   return sources;
@@ -166,14 +182,14 @@ HeatSolver::Sums HeatSolver::start() {
 
 // Computes step = M^-1 * residual, where M is the preconditioner. Returns the dot products of step and residual.
 HeatSolver::Sums HeatSolver::precondition() {
-  const auto diagonal_of = [&](std::int64_t brick) {
-    return &system_.diagonal[brick * HeatSystem::kSlots + HeatSystem::kColour];
-  };
+  const int lanes = lanes_;
+  const float* residual = residual_.data();
+  float* step = step_.data();
   for_bricks([&](std::int64_t brick) {
-    for (int lane = 0; lane < lanes_; ++lane)
-      for (int slot = 0; slot < HeatSystem::kColour; slot += kRow)
-        store(load(&residual_[at(brick, lane) + slot]) / load(diagonal_of(brick) + slot),
-              &step_[at(brick, lane) + slot]);
+    const float* diagonal = diagonal_of_blacks(brick);
+    for (int lane = 0; lane < lanes; ++lane)
+      for (std::int64_t slot = 0, place = at(brick, lane); slot < HeatSystem::kColour; slot += kRow)
+        store(load(residual + place + slot) / load(diagonal + slot), step + place + slot);
   });
   relax_reds(step_, false);
   // Now only black cells have a residual: the flow from the red cells. A coarse cell lies in one brick, so no two
@@ -181,27 +197,28 @@ HeatSolver::Sums HeatSolver::precondition() {
   std::fill(cycle_->b.begin(), cycle_->b.end(), 0.0f);
   for_bricks([&](std::int64_t brick) {
     const std::int32_t* parent = &coarse_.parent_of_black[brick * HeatSystem::kColour];
-    gather<false>(brick, red_, [&](int lane, std::int64_t place, const Four& flow) {
+    float* b = cycle_->b.data();
+    gather<false>(brick, red_, [=](int lane, int slot, std::int64_t, const Four flow) {
       for (int k = 0; k < kRow; ++k)
-        if (const std::int32_t to = parent[place % HeatSystem::kColour + k]; to >= 0)
-          cycle_->b[std::int64_t{to} * lanes_ + lane] += flow[k];
+        if (const std::int32_t to = parent[slot + k]; to >= 0) b[std::int64_t{to} * lanes + lane] += flow[k];
     });
   });
-  const ZeroedVector<float>& correction = cycle_->run();
+  const float* correction = cycle_->run().data();
   for_bricks([&](std::int64_t brick) {
     const std::int32_t* parent = &coarse_.parent_of_black[brick * HeatSystem::kColour];
+    float* here = step + at(brick, 0);
     for (int slot = 0; slot < HeatSystem::kColour; ++slot)
       if (const std::int32_t from = parent[slot]; from >= 0)
-        for (int lane = 0; lane < lanes_; ++lane)
-          step_[at(brick, lane) + slot] += correction[std::int64_t{from} * lanes_ + lane];
+        for (int lane = 0; lane < lanes; ++lane)
+          here[lane * HeatSystem::kColour + slot] += correction[std::int64_t{from} * lanes + lane];
   });
   relax_reds(step_, false);
   return sum_over_bricks([&](std::int64_t brick, Sums& sums) {
-    gather<false>(brick, red_, [&](int lane, std::int64_t place, const Four& flow) {
-      const Four residual = load(&residual_[place]);
-      const Four step = (residual + flow) / load(diagonal_of(brick) + place % HeatSystem::kColour);
-      store(step, &step_[place]);
-      for (int k = 0; k < kRow; ++k) sums[lane] += double(residual[k]) * step[k];
+    const float* diagonal = diagonal_of_blacks(brick);
+    gather<false>(brick, red_, [&, residual, step, diagonal](int lane, int slot, std::int64_t place, const Four flow) {
+      const Four left = load(residual + place), stepped = (left + flow) / load(diagonal + slot);
+      store(stepped, step + place);
+      sums[lane] = plus_product(sums[lane], left, stepped);
     });
   });
 }
@@ -211,12 +228,12 @@ HeatSolver::Sums HeatSolver::precondition() {
 HeatSolver::Sums HeatSolver::apply() {
   relax_reds(search_, false);
   return sum_over_bricks([&](std::int64_t brick, Sums& sums) {
-    const float* diagonal = &system_.diagonal[brick * HeatSystem::kSlots + HeatSystem::kColour];
-    gather<false>(brick, red_, [&](int lane, std::int64_t place, const Four& flow) {
-      const Four search = load(&search_[place]);
-      const Four step = load(diagonal + place % HeatSystem::kColour) * search - flow;
-      store(step, &step_[place]);
-      for (int k = 0; k < kRow; ++k) sums[lane] += double(search[k]) * step[k];
+    const float *diagonal = diagonal_of_blacks(brick), *search = search_.data();
+    float* step = step_.data();
+    gather<false>(brick, red_, [&, search, step, diagonal](int lane, int slot, std::int64_t place, const Four flow) {
+      const Four searched = load(search + place), stepped = load(diagonal + slot) * searched - flow;
+      store(stepped, step + place);
+      sums[lane] = plus_product(sums[lane], searched, stepped);
     });
   });
 }

@@ -124,6 +124,9 @@ class HeatSolver {
   using Factors = std::array<float, Multigrid::kMostLanes>;
 
   std::int64_t at(std::int64_t brick, int lane) const { return (brick * lanes_ + lane) * HeatSystem::kColour; }
+  const float* diagonal_of_blacks(std::int64_t brick) const {
+    return &system_.diagonal[brick * HeatSystem::kSlots + HeatSystem::kColour];
+  }
   template <class Body>
   void for_bricks(const Body& body) const;
   template <class Body>
