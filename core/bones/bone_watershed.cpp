@@ -79,6 +79,7 @@ class LabelWalls {
     for (size_t label = 0; label < kinds.size(); ++label)
       if (2 * bone_faces[label] > faces[label]) plain_[label] = 0;
   }
+  bool may_part(Label label) const { return plain_[label]; }
   bool between(Label a, Label b) const { return a != b && plain_[a] && plain_[b]; }
 
  private:
@@ -94,44 +95,90 @@ void BoneGraph::resize(std::int64_t count) {
   want_large_pages(neighbour.data(), count * static_cast<std::int64_t>(sizeof(neighbour[0])));
 }
 
-BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
-  // Each brick (block of 8^3 voxels) gets a bit mask of its bone voxels. Counting bits gives the graph index of a
-  // voxel.
-  const auto bricks = std::ssize(tissue.bricks());
-  std::vector<TissueVoxels::Brick> bone(bricks);
-  LabelSet bone_labels(kinds.size());
-  std::transform(kinds.begin(), kinds.end(), bone_labels.begin(), is_bone);
-  parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t b = begin; b < end; ++b) {
-      bone[b] = {tissue.bricks()[b].corner, 0, {}};
-      tissue.for_each_of(b, volume, bone_labels, [&](std::int64_t, const glm::ivec3& v) {
-        bone[b].mask[v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
-      });
-      for (int z = 1; z < TissueVoxels::kBrick; ++z)
-        bone[b].below[z] = static_cast<std::uint16_t>(bone[b].below[z - 1] + std::popcount(bone[b].mask[z - 1]));
-    }
-  });
-  std::int64_t size = 0;
-  for (TissueVoxels::Brick& brick : bone) brick.first = std::exchange(size, size + brick.count());
+namespace {
+// The bone voxels of a volume as bit masks of its bricks (blocks of 8^3 voxels). Counting bits gives the index of a
+// voxel in the graph.
+class BoneMasks {
+ public:
+  //   bone  labels of bone tissue
+  BoneMasks(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& bone)
+      : grid_(volume.grid),
+        tissue_(tissue),
+        bricks_(tissue.bricks().size()) {
+    parallel_for(std::ssize(bricks_), kBricks, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t b = begin; b < end; ++b) {
+        bricks_[b] = {tissue.bricks()[b].corner, 0, {}};
+        auto& [corner, first, mask, below] = bricks_[b];
+        tissue.for_each_of(b, volume, bone, [&](std::int64_t, const glm::ivec3& v) {
+          mask[v.z & 7] |= std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7));
+        });
+        for (int z = 1; z < TissueVoxels::kBrick; ++z)
+          below[z] = static_cast<std::uint16_t>(below[z - 1] + std::popcount(mask[z - 1]));
+      }
+    });
+    for (TissueVoxels::Brick& brick : bricks_) brick.first = std::exchange(size_, size_ + brick.count());
+  }
 
+  std::int64_t size() const { return size_; }
+  std::int64_t first_of(std::int64_t brick) const { return bricks_[brick].first; }
+
+  // Returns the 26 neighbours of a voxel in the order of kOffsets.
+  std::array<std::int32_t, 26> neighbours_of(const glm::ivec3& voxel) const {
+    std::array<std::int32_t, 27> block;
+    for (int row = 0; row < 9; ++row) find_row(voxel + glm::ivec3(0, row % 3 - 1, row / 3 - 1), &block[3 * row]);
+    std::array<std::int32_t, 26> neighbours;
+    std::copy_n(block.begin(), 13, neighbours.begin());
+    std::copy_n(block.begin() + 14, 13, neighbours.begin() + 13);  // the voxel itself is left out
+    return neighbours;
+  }
+
+ private:
+  // Finds three voxels in a row along x.
+  void find_row(const glm::ivec3& middle, std::int32_t* found) const {
+    const int x = middle.x & 7, z = middle.z & 7, lowest = x - 1 + 8 * (middle.y & 7);
+    if (x == 0 || x == 7 || !grid_.contains(middle) || middle.x + 1 == grid_.size.x) {
+      for (int k = 0; k < 3; ++k) found[k] = find(middle + glm::ivec3(k - 1, 0, 0));
+      return;
+    }
+    const int at = tissue_.brick_at(middle);
+    const std::uint64_t mask = at < 0 ? 0 : bricks_[at].mask[z], three = mask >> lowest & 7;
+    if (three == 0) return static_cast<void>(std::fill_n(found, 3, kNotBone));
+    const std::uint64_t lower = mask & ((std::uint64_t{1} << lowest) - 1);
+    auto next = static_cast<std::int32_t>(bricks_[at].first + bricks_[at].below[z] + std::popcount(lower));
+    for (int k = 0; k < 3; ++k) found[k] = three >> k & 1 ? next++ : kNotBone;
+  }
+  std::int32_t find(const glm::ivec3& voxel) const {
+    if (!grid_.contains(voxel)) return kOutside;
+    const int at = tissue_.brick_at(voxel);
+    return at < 0 ? kNotBone : static_cast<std::int32_t>(TissueVoxels::index_in(bricks_[at], voxel & 7));
+  }
+
+  const Grid& grid_;
+  const TissueVoxels& tissue_;
+  std::vector<TissueVoxels::Brick> bricks_;
+  std::int64_t size_ = 0;
+};
+}  // namespace
+
+BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds) {
+  LabelSet bone(kinds.size());
+  std::transform(kinds.begin(), kinds.end(), bone.begin(), is_bone);
+  const BoneMasks masks(volume, tissue, bone);
   BoneGraph graph;
-  graph.resize(size);
+  graph.resize(masks.size());
   const LabelWalls walls(volume, tissue, kinds);
-  // Returns the neighbour w of a voxel of brick b with a label.
-  const auto neighbour = [&](std::int64_t b, Label label, const glm::ivec3& w) {
-    const bool is_in_brick = (w >> 3) == (bone[b].corner >> 3);
-    if (!is_in_brick && !volume.grid.contains(w)) return kOutside;
-    const std::int64_t brick = is_in_brick ? b : tissue.brick_at(w);
-    const auto found = brick < 0 ? kNotBone : static_cast<std::int32_t>(TissueVoxels::index_in(bone[brick], w & 7));
-    return found >= 0 && walls.between(label, volume.at(w)) ? kNotBone : found;
+  const auto part = [&](const glm::ivec3& v, std::array<std::int32_t, 26>& neighbours) {
+    for (int k = 0; k < 26; ++k)
+      if (neighbours[k] >= 0 && walls.between(volume.at(v), volume.at(v + kOffsets[k]))) neighbours[k] = kNotBone;
   };
-  parallel_for(bricks, kBricks, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(std::ssize(tissue.bricks()), kBricks, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t b = begin; b < end; ++b) {
-      std::int64_t i = bone[b].first;
-      tissue.for_each_of(b, volume, bone_labels, [&](std::int64_t place, const glm::ivec3& v) {
+      std::int64_t i = masks.first_of(b);
+      tissue.for_each_of(b, volume, bone, [&](std::int64_t place, const glm::ivec3& v) {
         graph.place[i] = place;
         graph.voxel[i] = v;
-        for (int k = 0; k < 26; ++k) graph.neighbour[i][k] = neighbour(b, volume.at(v), v + kOffsets[k]);
+        graph.neighbour[i] = masks.neighbours_of(v);
+        if (walls.may_part(volume.at(v))) part(v, graph.neighbour[i]);
         ++i;
       });
     }
