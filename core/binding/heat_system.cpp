@@ -113,40 +113,50 @@ HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
 // temperatures are `other`.
 template <bool kRed, class Body>
 void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body& body) const {
-  constexpr std::int64_t kLane = HeatSystem::kColour;  // values of a right-hand side in a brick
+  constexpr std::int64_t kColour = HeatSystem::kColour;
+  // The neighbours of a row towards -y, +y, -z and +z are this many rows away, in the brick and beyond its sides.
+  constexpr int kWithin[4] = {-1, 1, -8, 8}, kBeyond[4] = {7, -7, 56, -56};
   const auto& beside = system_.beside[brick];
-  const auto conductances = [&](std::int64_t of_brick, int direction, int row) {
-    return &system_.conductance[(of_brick * 6 + direction) * HeatSystem::kColour + kRow * row];
+  const int lanes = lanes_;
+  const float *values = other.data(), *conductances = system_.conductance.data();
+  const auto conductances_of = [](std::int64_t of_brick, int direction) {
+    return (of_brick * 6 + direction) * kColour;
   };
-  const auto values = [&](std::int64_t of_brick, int row) { return &other[at(of_brick, 0) + kRow * row]; };
+  const std::int64_t own = at(brick, 0), lower_x = at(beside[0], 0), higher_x = at(beside[1], 0);
+  std::int64_t within[4], beyond[4], conductance_within[4], conductance_beyond[4];
+  for (int k = 0; k < 4; ++k) {
+    within[k] = own + kRow * kWithin[k];
+    beyond[k] = at(beside[2 + k], 0) + kRow * kBeyond[k];
+    conductance_within[k] = conductances_of(brick, 2 + (k ^ 1)) + kRow * kWithin[k];
+    conductance_beyond[k] = conductances_of(beside[2 + k], 2 + (k ^ 1)) + kRow * kBeyond[k];
+  }
   for (int row = 0; row < 64; ++row) {
-    const int y = row & 7, z = row >> 3;
+    const int y = row & 7, z = row >> 3, slot = kRow * row;
+    const bool is_beyond[4] = {y == 0, y == 7, z == 0, z == 7};
     // A row of the other colour is shifted by one voxel along x. If y + z is even, the red row has the lower first
     // voxel.
     const bool own_first = (((y + z) & 1) == 0) == kRed;
-    const std::int64_t brick_of[4] = {y > 0 ? brick : beside[2], y < 7 ? brick : beside[3], z > 0 ? brick : beside[4],
-                                      z < 7 ? brick : beside[5]};
-    const int row_of[4] = {y > 0 ? row - 1 : row + 7, y < 7 ? row + 1 : row - 7, z > 0 ? row - 8 : row + 56,
-                           z < 7 ? row + 8 : row - 56};
     Four g[6];
     if constexpr (kRed) {
-      for (int direction = 0; direction < 6; ++direction) g[direction] = load(conductances(brick, direction, row));
+      for (int direction = 0; direction < 6; ++direction)
+        g[direction] = load(conductances + conductances_of(brick, direction) + slot);
     } else {
-      g[0] = load(conductances(brick, 1, row));
-      g[1] = load(conductances(brick, 0, row));
-      if (own_first) g[0] = before(conductances(beside[0], 1, row)[kRow - 1], g[0]);
-      else g[1] = after(g[1], *conductances(beside[1], 0, row));
-      for (int k = 0; k < 4; ++k) g[2 + k] = load(conductances(brick_of[k], 2 + (k ^ 1), row_of[k]));
+      g[0] = load(conductances + conductances_of(brick, 1) + slot);
+      g[1] = load(conductances + conductances_of(brick, 0) + slot);
+      if (own_first) g[0] = before(conductances[conductances_of(beside[0], 1) + slot + kRow - 1], g[0]);
+      else g[1] = after(g[1], conductances[conductances_of(beside[1], 0) + slot]);
+      for (int k = 0; k < 4; ++k)
+        g[2 + k] = load(conductances + (is_beyond[k] ? conductance_beyond[k] : conductance_within[k]) + slot);
     }
-    const float *same_row = values(brick, row), *rows[4];
-    const float* beyond = own_first ? values(beside[0], row) + kRow - 1 : values(beside[1], row);
-    for (int k = 0; k < 4; ++k) rows[k] = values(brick_of[k], row_of[k]);
-    for (int lane = 0; lane < lanes_; ++lane) {
-      const Four same = load(same_row + lane * kLane);
-      const float next = beyond[lane * kLane];
-      Four flow = own_first ? g[0] * before(next, same) + g[1] * same : g[0] * same + g[1] * after(same, next);
-      for (int k = 0; k < 4; ++k) flow += g[2 + k] * load(rows[k] + lane * kLane);
-      body(lane, kRow * row, at(brick, lane) + kRow * row, flow);
+    const float* rows[4];
+    for (int k = 0; k < 4; ++k) rows[k] = values + (is_beyond[k] ? beyond[k] : within[k]) + slot;
+    const float* next = values + (own_first ? lower_x + kRow - 1 : higher_x) + slot;
+    for (std::int64_t lane = 0, offset = 0; lane < lanes; ++lane, offset += kColour) {
+      const Four same = load(values + own + slot + offset);
+      Four flow =
+          own_first ? g[0] * before(next[offset], same) + g[1] * same : g[0] * same + g[1] * after(same, next[offset]);
+      for (int k = 0; k < 4; ++k) flow += g[2 + k] * load(rows[k] + offset);
+      body(static_cast<int>(lane), slot, own + slot + offset, flow);
     }
   }
 }
