@@ -115,6 +115,7 @@ void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system
         const int slot = HeatSystem::slot_of(v - system.corners[b]);
         const bool is_red = slot < HeatSystem::kColour;
         float diagonal = 0;
+#pragma GCC unroll 6
         for (int direction = 0; direction < 6; ++direction) {
           const float g = conductance(window, v, here, direction);
           diagonal += g;

@@ -36,10 +36,13 @@ class Coarsening {
       own.slots.push_back(slot);
       for (int direction = 0; direction < 6; ++direction) {
         const glm::ivec3 there = stepped(voxel, direction);
-        steps_[slot][direction] = {HeatSystem::slot_of(there & 7), is_in_brick(there),
-                                   is_in_brick(there) && block_of(there) == block};
-        if (slot < HeatSystem::kColour && steps_[slot][direction].stays_in_block)
-          own.links.push_back(direction * HeatSystem::kColour + slot);
+        const int to = HeatSystem::slot_of(there & 7);
+        const bool is_red = slot < HeatSystem::kColour;
+        steps_[slot][direction] = {static_cast<std::int16_t>(to),
+                                   static_cast<std::int16_t>(is_red ? direction * HeatSystem::kColour + slot
+                                                                    : (direction ^ 1) * HeatSystem::kColour + to),
+                                   is_in_brick(there), is_in_brick(there) && block_of(there) == block};
+        if (is_red && steps_[slot][direction].stays_in_block) own.links.push_back(steps_[slot][direction].link);
       }
     }
   }
@@ -100,28 +103,22 @@ class Coarsening {
     glm::ivec3 place{0};
     std::vector<int> slots, links;
   };
-  // A step from a slot in one of six directions: the slot that it leads to, and whether this slot is in the same brick
-  // and in the same block.
+  // A step from a slot in one of six directions: the slot that it leads to, the index of the link between the two among
+  // the conductances of the red slot's brick, and whether the step stays in the same brick and in the same block.
   struct Step {
-    int slot;
+    std::int16_t slot, link;
     bool stays_in_brick, stays_in_block;
   };
 
   glm::ivec3 block_of(const glm::ivec3& voxel) const { return voxel >> glm::ivec3(halved_); }
-
-  // Returns the brick and slot of the neighbour of a cell.
-  std::pair<std::int64_t, int> neighbour(std::int64_t brick, int slot, int direction) const {
-    const Step& step = steps_[slot][direction];
-    return {step.stays_in_brick ? brick : system_.beside[brick][direction], step.slot};
-  }
-  float conductance(std::int64_t brick, int slot, int direction, const std::pair<std::int64_t, int>& other) const {
-    return slot < HeatSystem::kColour ? system_.conductance_of_red(brick, direction, slot)
-                                      : system_.conductance_of_red(other.first, direction ^ 1, other.second);
+  // Returns the conductances from the red slots of a brick.
+  const float* conductances_of(std::int64_t brick) const {
+    return &system_.conductance[brick * 6 * HeatSystem::kColour];
   }
 
   // Returns true if every slot of the block has a cell and all adjacent cells in the block are linked.
   bool is_whole(std::int64_t brick, const Block& block) const {
-    const float* conductance = &system_.conductance[brick * 6 * HeatSystem::kColour];
+    const float* conductance = conductances_of(brick);
     return std::all_of(block.slots.begin(), block.slots.end(),
                        [&](int slot) { return system_.is_cell(brick, slot); }) &&
            std::all_of(block.links.begin(), block.links.end(), [&](int link) { return conductance[link] > 0; });
@@ -131,6 +128,7 @@ class Coarsening {
   // `parent_` is twice this number, plus the colour of the block.
   void find_pieces(std::int64_t brick) {
     std::int32_t* parent = &parent_[brick * kSlots];
+    const float* conductance = conductances_of(brick);
     std::fill_n(parent, kSlots, -1);
     std::array<int, 8> open;
     std::array<std::int32_t, 2> found{};
@@ -150,9 +148,7 @@ class Coarsening {
         const int slot = open[--waiting];
         for (int direction = 0; direction < 6; ++direction) {
           const Step& step = steps_[slot][direction];
-          if (!step.stays_in_block || parent[step.slot] >= 0 ||
-              !(conductance(brick, slot, direction, {brick, step.slot}) > 0))
-            continue;
+          if (!step.stays_in_block || parent[step.slot] >= 0 || !(conductance[step.link] > 0)) continue;
           parent[step.slot] = piece;
           open[waiting++] = step.slot;
         }
@@ -201,15 +197,15 @@ class Coarsening {
       Row& row = found[parent < graph_.red_count ? parent - first_[brick][0] : count[0] + parent - first_[brick][1]];
       double own = system_.diagonal[brick * kSlots + slot];
       for (int direction = 0; direction < 6; ++direction) {
-        const auto other = neighbour(brick, slot, direction);
-        const float g = conductance(brick, slot, direction, other);
+        const Step& step = steps_[slot][direction];
+        const std::int64_t other = step.stays_in_brick ? brick : system_.beside[brick][direction];
+        const float g = conductances_of(slot < HeatSystem::kColour ? brick : other)[step.link];
         if (!(g > 0)) continue;
         own -= g;
-        const std::int32_t to = parent_[other.first * kSlots + other.second];
-        if (to == parent) continue;
+        if (step.stays_in_block) continue;  // linked cells of one block are of the same piece
         const float across = halved_[direction >> 1] ? g * kCoarseConductance : g;
         row.linked += across;
-        row.add(to, across, direction);
+        row.add(parent_[other * kSlots + step.slot], across, direction);
       }
       row.lost += std::max(own, 0.0);
     }

@@ -31,12 +31,23 @@ glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
 
 namespace {
 
+// Returns a number for each cell that tells in which block it lies.
+std::vector<std::uint64_t> blocks_of(const CellGraph& graph, const glm::i16vec3& halved) {
+  std::vector<std::uint64_t> blocks(graph.size());
+  parallel_for(graph.size(), 16 * kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const glm::u16vec3 block(graph.position[i] >> halved);
+      blocks[i] = block.x | std::uint64_t{block.y} << 16 | std::uint64_t{block.z} << 32;
+    }
+  });
+  return blocks;
+}
+
 // Calls body(cell) for each cell of the connected set of cells that contains `seed` and lies in one block.
 //   is_open  a function (cell) -> whether the search may enter this cell; body must close the cells that it gets
 template <class IsOpen, class Body>
-void search_block(const CellGraph& graph, const glm::i16vec3& halved, std::int32_t seed,
+void search_block(const CellGraph& graph, const std::vector<std::uint64_t>& block, std::int32_t seed,
                   std::vector<std::int32_t>& open, const IsOpen& is_open, const Body& body) {
-  const glm::i16vec3 block = graph.position[seed] >> halved;
   open.assign(1, seed);
   body(seed);
   while (!open.empty()) {
@@ -44,7 +55,7 @@ void search_block(const CellGraph& graph, const glm::i16vec3& halved, std::int32
     open.pop_back();
     for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k) {
       const std::int32_t j = graph.neighbour[k];
-      if ((graph.position[j] >> halved) != block || !is_open(j)) continue;
+      if (block[j] != block[seed] || !is_open(j)) continue;
       body(j);
       open.push_back(j);
     }
@@ -56,11 +67,10 @@ void search_block(const CellGraph& graph, const glm::i16vec3& halved, std::int32
 // result for all its cells if it is the first. So no two threads write to the same cell.
 std::vector<std::int32_t> first_of_sets(const CellGraph& graph, const glm::i16vec3& halved, LoneCells lone) {
   std::vector<std::int32_t> first(graph.size(), -1);
+  const std::vector<std::uint64_t> block = blocks_of(graph, halved);
   const auto may_be_first = [&](std::int32_t i) {
     for (std::int32_t k = graph.first[i]; k < graph.first[i + 1]; ++k)
-      if (const std::int32_t j = graph.neighbour[k];
-          j < i && (graph.position[j] >> halved) == (graph.position[i] >> halved))
-        return false;
+      if (const std::int32_t j = graph.neighbour[k]; j < i && block[j] == block[i]) return false;
     return lone == LoneCells::Keep || graph.first[i] < graph.first[i + 1];
   };
   parallel_for(graph.size(), 16 * kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -69,7 +79,7 @@ std::vector<std::int32_t> first_of_sets(const CellGraph& graph, const glm::i16ve
       if (!may_be_first(seed)) continue;
       set.clear();
       search_block(
-          graph, halved, seed, open, [&](std::int32_t j) { return std::find(set.begin(), set.end(), j) == set.end(); },
+          graph, block, seed, open, [&](std::int32_t j) { return std::find(set.begin(), set.end(), j) == set.end(); },
           [&](std::int32_t j) { set.push_back(j); });
       if (*std::min_element(set.begin(), set.end()) < seed) continue;
       for (const std::int32_t j : set) first[j] = seed;
