@@ -297,6 +297,7 @@ void HeatGraph::link_cells(std::int64_t brick, Window& window, const std::vector
   };
   for_soft(brick, window, [&](const glm::ivec3& v, std::int64_t place, int here) {
     const std::int32_t cell = cell_of[place];
+#pragma GCC unroll 6
     for (int direction = 0; direction < 6; ++direction) {
       const int there = here + Window::kTo[direction];
       const std::int32_t other = window.place[there];

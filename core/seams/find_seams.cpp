@@ -208,12 +208,18 @@ class SeamFinder {
     return true;
   }
 
-  void find_borders_of(std::int64_t brick, std::vector<Border>& found) const {
-    tissue_.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
+  // Appends the voxels of a brick that share a face with a voxel of another bone.
+  void find_borders_of(std::int64_t at, std::vector<Border>& found) const {
+    const TissueVoxels::Brick& brick = tissue_.bricks()[at];
+    tissue_.for_each(at, at + 1, [&](std::int64_t place, const glm::ivec3& v) {
       for (int direction = 0; direction < 6; ++direction) {
         glm::ivec3 w = v;
         w[direction >> 1] += direction & 1 ? 1 : -1;
-        const std::int64_t there = volume_.grid.contains(w) ? tissue_.index_of(w) : -1;
+        const glm::ivec3 in = w - brick.corner;
+        const bool is_in_brick = ((in.x | in.y | in.z) & ~7) == 0;
+        const std::int64_t there = is_in_brick                ? TissueVoxels::index_in(brick, in)
+                                   : volume_.grid.contains(w) ? tissue_.index_of(w)
+                                                              : -1;
         if (there < 0 || bone_[there] == bone_[place]) continue;
         found.push_back({v, place});
         break;

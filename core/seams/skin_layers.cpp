@@ -84,11 +84,12 @@ std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& ti
                                const std::vector<TissueKind>& kind) {
   constexpr std::int64_t kGrain = 64;  // bricks per block of a parallel loop
   const SkinCaster caster(volume, kind);
+  LabelSet skin(kind.size());
+  std::transform(kind.begin(), kind.end(), skin.begin(), [](TissueKind k) { return k == TissueKind::Skin; });
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<std::vector<SkinRay>> found((bricks + kGrain - 1) / kGrain);
   parallel_for(bricks, kGrain, [&](std::int64_t begin, std::int64_t end) {
-    tissue.for_each(begin, end, [&](std::int64_t place, const glm::ivec3& v) {
-      if (kind[volume.at(v)] != TissueKind::Skin) return;
+    const auto cast_from = [&](std::int64_t place, const glm::ivec3& v) {
       for (int direction = 0; direction < 6; ++direction) {
         glm::ivec3 w = v;
         w[direction >> 1] += direction & 1 ? 1 : -1;
@@ -98,7 +99,8 @@ std::vector<SkinRay> skin_rays(const LabelVolume& volume, const TissueVoxels& ti
           found[begin / kGrain].push_back(*ray);
         }
       }
-    });
+    };
+    for (auto brick = begin; brick < end; ++brick) tissue.for_each_of(brick, volume, skin, cast_from);
   });
   std::vector<SkinRay> rays;
   for (const std::vector<SkinRay>& some : found) rays.insert(rays.end(), some.begin(), some.end());
