@@ -67,6 +67,7 @@ struct BrickWindow {
   //   to  where the voxel of bit 0 goes, relative to the lowest corner of the window's brick
   std::uint64_t look_at(const Source& from, const TissueVoxels::Brick& brick, int z, std::uint64_t which,
                         const glm::ivec3& to) {
+    if (!(brick.mask[z] & which)) return 0;
     const glm::ivec3 corner = brick.corner + glm::ivec3(0, 0, z);
     const Label* label = &from.volume.voxels[from.volume.grid.index(corner)];
     const std::int64_t row = from.volume.grid.size.x;

@@ -146,10 +146,10 @@ void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body&
       if (own_first) g[0] = before(conductances[conductances_of(beside[0], 1) + slot + kRow - 1], g[0]);
       else g[1] = after(g[1], conductances[conductances_of(beside[1], 0) + slot]);
       for (int k = 0; k < 4; ++k)
-        g[2 + k] = load(conductances + (is_beyond[k] ? conductance_beyond[k] : conductance_within[k]) + slot);
+        g[2 + k] = load(conductances + ((is_beyond[k] ? conductance_beyond[k] : conductance_within[k]) + slot));
     }
     const float* rows[4];
-    for (int k = 0; k < 4; ++k) rows[k] = values + (is_beyond[k] ? beyond[k] : within[k]) + slot;
+    for (int k = 0; k < 4; ++k) rows[k] = values + ((is_beyond[k] ? beyond[k] : within[k]) + slot);
     const float* next = values + (own_first ? lower_x + kRow - 1 : higher_x) + slot;
     for (std::int64_t lane = 0, offset = 0; lane < lanes; ++lane, offset += kColour) {
       const Four same = load(values + own + slot + offset);

@@ -21,7 +21,7 @@ namespace limber {
 namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
-constexpr int kBrickVoxels = kBrick * kBrick * kBrick;
+constexpr int kBrickVoxels = TissueDepth::kBrickVoxels;
 constexpr int kRows = 4;  // number of rows of a brick, eight voxels each, whose lines are searched at once
 
 // One voxel of each of the neighbouring lines that are searched at once.

@@ -24,8 +24,11 @@ class TissueDepth {
  public:
   // Keeps a reference to `tissue`, which must outlive this object.
   //   spacing     size of a voxel, mm
-  //   most_steps  the squared depth, in squared edges of voxels, above which floats are used for cubes too
+  //   most_steps  the squared depth, in squared edges of voxels, above which depth is computed again as floats, for
+  //               cubes too; at most 65 534
   TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing, int most_steps = 65534);
+
+  static constexpr int kBrickVoxels = 512;
 
   // Returns the depth of a voxel's centre in mm; 0 in air and outside the grid.
   float at_voxel(const glm::ivec3& voxel) const {
@@ -40,7 +43,6 @@ class TissueDepth {
   double operator()(const glm::dvec3& rest) const;
 
  private:
-  static constexpr int kBrickVoxels = 512;
   // Computes squared depths, in the square of the unit of `spacing`.
   template <class Value>
   void measure(ZeroedVector<Value>& squared, const glm::dvec3& spacing) const;

@@ -43,7 +43,7 @@ PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_
 // The posed cells of a brick that bends. Cells share corners; near a seam, each has its own corners.
 class BentBrick {
  public:
-  // Writes the brick's corners into `room`, which must outlive this object.
+  // Writes the brick's corners into `room`, unless each voxel has its own. `room` must outlive this object.
   BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lowest_(lattice.tissue().bricks()[brick].corner) {
     if (lattice.is_split(brick))

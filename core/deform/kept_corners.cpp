@@ -16,21 +16,22 @@ constexpr std::int64_t kCorners = std::tuple_size_v<KeptCorners::Corners>;
 
 }  // namespace
 
-KeptCorners::KeptCorners(const std::vector<int>& only_bone) {
+KeptCorners::KeptCorners(const std::vector<int>& only_bone, std::int64_t most_bytes) {
+  const std::int64_t most_slots = most_bytes / (kCorners * std::int64_t{sizeof(std::uint64_t)});
   slot_.assign(only_bone.size(), -1);
   std::int32_t slots = 0;
   for (std::size_t brick = 0; brick < only_bone.size(); ++brick)
-    if (only_bone[brick] < 0) slot_[brick] = slots++;
-  top_.resize(slots);
+    if (only_bone[brick] < 0 && slots < most_slots) slot_[brick] = slots++;
+  top_.assign(slots, INT32_MIN);
   is_kept_.resize(slots);
   distances_.resize(slots * kCorners);
 }
 
-// Corners that belong to no tissue are not set. What is kept of them is meaningless too.
 void KeptCorners::keep(std::int64_t brick, const FixedBox& box, const Corners& corners) {
   for (int axis = 0; axis < 3; ++axis)
     if (std::int64_t{box.high[axis]} - box.low[axis] > kMask) return;
   const std::int32_t slot = slot_[brick];
+  if (slot < 0) return;
   std::uint64_t* kept = &distances_[slot * kCorners];
   const auto distance = [](int to, int from) {
     return std::uint64_t{(static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from)) & kMask};
@@ -44,7 +45,7 @@ void KeptCorners::keep(std::int64_t brick, const FixedBox& box, const Corners& c
 }
 
 bool KeptCorners::read(std::int64_t brick, const FixedBox& box, Corners& corners) const {
-  if (slot_.empty() || slot_[brick] < 0 || !is_kept_[slot_[brick]]) return false;
+  if (slot_[brick] < 0 || !is_kept_[slot_[brick]]) return false;
   const std::uint64_t* kept = &distances_[slot_[brick] * kCorners];
   for (std::int64_t c = 0; c < kCorners; ++c)
     corners[c] = box.low + FixedPoint(kept[c] & kMask, kept[c] >> kBits & kMask, kept[c] >> (2 * kBits));

@@ -9,11 +9,13 @@
 #include "core/deform/brick_motions.h"
 #include "core/deform/settled_flesh.h"
 #include "core/deform/split_corners.h"
+#include "core/platform/memory.h"
 
 namespace limber {
 
 namespace {
 
+constexpr int kShareForCorners = 4;  // corners of bending bricks are kept in at most this part of the free memory
 constexpr int kSeveral = BrickMotions::kSeveral;
 
 bool is_full(const TissueVoxels::Brick& brick) {
@@ -68,7 +70,7 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   BrickMotions brick_motions(tissue, weights, posed_from_rest);
   moves_as_ = std::move(brick_motions.moves_as);
   rigid_ = std::move(brick_motions.around);
-  kept_ = KeptCorners(rigid_);
+  kept_ = KeptCorners(rigid_, available_memory() / kShareForCorners);
   if (count == 0) return;
   output_.base = base(posed_from_rest[weights.chunk(0).front().bone[0]]);
   poser_.set_output(output_);
@@ -76,7 +78,7 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   progress.update("pose", 0);
   parallel_for(count, 16, [&](std::int64_t begin, std::int64_t end) {
     if (progress.cancelled()) throw Cancelled();
-    Corners room;
+    Corners room{};
     for (auto brick = begin; brick < end; ++brick) {
       const BrickBounds posed = compute(brick, room);
       const bool bends = rigid_[brick] == kSeveral;
@@ -125,7 +127,7 @@ FixedBox PosedLattice::split_bounds(std::int64_t brick) const {
 
 const PosedLattice::Corners& PosedLattice::corners(std::int64_t brick, Corners& room) const {
   if (rigid_[brick] == kSeveral) {
-    if (split_[brick] || !kept_.read(brick, bounds_[brick], room)) compute(brick, room);
+    if (!kept_.read(brick, bounds_[brick], room)) compute(brick, room);
     return room;
   }
   const TissueVoxels::Brick& cells = tissue_->bricks()[brick];

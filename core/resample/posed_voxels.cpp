@@ -108,7 +108,7 @@ class PosedVoxels {
         [&](const TileCounts& tile) {
           if (const int next = tile.range.low.z - output_.range.low.z; !tile.range.empty() && next != low) {
             unsure_ = drop_covered(tiles_, under_skin_, unsure_, low);
-            forget_corners_below(tile.range.low.z);
+            forget_corners_below(tile.range.high.z + 1);
             low = next;
           }
           add(tile);

@@ -40,9 +40,10 @@ bool SparseBytes::begin_span() {
   if (packed_.size() - at_ < sizeof numbers) return false;
   std::memcpy(numbers, &packed_[at_], sizeof numbers);
   at_ += sizeof numbers;
+  if (numbers[1] > packed_.size() - at_) return false;
   zeros_ = numbers[0];
   others_ = numbers[1];
-  return others_ <= packed_.size() - at_;
+  return true;
 }
 
 bool SparseBytes::read(char* to, std::size_t size) {

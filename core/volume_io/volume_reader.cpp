@@ -262,7 +262,7 @@ class ReaderVoxels final : public VoxelSource {
       FileBytes plain;
       talk_.require(bytes.size() == sizeof plain && opened_);
       std::memcpy(&plain, bytes.data(), sizeof plain);
-      talk_.require(plain.offset >= 0 && plain.bytes <= opened_->size() &&
+      talk_.require(plain.offset >= 0 && plain.bytes > 0 && plain.bytes <= opened_->size() &&
                     plain.offset <= opened_->size() - plain.bytes);
       count = plain.bytes;
       plain_at_ = plain.offset;

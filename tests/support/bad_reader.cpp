@@ -92,7 +92,9 @@ class SparseLie final : public VoxelSource {
   void read(void*, std::size_t) override {
     say(Message::Voxels, message_.size());
     if (::write(STDOUT_FILENO, message_.data(), message_.size()) < 0) ::_exit(1);
-    say(Message::End, 0);
+    const std::string no_warnings = bytes_of(std::vector<std::string>{});
+    say(Message::End, no_warnings.size());
+    if (::write(STDOUT_FILENO, no_warnings.data(), no_warnings.size()) < 0) ::_exit(1);
     ::_exit(0);
   }
   std::vector<std::string> finish() override { return {}; }
@@ -144,13 +146,13 @@ OpenedVolume misbehave(std::shared_ptr<VolumeFiles> files, Holding holding) {
   if (what == "early end") opened.voxels = std::make_unique<EarlyEnd>();
   if (what == "late crash") opened.voxels = std::make_unique<Crash>();
   constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
-  const std::map<std::string, FileBytes> lies{{"plain beyond", {1 << 20, 8}},
-                                              {"plain overflow", {kMost - 4, 8}},
-                                              {"plain before", {-8, 8}},
-                                              {"plain long", {0, kMost}},
-                                              {"plain negative", {0, -8}}};
+  const std::map<std::string, FileBytes> lies{
+      {"plain beyond", {1 << 20, 8}}, {"plain overflow", {kMost - 4, 8}},
+      {"plain before", {-8, 8}},      {"plain long", {0, kMost}},
+      {"plain negative", {0, -8}},    {"plain most negative", {0, std::numeric_limits<std::int64_t>::min()}}};
   if (const auto lie = lies.find(what); lie != lies.end()) opened.voxels = std::make_unique<PlainLie>(lie->second);
-  const std::map<std::string, std::string> sparse{{"sparse short", "1234"},
+  const std::map<std::string, std::string> sparse{{"sparse right", sparse_message(8, 3, 5, "12345")},
+                                                  {"sparse short", "1234"},
                                                   {"sparse none", std::string(8, '\0')},
                                                   {"sparse few", sparse_message(8, 7, 0, "")},
                                                   {"sparse beyond", sparse_message(8, 0, 0xffffffff, "12345678")},

@@ -44,6 +44,29 @@ TEST_CASE("kept corners: those of bricks that bend are read back exactly, unless
   CHECK_FALSE(kept.read(3, large.box, read));
 }
 
+TEST_CASE("kept corners: no more are kept than fit into the memory") {
+  std::mt19937 random(10);
+  const Brick brick(random, FixedPoint(0), 1000);
+  KeptCorners kept({-1, -1, 2, -1, -1}, 3 * 5832 + 100);
+  KeptCorners::Corners read;
+  int count = 0;
+  for (const int b : {0, 1, 3, 4}) {
+    kept.keep(b, brick.box, brick.corners);
+    count += kept.read(b, brick.box, read);
+  }
+  CHECK(count == 3);
+}
+
+TEST_CASE("kept corners: a brick that is not kept does not hold back its group, below zero too") {
+  std::mt19937 random(11);
+  KeptCorners kept({-1, -1});
+  const Brick low(random, FixedPoint(-40 * kFixedOne), 1000);
+  kept.keep(0, low.box, low.corners);
+  kept.forget_below(-20);
+  KeptCorners::Corners read;
+  CHECK_FALSE(kept.read(0, low.box, read));
+}
+
 TEST_CASE("kept corners: they are forgotten only where all bricks of a group lie below") {
   std::mt19937 random(9);
   constexpr int kBricks = 200;

@@ -166,16 +166,17 @@ TEST_CASE("volume reader: one that crashes, leaves or says what it must not is o
   for (const char* what : {"crash", "abort", "late crash"})
     CHECK(outcome(what).find("made its reader crash") != std::string::npos);
   CHECK(outcome("leave").find("give up (exit code 7)") != std::string::npos);
-  for (const char* what :
-       {"long message",   "unknown message", "no header",    "wrong index",    "negative grid", "huge grid",
-        "no spacing",     "unknown type",    "unknown kind", "early end",      "other file",    "plain beyond",
-        "plain overflow", "plain before",    "plain long",   "plain negative", "sparse short",  "sparse none",
-        "sparse few",     "sparse beyond",   "sparse long",  "sparse after",   "sparse promise"}) {
+  for (const char* what : {"long message",   "unknown message",     "no header",      "wrong index",   "negative grid",
+                           "huge grid",      "no spacing",          "unknown type",   "unknown kind",  "early end",
+                           "other file",     "plain beyond",        "plain overflow", "plain before",  "plain long",
+                           "plain negative", "plain most negative", "sparse short",   "sparse none",   "sparse few",
+                           "sparse beyond",  "sparse long",         "sparse after",   "sparse promise"}) {
     CAPTURE(what);
     CHECK(outcome(what) != "");
   }
   CHECK(outcome("other file").find("lies outside the header's folder") != std::string::npos);
   CHECK(outcome("nothing bad") == "");
+  CHECK(outcome("sparse right") == "");
 }
 
 TEST_CASE(
