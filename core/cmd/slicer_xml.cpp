@@ -57,6 +57,7 @@ const std::map<std::string, Element>& outputs() {
       {"phantom --output", {"directory", ""}},
       {"batch --output", {"directory", ""}},
       {"experiment --output", {"directory", ""}},
+      {"guide --html", {"directory", ""}},
       {"weights --bender-dir", {"directory", ""}},
       {"resample --field", kField},
       {"resample --jacobian", kScalars},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/text_viewer.h"
+#include "editor/guide/guide_reader.h"
 #include "editor/screen/help_dialog.h"
 #include "editor/ui/icons.h"
 
@@ -8,8 +9,9 @@ namespace limber::editor {
 
 std::vector<Operator> help_operators() {
   return {
-      {"help.guide", "User guide", icon::kHelp, "Help", "Read how to get from a volume to a posed volume.",
-       [](Editor& e) { e.open_dialog(open_document("User guide", "docs/guide.md")); }},
+      {"help.guide", "User guide", icon::kHelp, "Help",
+       "Read how each task is done, from opening a volume to a result; a search finds every page.",
+       [](Editor& e) { e.open_dialog(open_guide()); }},
       {"help.new", "What is new", icon::kInfo, "Help", "Read what is new in this version.",
        [](Editor& e) { e.open_dialog(open_document("What is new", "docs/new.md")); }},
       {"help.keys", "Keys", icon::kKeyboard, "Help", "List every key and what it does.",

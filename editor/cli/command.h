@@ -7,6 +7,7 @@
 namespace limber::editor {
 
 void add_editor(CLI::App& app);
+void add_guide(CLI::App& app);
 void add_render(CLI::App& app);
 
 }  // namespace limber::editor

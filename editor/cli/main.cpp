@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   limber::cmd::add_commands(app, limber::cmd::kProgramCommit);
   limber::cmd::add_experiment(app, limber::cmd::kProgramCommit, limber::editor::start_pictures);
   limber::editor::add_editor(app);
+  limber::editor::add_guide(app);
   limber::editor::add_render(app);
   app.callback([&] {
     if (app.get_subcommands().empty()) limber::editor::run_editor({.files = {files.begin(), files.end()}});

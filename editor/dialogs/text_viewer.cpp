@@ -7,6 +7,7 @@
 #include "core/paint/brush_rule.h"
 #include "core/resample/deformation_method.h"
 #include "core/volume_io/volume_format.h"
+#include "editor/dialogs/block_drawing.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/ui/asset_path.h"
 #include "editor/ui/markdown.h"
@@ -23,7 +24,7 @@ constexpr float kWidth = 760, kHeight = 600, kChapters = 200, kMargin = 22;
 std::string with_tables(std::string text) {
   std::string brushes;
   for (const BrushRule& rule : brush_rules())
-    brushes += (brushes.empty() ? "" : " ") + rule.name + ": " + rule.description;
+    brushes += (brushes.empty() ? "- " : "\n- ") + rule.name + ": " + rule.description;
   for (const auto& [id, words] : {std::pair<std::string, std::string>{"{table.volume_formats}", readable_formats()},
                                   {"{table.volume_endings}", writable_endings()},
                                   {"{table.exporters}", exporter_endings()},
@@ -111,55 +112,10 @@ class Reader final : public Dialog {
         }
         if (seen_chapter_ < 0 || y < rect.low.y + rect.height() / 3) seen_chapter_ = b;
       }
-      y = draw_block(editor, block, left, right, y) + look.px(block.kind == Block::Kind::Point ? 5 : 10);
+      BlockPlace place{left, right, "link " + std::to_string(b)};
+      y = draw_block(editor, block, place, y) + look.px(gap_below(block));
     }
     column.space((y - top) / look.scale + 16);
-  }
-
-  // Draws a block of the text word by word. Lines are wrapped between the x coordinates `left` and `right`. Returns the
-  // y coordinate of the block's lower end.
-  float draw_block(Editor& editor, const Block& block, float left, float right, float y) {
-    const Look& look = editor.look;
-    const bool big = block.kind == Block::Kind::Title, heading = block.kind == Block::Kind::Heading;
-    const float line = big ? look.px(40) : look.px(22);
-    if (block.kind == Block::Kind::Point) {
-      fill({{left + look.px(4), y + look.px(9)}, {left + look.px(8), y + look.px(13)}}, look.theme.text3, look.px(2));
-      left += look.px(18);
-    }
-    float x = left;
-    for (const Run& run : block.runs) {
-      const bool code = run.style == Run::Style::Code || run.style == Run::Style::Key;
-      ImFont* font = big                                          ? look.fonts.title
-                     : heading || run.style == Run::Style::Strong ? look.fonts.semibold
-                     : code                                       ? look.fonts.mono
-                                                                  : look.fonts.regular;
-      const Colour colour = code ? look.theme.accent_text
-                            : heading || big || run.style == Run::Style::Strong || run.style == Run::Style::Name
-                                ? look.theme.text
-                                : look.theme.text2;
-      const float blank = text_size(font, " ").x;
-      for (std::size_t at = 0; at < run.text.size();) {
-        if (run.text[at] == ' ') {
-          if (x > left) x += blank;
-          ++at;
-          continue;
-        }
-        const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
-        const std::string_view word = std::string_view(run.text).substr(at, end - at);
-        const float width = text_size(font, word).x;
-        if (x > left && x + width > right) {
-          x = left;
-          y += line;
-        }
-        ImGui::GetWindowDrawList()->AddText(font, font->FontSize,
-                                            im(glm::round(glm::vec2(x, y + (line - font->FontSize) / 2))), colour,
-                                            word.data(), word.data() + word.size());
-        x += width;
-        at = end;
-      }
-    }
-    editor.widgets.add_text(plain_text(block));
-    return y + line;
   }
 
   std::string title_, text_;

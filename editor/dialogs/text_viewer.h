@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A dialog that shows the documents that come with the program, such as the user guide. A list of chapters is at the
-// left, the text is at the right.
+// A dialog that shows a document that comes with the program, such as what is new. A list of chapters is at the left,
+// the text is at the right.
 #pragma once
 
 #include <memory>

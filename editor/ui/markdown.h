@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parses the subset of Markdown that the program's own documents use: headings, paragraphs, lists, **strong**, *names*
-// and `code`. "{view.xray}" is replaced by the key of the operator "view.xray" in the user's key map.
+// Parses the subset of Markdown that the program's own documents use: headings, paragraphs, lists, numbered steps,
+// pictures on lines of their own, [links](page.md), **strong**, *names* and `code`. "{view.xray}" is replaced by the
+// key of the operator "view.xray" in the user's key map.
 #pragma once
 
 #include <functional>
@@ -11,15 +12,18 @@
 namespace limber::editor {
 
 struct Run {
-  enum class Style { Plain, Strong, Name, Code, Key } style = Style::Plain;
+  enum class Style { Plain, Strong, Name, Code, Key, Link } style = Style::Plain;
   std::string text;
+  std::string target = {};  // of a link: what it leads to, as it stands in the file
 
   bool operator==(const Run&) const = default;
 };
 
 struct Block {
-  enum class Kind { Title, Heading, Paragraph, Point } kind = Kind::Paragraph;
-  std::vector<Run> runs;
+  enum class Kind { Title, Heading, Paragraph, Point, Step, Picture } kind = Kind::Paragraph;
+  std::vector<Run> runs;     // of a picture: its caption
+  int number = 0;            // of a step
+  std::string picture = {};  // the picture's file, as it stands in the text
 
   bool operator==(const Block&) const = default;
 };

@@ -28,9 +28,9 @@ const std::vector<Floor> kFloors = {
       "paint",    "paint/brushes", "label_edit", "deform", "deform/blends", "fem",     "resample", "export",  "report",
       "repair",   "body",          "project",    "batch",  "study",         "cmd",     "python"}},
     {"render", {"gl", "scene", "textures", "passes", ""}},
-    {"editor", {"input",    "ui",     "context", "dialogs", "file_browser", "shown",     "viewport", "volume",
-                "measure",  "seams",  "rig",     "motion",  "pose",         "selection", "labels",   "skin",
-                "resample", "figure", "files",   "screen",  "app",          "cli"}},
+    {"editor", {"input",  "ui",       "context", "dialogs", "guide",  "file_browser", "shown",     "viewport",
+                "volume", "measure",  "seams",   "rig",     "motion", "pose",         "selection", "labels",
+                "skin",   "resample", "figure",  "files",   "screen", "app",          "cli"}},
 };
 
 std::string room_of(const std::string& file) { return fs::path(file).parent_path().generic_string(); }

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/dialogs/block_drawing.h"
+
+#include <algorithm>
+
+#include "editor/ui/widgets.h"
+
+namespace limber::editor {
+
+namespace {
+
+ImFont* font_of(const Look& look, Block::Kind kind, Run::Style style) {
+  if (kind == Block::Kind::Title) return look.fonts.title;
+  if (kind == Block::Kind::Heading || style == Run::Style::Strong) return look.fonts.semibold;
+  return style == Run::Style::Code || style == Run::Style::Key ? look.fonts.mono : look.fonts.regular;
+}
+
+Colour colour_of(const Look& look, Block::Kind kind, Run::Style style) {
+  if (style == Run::Style::Code || style == Run::Style::Key || style == Run::Style::Link) return look.theme.accent_text;
+  const bool strong = kind == Block::Kind::Title || kind == Block::Kind::Heading || style == Run::Style::Strong ||
+                      style == Run::Style::Name;
+  return strong ? look.theme.text : look.theme.text2;
+}
+
+// A word of a run, placed by the walk below.
+struct Word {
+  const Run& run;
+  std::string_view text;
+  glm::vec2 where;  // its upper left corner
+  float width;
+  int index;   // counts the words of the block
+  float left;  // where lines begin
+};
+
+// Places the words of a block, and calls `draw` for each. Returns the y coordinate of the lower end.
+float for_each_word(const Look& look, const Block& block, float left, float right, float y, float line,
+                    const std::function<void(const Word&)>& draw) {
+  float x = left;
+  int index = 0;
+  for (const Run& run : block.runs) {
+    ImFont* font = font_of(look, block.kind, run.style);
+    const float blank = text_size(font, " ").x;
+    for (std::size_t at = 0; at < run.text.size();) {
+      if (run.text[at] == ' ') {
+        if (x > left) x += blank;
+        ++at;
+        continue;
+      }
+      const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
+      const std::string_view word = std::string_view(run.text).substr(at, end - at);
+      const float width = text_size(font, word).x;
+      if (x > left && x + width > right) {
+        x = left;
+        y += line;
+      }
+      draw({run, word, {x, y}, width, index++, left});
+      x += width;
+      at = end;
+    }
+  }
+  return y + line;
+}
+
+void draw_word(Editor& editor, const Block& block, BlockPlace& place, const Word& word, float line) {
+  const Look& look = editor.look;
+  ImFont* font = font_of(look, block.kind, word.run.style);
+  const Colour colour = colour_of(look, block.kind, word.run.style);
+  ImGui::GetWindowDrawList()->AddText(
+      font, font->FontSize, im(glm::round(glm::vec2(word.where.x, word.where.y + (line - font->FontSize) / 2))), colour,
+      word.text.data(), word.text.data() + word.text.size());
+  if (word.run.style != Run::Style::Link) return;
+  // A word of the same link before it on the line: the blank between them belongs to the link, too.
+  const bool goes_on = word.text.data() != word.run.text.data() && word.where.x > word.left;
+  const float blank = goes_on ? text_size(font, " ").x : 0;
+  const Rect rect{word.where - glm::vec2(blank, 0), word.where + glm::vec2(word.width, line)};
+  const Pressed pressed = press_area(editor, place.name + "/" + std::to_string(word.index), rect);
+  const float under = std::round(rect.centre().y + font->FontSize * 0.42f);
+  fill({{rect.low.x, under}, {rect.high.x, under + look.line()}}, with_alpha(colour, pressed.hovered ? 1.0f : 0.4f));
+  if (pressed.clicked) place.clicked = word.run.target;
+}
+
+float draw_document_picture(Editor& editor, const Block& block, const BlockPlace& place, float y) {
+  const Look& look = editor.look;
+  const DocumentPicture picture = place.picture ? place.picture(block.picture) : DocumentPicture{};
+  if (picture.texture && picture.size.x > 0) {
+    const float width = std::min(place.right - place.left, look.px(picture.size.x)),
+                height = std::round(width * picture.size.y / picture.size.x);
+    const Rect rect{{place.left, y}, {place.left + width, y + height}};
+    ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(std::uintptr_t(picture.texture)),
+                                                im(rect.low), im(rect.high), {0, 0}, {1, 1}, 0xFFFFFFFF, look.px(4));
+    outline(rect, look.theme.line2, look.px(4), look.line());
+    register_widget(editor, "picture " + block.picture, rect);
+    y = rect.high.y + look.px(5);
+  }
+  const std::string caption = plain_text(block);
+  return y +
+         put_wrapped(editor, look.fonts.small, look.theme.text2, {place.left, y}, place.right - place.left, caption);
+}
+
+}  // namespace
+
+float gap_below(const Block& block) {
+  switch (block.kind) {
+    case Block::Kind::Point:
+    case Block::Kind::Step: return 6;
+    case Block::Kind::Picture: return 16;
+    default: return 10;
+  }
+}
+
+float draw_block(Editor& editor, const Block& block, BlockPlace& place, float y) {
+  if (block.kind == Block::Kind::Picture) return draw_document_picture(editor, block, place, y);
+  const Look& look = editor.look;
+  const float line = block.kind == Block::Kind::Title ? look.px(40) : look.px(22);
+  float left = place.left;
+  if (block.kind == Block::Kind::Point || block.kind == Block::Kind::Step)
+    left += look.px(block.kind == Block::Kind::Step ? 26 : 18);
+  if (place.marked) {
+    const float bottom = for_each_word(look, block, left, place.right, y, line, [](const Word&) {});
+    fill({{place.left - look.px(8), y - look.px(2)}, {place.right + look.px(4), bottom + look.px(2)}},
+         look.theme.accent_soft, look.px(4));
+  }
+  if (block.kind == Block::Kind::Point)
+    fill({{place.left + look.px(4), y + look.px(9)}, {place.left + look.px(8), y + look.px(13)}}, look.theme.text3,
+         look.px(2));
+  if (block.kind == Block::Kind::Step)
+    put_text(editor, look.fonts.semibold, look.theme.accent_text, Rect{{place.left, y}, {left - look.px(8), y + line}},
+             std::to_string(block.number), Align::Right);
+  y = for_each_word(look, block, left, place.right, y, line,
+                    [&](const Word& word) { draw_word(editor, block, place, word, line); });
+  editor.widgets.add_text(plain_text(block));
+  return y;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/guide/guide_reader.h"
+
+#include <map>
+#include <utility>
+
+#include "core/base/error.h"
+#include "editor/dialogs/block_drawing.h"
+#include "editor/dialogs/dialog.h"
+#include "editor/guide/book.h"
+#include "editor/ui/asset_path.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/input_fields.h"
+#include "editor/ui/section.h"
+#include "render/image_io.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kWidth = 1040, kHeight = 680, kContents = 268, kMargin = 28, kFoot = 44, kSearch = 48;
+
+class GuideReader final : public Dialog {
+ public:
+  explicit GuideReader(std::string search) : search_(std::move(search)), focus_(!search_.empty()) {}
+  void draw(Editor& editor) override;
+  bool key(Editor& editor, const Chord& chord) override;
+
+ private:
+  void take_scroll_keys(Editor& editor, float height);
+  void draw_search(Editor& editor, const Rect& rect);
+  void draw_contents(Editor& editor, const Rect& rect);
+  void draw_found(Editor& editor, const Rect& rect);
+  void draw_page(Editor& editor, const Rect& rect);
+  void draw_foot(Editor& editor, const Rect& rect);
+  DocumentPicture picture(Editor& editor, const std::string& file);
+  void go_to(Editor& editor, int page, int block = 0);
+  bool ends_list(int block) const;
+
+  Book book_;
+  std::string search_, searched_;
+  std::vector<Found> found_;
+  int page_ = 0, marked_ = 0;  // marked_: the block that a search has led to; 0: none
+  bool focus_ = false, scroll_to_mark_ = false, first_found_ = false, show_row_ = false;
+  float scroll_by_ = 0;
+  std::map<std::string, glm::vec2> sizes_;  // of the page's pictures
+};
+
+bool GuideReader::key(Editor& editor, const Chord& chord) {
+  if (chord.key == Key::F && chord.modifiers.ctrl) return focus_ = true;
+  // Only remember that Return was pressed: the text field has not yet read all typed letters.
+  if ((chord.key == Key::Return || chord.key == Key::NumEnter) && !search_.empty()) return first_found_ = true;
+  if (!chord.modifiers.alt || (chord.key != Key::Left && chord.key != Key::Right)) return false;
+  go_to(editor, page_ + (chord.key == Key::Right ? 1 : -1));
+  return true;
+}
+
+void GuideReader::go_to(Editor& editor, int page, int block) {
+  if (page < 0 || page >= std::ssize(book_.pages)) return;
+  for (const auto& [file, size] : sizes_) editor.pictures.forget("guide " + file);
+  sizes_.clear();
+  page_ = page;
+  marked_ = block;
+  scroll_to_mark_ = show_row_ = true;
+  editor.touch();
+}
+
+// Whether a paragraph or a picture follows a list.
+bool GuideReader::ends_list(int block) const {
+  const auto listed = [&](int b) {
+    const Block::Kind kind = book_.pages[page_].blocks[b].kind;
+    return kind == Block::Kind::Point || kind == Block::Kind::Step;
+  };
+  return block > 0 && listed(block - 1) && !listed(block);
+}
+
+void GuideReader::take_scroll_keys(Editor& editor, float height) {
+  if (!editor.messages.errors.empty() || ImGui::GetIO().WantTextInput) return;
+  const float line = editor.look.px(48);
+  const std::pair<Key, float> moves[] = {{Key::Down, line},
+                                         {Key::Up, -line},
+                                         {Key::PageDown, height - line},
+                                         {Key::PageUp, line - height},
+                                         {Key::Space, height - line},
+                                         {Key::Home, -1e9f},
+                                         {Key::End, 1e9f}};
+  for (const auto& [key, by] : moves)
+    if (ImGui::IsKeyPressed(static_cast<int>(key))) scroll_by_ += by;
+}
+
+// Reads the picture when it is shown first. Its texture is forgotten when another page is shown.
+DocumentPicture GuideReader::picture(Editor& editor, const std::string& file) {
+  const std::string name = "guide " + file;
+  render::Image image;
+  if (!sizes_.contains(file)) {
+    try {
+      image = render::read_png(asset("docs/guide/" + file));
+    } catch (const Error& error) {  // the page can be read without it
+      editor.messages.warn(error.what());
+    }
+    sizes_[file] = image.size;
+    editor.pictures.forget(name);
+  }
+  return {editor.pictures.texture(name, [&] { return image; }), sizes_[file]};
+}
+
+void GuideReader::draw_search(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  put_icon(look.fonts.regular, look.theme.text2,
+           Rect{{rect.low.x + look.px(8), rect.low.y}, {rect.low.x + look.px(34), rect.high.y}}, icon::kSearch);
+  const bool any = !search_.empty();
+  text_field(editor, "search",
+             {{rect.low.x + look.px(36), rect.low.y + look.px(11)},
+              {rect.high.x - look.px(any ? 40 : 12), rect.high.y - look.px(11)}},
+             search_, "Search the guide", std::exchange(focus_, false));
+  if (any && button(editor, "clear",
+                    {{rect.high.x - look.px(36), rect.low.y + look.px(12)},
+                     {rect.high.x - look.px(12), rect.high.y - look.px(12)}},
+                    {icon::kClose, "", ButtonStyle::Flat}))
+    search_.clear();
+  if (search_ == searched_) return;
+  searched_ = search_;
+  found_ = find_in(book_, search_);
+  editor.touch();
+}
+
+void GuideReader::draw_contents(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Column column(editor, "pages", rect);
+  const auto row = [&](int page, float indent) {
+    const Rect area = column.row(26);
+    const Page& one = book_.pages[page];
+    const Pressed pressed = press_area(editor, one.title, area);
+    const bool here = page == page_;
+    if (here) fill(area, look.theme.accent_soft);
+    else if (pressed.hovered) fill(area, look.theme.hover);
+    put_text(editor, look.fonts.regular, here ? look.theme.accent_text : look.theme.text,
+             Rect{{area.low.x + look.px(indent), area.low.y}, {area.high.x - look.px(6), area.high.y}}, one.title);
+    if (here && std::exchange(show_row_, false) && (area.low.y < rect.low.y || area.high.y > rect.high.y)) {
+      ImGui::SetScrollY(ImGui::GetScrollY() + area.low.y - rect.low.y - rect.height() / 3);
+      editor.touch();
+    }
+    if (pressed.clicked) go_to(editor, page);
+  };
+  row(0, 14);
+  for (const Chapter& chapter : book_.chapters) {
+    column.space(8);
+    const Rect head = column.row(24);
+    put_text(editor, look.fonts.semibold, look.theme.text2,
+             Rect{{head.low.x + look.px(14), head.low.y}, {head.high.x - look.px(6), head.high.y}}, chapter.title);
+    for (const int page : chapter.pages) row(page, 26);
+  }
+  column.space(12);
+}
+
+void GuideReader::draw_found(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Column column(editor, "found", rect);
+  if (found_.empty()) {
+    if (empty_state(editor, column.row(72), "No page has these words", "Clear search")) search_.clear();
+    return;
+  }
+  for (const Found& found : found_) {
+    const Page& page = book_.pages[found.page];
+    const Rect area = column.row(68);
+    const Pressed pressed = press_area(editor, page.title, area);
+    const bool here = found.page == page_;
+    if (here) fill(area, look.theme.accent_soft);
+    else if (pressed.hovered) fill(area, look.theme.hover);
+    const float left = area.low.x + look.px(14), right = area.high.x - look.px(8);
+    put_text(editor, look.fonts.semibold, here ? look.theme.accent_text : look.theme.text,
+             Rect{{left, area.low.y + look.px(5)}, {right, area.low.y + look.px(25)}}, page.title);
+    put_wrapped(editor, look.fonts.small, look.theme.text2, {left, area.low.y + look.px(26)}, right - left,
+                found.sentence, 2);
+    fill({{left, area.high.y - look.line()}, {right, area.high.y}}, look.theme.line2);
+    if (pressed.clicked) go_to(editor, found.page, found.block);
+  }
+}
+
+void GuideReader::draw_page(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  PathScope of_page(editor, "page");
+  Column column(editor, std::to_string(page_), rect);
+  ImGui::SetScrollY(ImGui::GetScrollY() + std::exchange(scroll_by_, 0.0f));
+  const float top = ImGui::GetCursorScreenPos().y, left = rect.low.x + look.px(kMargin);
+  const float right = std::min(rect.high.x - look.px(kMargin + 6), left + look.px(760));
+  float y = top + look.px(16);
+  std::string clicked;
+  for (int b = 0; b < std::ssize(book_.pages[page_].blocks); ++b) {
+    const Block& block = book_.pages[page_].blocks[b];
+    if (block.kind == Block::Kind::Heading || ends_list(b)) y += look.px(8);
+    if (b == marked_ && std::exchange(scroll_to_mark_, false)) {
+      ImGui::SetScrollY(b == 0 ? 0 : y - top - rect.height() / 4);
+      editor.touch();
+    }
+    BlockPlace place{left, right, "link " + std::to_string(b),
+                     [&](const std::string& file) { return picture(editor, file); }};
+    place.marked = b > 0 && b == marked_;
+    y = draw_block(editor, block, place, y) + look.px(gap_below(block));
+    if (!place.clicked.empty()) clicked = place.clicked;
+  }
+  column.space((y - top) / look.scale + 16);
+  if (!clicked.empty()) go_to(editor, page_of(book_, clicked));
+}
+
+void GuideReader::draw_foot(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.line2);
+  const auto turn = [&](const char* name, int page, const char* icon, bool at_left) {
+    if (page < 0 || page >= std::ssize(book_.pages)) return;
+    const ButtonLook shown{icon, book_.pages[page].title, ButtonStyle::Flat};
+    const float width = std::min(width_of_button(editor, shown), rect.width() / 2 - look.px(20));
+    const float x = at_left ? rect.low.x + look.px(12) : rect.high.x - look.px(12) - width;
+    if (button(editor, name, {{x, rect.low.y + look.px(9)}, {x + width, rect.high.y - look.px(9)}}, shown))
+      go_to(editor, page);
+  };
+  turn("previous", page_ - 1, icon::kBack, true);
+  turn("next", page_ + 1, icon::kForward, false);
+}
+
+void GuideReader::draw(Editor& editor) {
+  const Look& look = editor.look;
+  if (book_.pages.empty())
+    book_ = read_guide([&](const std::string& id) {
+      const auto chord = editor.keymap.chord_of(id);
+      return chord ? to_text(*chord) : std::string("(no key)");
+    });
+  const Rect rect = begin_dialog(editor, "User guide", kWidth, kHeight);
+  const Rect body{rect.low - look.px(18) + glm::vec2(look.line(), 0), rect.high + look.px(18) - look.line()};
+  take_scroll_keys(editor, body.height() - look.px(kFoot));
+  const float middle = body.low.x + std::min(look.px(kContents), std::round(body.width() * 0.36f));
+  ImGui::GetWindowDrawList()->AddRectFilled(im(body.low), im({middle, body.high.y}), look.theme.head, look.px(8),
+                                            ImDrawFlags_RoundCornersBottomLeft);
+  const float list_top = body.low.y + look.px(kSearch);
+  draw_search(editor, {body.low, {middle, list_top}});
+  if (std::exchange(first_found_, false) && !found_.empty()) go_to(editor, found_[0].page, found_[0].block);
+  const Rect list{{body.low.x, list_top}, {middle, body.high.y - look.px(6)}};
+  if (searched_.find_first_not_of(' ') == std::string::npos) draw_contents(editor, list);
+  else draw_found(editor, list);
+  fill({{middle, body.low.y}, {middle + look.line(), body.high.y}}, look.theme.line2);
+  const float foot = body.high.y - look.px(kFoot);
+  draw_page(editor, {{middle + look.line(), body.low.y}, {body.high.x, foot}});
+  draw_foot(editor, {{middle + look.line(), foot}, body.high});
+  end_dialog(editor);
+}
+
+}  // namespace
+
+std::unique_ptr<Dialog> open_guide(const std::string& search) { return std::make_unique<GuideReader>(search); }
+
+}  // namespace limber::editor
