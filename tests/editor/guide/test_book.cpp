@@ -28,6 +28,13 @@ std::set<std::string> names_in(const fs::path& folder, const std::string& ending
   return names;
 }
 
+std::set<std::string> pictures_of(const Page& page) {
+  std::set<std::string> pictures;
+  for (const Block& block : page.blocks)
+    if (block.kind == Block::Kind::Picture) pictures.insert(block.picture);
+  return pictures;
+}
+
 // A page that is found by the words in its title, by one sentence, by words of two sentences, or not at all.
 Book small_book() {
   Book book;
@@ -89,6 +96,21 @@ TEST_CASE("guide: links lead to pages, and no mark is left unread") {
       }
     }
   CHECK(links > 60);
+}
+
+TEST_CASE("guide: each picture is there, belongs to a page and to the script that makes it, and is small") {
+  std::set<std::string> shown;
+  for (const Page& page : guide().pages) shown.merge(pictures_of(page));
+  std::set<std::string> named;
+  std::uintmax_t bytes = 0;
+  for (const std::string& name : names_in(kGuide / "images", ".png")) {
+    named.insert("images/" + name + ".png");
+    bytes += fs::file_size(kGuide / "images" / (name + ".png"));
+  }
+  CHECK(shown == named);
+  CHECK(names_in(kGuide / "images", ".png") == names_in(kGuide / "scripts", ".play"));
+  CHECK(shown.size() >= 8);
+  CHECK(bytes < 1'500'000);
 }
 
 TEST_CASE("guide: the search puts titles first, then headings, then one sentence, then words that stand apart") {
