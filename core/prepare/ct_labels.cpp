@@ -74,15 +74,19 @@ void filter_components(const Grid& grid, Mask& mask, const Value& value, const K
 }
 double no_value(std::size_t) { return 0; }
 
+bool is_empty(const Mask& mask) {
+  return std::none_of(mask.begin(), mask.end(), [](std::uint8_t is) { return is != 0; });
+}
+
 // Returns the voxels that belong to the body: those above its threshold within reach of something thick. An opening by
 // 3 mm takes away the table, blankets and cables; what is left of the body grows back by a little more than 3 mm, so
 // that ears and fingers stay.
-Mask body_of(const GreyLevels& image, const CtThresholds& thresholds, Progress& progress) {
+Mask body_of(const GreyLevels& image, double threshold, Progress& progress) {
   const Grid& grid = image.grid;
   const double coarsest = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   Mask dense(image.levels.size()), outside(dense.size());
   for_each_voxel(grid, [&](std::size_t i) {
-    dense[i] = image.value_of(image.levels[i]) >= thresholds.body;
+    dense[i] = image.value_of(image.levels[i]) >= threshold;
     outside[i] = !dense[i];
   });
   Mask thick = dense;
@@ -101,7 +105,7 @@ Mask body_of(const GreyLevels& image, const CtThresholds& thresholds, Progress& 
   filter_components(grid, thick, no_value, [&](double voxels, double) {
     return voxels * voxel >= kSmallestBody / 4 && voxels >= kLeastShare * largest;
   });
-  if (std::none_of(thick.begin(), thick.end(), [](std::uint8_t is) { return is != 0; })) return {};
+  if (is_empty(thick)) return {};
   const std::vector<float> reach = squared_distance(whole(grid), thick, grid.spacing, progress);
   const double most = kThin + 1.5 * std::max(1.0, coarsest) + 1;
   for_each_voxel(grid, [&](std::size_t i) { dense[i] = dense[i] && double(reach[i]) <= most * most; });
@@ -217,7 +221,7 @@ void label_skin(double thickness, LabelVolume& volume, Progress& progress) {
   });
 }
 
-TissueTable table_for(const LabelVolume& volume) {
+TissueTable table_for(const LabelVolume& volume, const char* source) {
   struct Entry {
     Label label;
     const char* name;
@@ -229,7 +233,7 @@ TissueTable table_for(const LabelVolume& volume) {
   std::array<bool, kBone + 1> present{};
   for (const Label label : volume.voxels) present[label] = true;
   TissueTable table;
-  table.source = "thresholds of the CT";
+  table.source = source;
   for (const Entry& entry : kEntries) {
     if (!present[entry.label]) continue;
     Tissue tissue;
@@ -261,8 +265,8 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
     throw Error("this is no CT: it has no air", text, "give a CT in Hounsfield units, where air is -1000");
   }
   progress.update("body", 0);
-  const Mask body = body_of(image, thresholds, progress);
-  if (std::none_of(body.begin(), body.end(), [](std::uint8_t is) { return is != 0; })) {
+  const Mask body = body_of(image, thresholds.body, progress);
+  if (is_empty(body)) {
     char text[80];
     std::snprintf(text, sizeof text, "values from %.0f to %.0f", image.least, image.most());
     throw Error("no body was found in this image", text,
@@ -283,7 +287,55 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
   label_bone(image, thresholds, volume);
   progress.update("skin", 0.8);
   label_skin(thresholds.skin_mm, volume, progress);
-  labels.tissues = table_for(volume);
+  labels.tissues = table_for(volume, "thresholds of the CT");
+  progress.update("skin", 1);
+  return labels;
+}
+
+double body_threshold(const GreyLevels& image) {
+  std::vector<std::int64_t> counts(65536);
+  for (const std::uint16_t level : image.levels) ++counts[level];
+  // Levels are counted from 1, so that their mean has a logarithm: cross entropy needs positive values.
+  std::vector<double> voxels(65537), sums(65537);
+  for (std::size_t level = 0; level < 65536; ++level) {
+    voxels[level + 1] = voxels[level] + double(counts[level]);
+    sums[level + 1] = sums[level] + double(counts[level]) * double(level + 1);
+  }
+  if (voxels.back() == 0) return image.least;
+  double threshold = sums.back() / voxels.back();  // the mean of all, from where the iteration finds its fixed point
+  for (int round = 0; round < 1000; ++round) {
+    const auto cut = static_cast<std::size_t>(std::clamp(std::ceil(threshold) - 1, 1.0, 65535.0));
+    const double below = voxels[cut], above = voxels.back() - below;
+    if (below == 0 || above == 0) break;
+    const double dark = sums[cut] / below, bright = (sums.back() - sums[cut]) / above;
+    const double next = (bright - dark) / (std::log(bright) - std::log(dark));
+    if (std::abs(next - threshold) < 0.5) break;
+    threshold = next;
+  }
+  return image.least + image.step * (threshold - 1);
+}
+
+CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_mm, Progress& progress) {
+  char range[80];
+  std::snprintf(range, sizeof range, "values from %g to %g", image.least, image.most());
+  if (!(skin_mm >= 0)) throw Error("the skin has no thickness", "labels of the body", "give 0 mm or more");
+  if (image.least >= threshold) throw Error("no value is below the threshold of the body", range, "raise it");
+  progress.update("body", 0);
+  const Mask body = body_of(image, threshold, progress);
+  if (is_empty(body)) throw Error("no body was found above the threshold", range, "lower the threshold of the body");
+  CtLabels labels;
+  LabelVolume& volume = labels.volume;
+  volume.grid = image.grid;
+  volume.voxels.resize(body.size());
+  for_each_voxel(image.grid, [&](std::size_t i) { volume.voxels[i] = body[i] ? kSoft : kAir; });
+  progress.update("dark inside", 0.5);
+  const Mask enclosed = enclosed_in_slices(volume), outside = outside_air(volume);
+  for_each_voxel(image.grid, [&](std::size_t i) {
+    if (enclosed[i] || !outside[i]) volume.voxels[i] = kSoft;
+  });
+  progress.update("skin", 0.8);
+  label_skin(skin_mm, volume, progress);
+  labels.tissues = table_for(volume, "a threshold of the image");
   progress.update("skin", 1);
   return labels;
 }

@@ -2,6 +2,7 @@
 // Makes a label volume from a CT by thresholds, so that a CT without a segmentation can be rigged and posed. It tells
 // skin, fat, soft tissue, lung, gas and bone apart, and leaves out the table, blankets and other thin things around the
 // body. It knows no anatomy: contrast agent and metal count as bone, and bones that touch are one.
+// The values of an MR have no unit. Of such an image only the body and its skin are labelled, by one threshold.
 #pragma once
 
 #include "core/base/progress.h"
@@ -30,5 +31,16 @@ struct CtLabels {
 // the body, or if nothing in the image is a body: no connected region of at least 10 ml above the threshold of the body
 // that is thicker than 6 mm.
 CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds = {}, Progress& progress = no_progress());
+
+// Returns the threshold between background and body that the histogram of an image gives, by the minimum cross entropy
+// of both classes [Li and Lee 1993, iterated as by Li and Tam 1998]. Background is far more uniform than tissue in an
+// MR; a threshold half way between the means of both (Otsu 1979) would take dark muscle for background.
+double body_threshold(const GreyLevels& image);
+
+// Returns the labels of an image whose values have no unit, on its own grid: the body and its skin. Whatever is dark
+// and enclosed by the body, such as cortical bone in an MR, counts as body. Throws Error if no value is below the
+// threshold, or if nothing in the image is a body (as labels_of_ct).
+CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_mm = 2,
+                        Progress& progress = no_progress());
 
 }  // namespace limber

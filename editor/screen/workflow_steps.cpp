@@ -8,6 +8,7 @@
 #include "editor/resample/results.h"
 #include "editor/seams/seam_view.h"
 #include "editor/ui/icons.h"
+#include "editor/volume/image_labels.h"
 #include "editor/volume/volume_edits.h"
 
 namespace limber::editor {
@@ -30,10 +31,12 @@ Step prepare_step(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.volume) return step;
   if ((!document.tissues || document.tissues->tissues.empty()) && editor.views->image) {
-    // A bare CT or MR has nothing that could follow bones.
+    // A bare CT or MR has nothing that could follow bones. What works on its grid, for labels to be painted on, is
+    // there; what needs tissue is not.
     step.line = "No labels yet";
-    step.operator_id = "image.labels";
+    step.operator_id = labels_operator(editor);
     step.button = "Labels...";
+    step.more = {"labels.new_tissue", "prepare.regrid", "prepare.crop_to_clip_box", "prepare.pad", "prepare.orient"};
     return step;
   }
   step.state = StepState::Done;

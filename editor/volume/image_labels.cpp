@@ -5,6 +5,7 @@
 #include "core/prepare/ct_labels.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/shown/frame_all.h"
+#include "editor/volume/shown_image.h"
 #include "editor/volume/volume_edits.h"
 
 namespace limber::editor {
@@ -25,52 +26,65 @@ CtThresholds thresholds_of(const Fields& fields) {
 
 // The image may have been closed since the form was opened.
 const GreyLevels& image_of(const Editor& editor) {
-  if (!editor.views->image) throw Error("the image was closed", "Labels from CT", "open it again");
+  if (!editor.views->image) throw Error("the image was closed", "Labels from image", "open it again");
   return *editor.views->image->image;
 }
 
-std::string outcome(const Editor& editor, const Fields& fields) {
-  const CtThresholds t = thresholds_of(fields);
-  if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
-    throw Error("the thresholds must rise", "from body over fat and soft tissue to bone", "raise the higher one");
+std::string size_and_loss(const Editor& editor) {
   return size_text(image_of(editor).grid.size) + " voxels." +
          (editor.document().tissues && !editor.document().tissues->tissues.empty()
               ? " The labels, rig and weights of the open body are replaced; undo brings them back."
               : "");
 }
 
-void start_labels(Editor& editor, const CtThresholds& thresholds) {
+std::string outcome(const Editor& editor, const Fields& fields) {
+  const CtThresholds t = thresholds_of(fields);
+  if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
+    throw Error("the thresholds must rise", "from body over fat and soft tissue to bone", "raise the higher one");
+  return size_and_loss(editor);
+}
+
+std::string outcome_of_body(const Editor& editor, const Fields& fields) {
+  const GreyLevels& image = image_of(editor);
+  if (fields[0].value <= image.least)
+    throw Error("every voxel would be body", "Body from", "enter more than the image's least value");
+  return size_and_loss(editor);
+}
+
+using MakeLabels = std::function<CtLabels(const GreyLevels&, Progress&)>;
+
+void start_labels(Editor& editor, const std::string& label, const std::string& advice, MakeLabels make) {
   image_of(editor);
   const auto image = editor.views->image->image;
   const auto before = editor.document().volume;
-  const int id = editor.jobs.start(
-      "Labels from CT",
-      [image, before, thresholds, make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
-        CtLabels labels = labels_of_ct(*image, thresholds, progress);
-        const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
-        const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
-        make_ready({.volume = volume, .tissues = tissues}, progress);
-        return [volume, tissues, before](const Document& now) {
-          if (now.volume != before)
-            throw Error("another volume was opened meanwhile", "Labels from CT", "start it again");
-          Document next;
-          next.volume = volume;
-          next.tissues = tissues;
-          next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
-          next.clips = now.clips;
-          next.clip = now.clip;
-          next.frame = now.frame;
-          return next;
-        };
-      });
+  const int id =
+      editor.jobs.start(label,
+                        [image, before, label, make = std::move(make),
+                         make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
+                          CtLabels labels = make(*image, progress);
+                          const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
+                          const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
+                          make_ready({.volume = volume, .tissues = tissues}, progress);
+                          return [volume, tissues, before, label](const Document& now) {
+                            if (now.volume != before)
+                              throw Error("another volume was opened meanwhile", label, "start it again");
+                            Document next;
+                            next.volume = volume;
+                            next.tissues = tissues;
+                            next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
+                            next.clips = now.clips;
+                            next.clip = now.clip;
+                            next.frame = now.frame;
+                            return next;
+                          };
+                        });
   editor.step_of_job[id] = StepOfWork::Prepare;
-  editor.after_job[id] = [](Editor& e, const JobStatus& job) {
+  editor.after_job[id] = [label, advice](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done) return;
     e.selection = {};
     e.views->display = render::Display::Solid;
     frame_all(e, false);
-    e.messages.ok("Labels from CT", std::to_string(e.document().tissues->tissues.size()) +
-                                        " tissues. Look through the slices: contrast agent and metal count as bone.");
+    e.messages.ok(label, std::to_string(e.document().tissues->tissues.size()) + " tissues. " + advice);
   };
   editor.touch();
 }
@@ -92,7 +106,35 @@ void ask_for_labels(Editor& editor) {
         field("Body from", "Voxels below this density are air or lung.", usual.body),
         number_of("Skin", "The thickness of the skin, at least one voxel.", usual.skin_mm, 0, 10, "%.1f", "mm")},
        outcome,
-       [](Editor& e, const Fields& fields) { start_labels(e, thresholds_of(fields)); }}));
+       [](Editor& e, const Fields& fields) {
+         start_labels(e, "Labels from CT", "Look through the slices: contrast agent and metal count as bone.",
+                      [thresholds = thresholds_of(fields)](const GreyLevels& image, Progress& progress) {
+                        return labels_of_ct(image, thresholds, progress);
+                      });
+       }}));
+}
+
+void ask_for_body(Editor& editor) {
+  const GreyLevels& image = image_of(editor);
+  editor.open_dialog(make_form(
+      {"Body from image",
+       "Tell the body from its background. The values of this image have no unit, so the threshold is proposed from "
+       "its own histogram. Organs and bones are not told apart: paint them.",
+       "Make labels",
+       {number_of("Body from", "Voxels from this value on are body. Proposed from the image's histogram.",
+                  body_threshold(image), image.least, image.most(), "%.4g"),
+        number_of("Skin", "The thickness of the skin, at least one voxel.", 2, 0, 10, "%.1f", "mm")},
+       outcome_of_body,
+       [](Editor& e, const Fields& fields) {
+         start_labels(e, "Body from image", "Paint bones with the label brush before a rig is made.",
+                      [threshold = fields[0].value, skin = fields[1].value](const GreyLevels& of, Progress& progress) {
+                        return labels_of_body(of, threshold, skin, progress);
+                      });
+       }}));
+}
+
+const char* labels_operator(const Editor& editor) {
+  return editor.views->image && looks_like_ct(*editor.views->image->image) ? "image.labels" : "image.body";
 }
 
 }  // namespace limber::editor

@@ -112,6 +112,9 @@ std::vector<Operator> image_operators() {
       {"image.labels", "Labels from CT...", icon::kTissues, "Edit",
        "Make a label volume from the open CT by thresholds: skin, soft tissue, fat, lung, gas, bone.", ask_for_labels,
        needs_image},
+      {"image.body", "Body from image...", icon::kTissues, "Edit",
+       "Make a label volume from the open MR or other image: body and skin, by a threshold of its histogram.",
+       ask_for_body, needs_image},
   };
   for (const ImageWindow& window : ct_windows()) all.push_back(window_operator(window));
   return all;

@@ -8,6 +8,7 @@
 #include "editor/context/panels.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/input_fields.h"
+#include "editor/volume/image_labels.h"
 #include "editor/volume/shown_image.h"
 
 namespace limber::editor {
@@ -84,7 +85,7 @@ void draw_image_section(Editor& editor, Column& column) {
     column.space(4);
     const Rect row = column.row(26);
     const float middle = std::round(row.centre().x), gap = editor.look.px(3), side = editor.look.px(10);
-    operator_button(editor, "image.labels", {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}},
+    operator_button(editor, labels_operator(editor), {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}},
                     "Make labels...");
     operator_button(editor, "image.close", {{middle + gap, row.low.y}, {row.high.x - side, row.high.y}}, "Close");
     column.space(6);

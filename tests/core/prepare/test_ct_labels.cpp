@@ -138,3 +138,56 @@ TEST_CASE("labels of a CT: a body that reaches the borders of the image is label
   CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, std::vector<float>(27000, 40))),
                        doctest::Contains("it has no air"), Error);
 }
+
+namespace {
+
+// An MR of a leg along z, as its magnitude shows it: bright fat around muscle of a quarter of its signal, cortical bone
+// without a signal around bright marrow, and the noise of a magnitude image (Rician) everywhere.
+struct LegMr {
+  Grid grid{{64, 64, 40}, glm::dvec3(2), glm::dvec3(0), glm::dmat3(1)};
+  std::vector<float> values;
+  std::vector<bool> is_body;
+  std::mt19937 random{7};
+
+  LegMr() {
+    std::normal_distribution<double> noise(0, 12);
+    for (int z = 0; z < grid.size.z; ++z)
+      for (int y = 0; y < grid.size.y; ++y)
+        for (int x = 0; x < grid.size.x; ++x) {
+          const double r = std::hypot(2 * x - 63.0, 2 * y - 61.0);
+          const double signal = r < 8 ? 500 : r < 14 ? 0 : r < 40 ? 150 : r < 46 ? 620 : 0;
+          const double real = signal + noise(random), imaginary = noise(random);
+          values.push_back(static_cast<float>(std::hypot(real, imaginary)));
+          is_body.push_back(r < 46);
+        }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("labels of a body: the histogram of an MR gives a threshold that parts noise from dark muscle") {
+  const LegMr leg;
+  const GreyLevels image = grey_levels(leg.grid, leg.values);
+  const double threshold = body_threshold(image);
+  CHECK(threshold > 40);   // the noise has a mean of 15
+  CHECK(threshold < 130);  // muscle has 150
+  const CtLabels labels = labels_of_body(image, threshold);
+  double wrong = 0;
+  for (std::size_t i = 0; i < leg.is_body.size(); ++i) wrong += leg.is_body[i] != (labels.volume.voxels[i] != 0);
+  CHECK(wrong < 0.01 * double(leg.is_body.size()));
+  REQUIRE(labels.tissues.tissues.size() == 2);  // skin and soft tissue: dark bone is no air
+  CHECK(labels.tissues.find(labels.volume.at({32, 31, 20}))->name == "Soft tissue");
+  CHECK(labels.tissues.find(labels.volume.at({37, 31, 20}))->name == "Soft tissue");  // in cortical bone
+  CHECK(labels.tissues.find(labels.volume.at({54, 31, 20}))->name == "Skin");
+  const ThreadCount one(1);
+  CHECK(labels_of_body(image, threshold).volume.voxels == labels.volume.voxels);
+}
+
+TEST_CASE("labels of a body: a threshold that parts nothing is refused in a sentence, and a constant image has one") {
+  const LegMr leg;
+  const GreyLevels image = grey_levels(leg.grid, leg.values);
+  CHECK_THROWS_WITH_AS(labels_of_body(image, -1), doctest::Contains("no value is below"), Error);
+  CHECK_THROWS_WITH_AS(labels_of_body(image, 1e6), doctest::Contains("no body was found"), Error);
+  const Grid grid{{4, 4, 4}, glm::dvec3(2), glm::dvec3(0), glm::dmat3(1)};
+  CHECK(body_threshold(grey_levels(grid, std::vector<float>(64, 5))) == 5);
+}

@@ -120,6 +120,14 @@ std::vector<Proof> proofs_of_images() {
                 s.document().tissues->find(6)->name == "Bone";
        },
        Shows::InBody},
+      {"image.body",
+       "click View/Display/\"Image settings\"/\"Body from image...\"\n wait-idle\n click \"Make labels\"\n wait-job\n "
+       "wait-idle",
+       [](Stage& s, const Seen&) {
+         const auto& tissues = s.document().tissues->tissues;
+         return tissues.size() == 2 && tissues[0].name == "Skin" && tissues[1].name == "Soft tissue";
+       },
+       Shows::InBody, "click View/Display/Image"},
       {"file.export_image", "click File/Export/\"Posed image...\"\n wait-idle\n type ct-posed\n key Return\n wait-job",
        [](Stage& s, const Seen&) {
          return std::filesystem::exists(s.home / "ct-posed.nrrd") &&
@@ -158,6 +166,28 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   CHECK(sitting.editor().document() == bare);
   sitting.play("key Ctrl+Shift+Z\n wait-idle");
   CHECK(sitting.editor().document() == labelled);
+}
+
+TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and keeps the tools that need no tissue") {
+  const Home home;
+  GreyVolume mr = scan();
+  // A background from 0.5 to 16.5, and a body. Fractions are no labels.
+  for (float& value : mr.voxels) value = value < -500 ? 1000.5f + value : 400.5f;
+  mr.type = {"NRRD", "float", true};
+  write_grey_volume(mr, home / "mr.nrrd");
+  Sitting sitting(home.folder.path(), {home / "mr.nrrd"});
+  sitting.editor().preferences.advanced_steps = true;
+  sitting.play("wait-idle\n expect error none\n expect dialog no");
+  for (const char* tool : {"labels.new_tissue", "prepare.regrid", "prepare.pad", "prepare.orient"})
+    CHECK_MESSAGE(sitting.test.fact(std::string("widget:Steps/Prepare more/") + tool) == "shown", tool);
+  CHECK(sitting.test.fact("widget:Steps/Prepare more/prepare.merge") != "shown");
+  sitting.play("click Steps/Prepare/Labels...\n wait-idle\n expect \"text:Body from image\"");
+  CHECK(sitting.test.fact("text:Bone from") != "shown");
+  sitting.play("click \"Make labels\"\n wait-job\n wait-idle\n expect error none");
+  const Document& labelled = sitting.editor().document();
+  REQUIRE(labelled.tissues->tissues.size() == 2);
+  CHECK(labelled.volume->at({20, 20, 20}) != 0);
+  CHECK(labelled.volume->at({1, 1, 1}) == 0);
 }
 
 TEST_CASE("image: a CT of the open body is shown with it, and one of elsewhere is refused in a sentence") {
