@@ -29,7 +29,7 @@ void require_frames(double frames) {
 
 // Gives the clip `ratio` times as many frames.
 //   played_rate  the rate at which the clip's motion is read, frames per second;  rate  that of the new motion
-void stretch(Clip& clip, double ratio, double played_rate, double rate) {
+void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress& progress) {
   const auto moved = [&](int frame) {
     const double wanted = clip.start + std::round((double(frame) - clip.start) * ratio);
     if (std::abs(wanted) > kMostFrame)
@@ -47,7 +47,7 @@ void stretch(Clip& clip, double ratio, double played_rate, double rate) {
   if (!clip.motion) return;
   Motion played = *clip.motion;
   played.frame_time = 1 / played_rate;
-  clip.motion = std::make_shared<const Motion>(resampled(played, rate));
+  clip.motion = std::make_shared<const Motion>(resampled(played, rate, progress));
   const int most = std::max(0, clip.motion->frame_count - 1);
   clip.first = std::clamp(static_cast<int>(std::round(clip.first * ratio)), 0, most);
   clip.last = std::clamp(static_cast<int>(std::round(clip.last * ratio)), clip.first, most);
@@ -58,18 +58,18 @@ void stretch(Clip& clip, double ratio, double played_rate, double rate) {
 
 Clip at_rate(const Clip& clip, double rate) {
   Clip changed = clip;
-  stretch(changed, rate / clip.rate, clip.rate, rate);
+  stretch(changed, rate / clip.rate, clip.rate, rate, no_progress());
   changed.rate = rate;
   return changed;
 }
 
-Clip at_speed(const Clip& clip, double factor) {
+Clip at_speed(const Clip& clip, double factor, Progress& progress) {
   require_speed(factor);
   if (clip.motion) require_frames(clip.motion->frame_count / factor);
   Clip changed = clip;
   // A rate that the motion could be resampled to, whatever the clip's own rate is.
   const double rate = std::clamp(clip.rate, 1.0, 1000.0);
-  stretch(changed, 1 / factor, rate * factor, rate);
+  stretch(changed, 1 / factor, rate * factor, rate, progress);
   return changed;
 }
 

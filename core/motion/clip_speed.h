@@ -2,6 +2,7 @@
 // Changes the number of frames of a clip: its rate at the same speed, or its speed at the same rate.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/motion/clip.h"
 
 namespace limber {
@@ -14,8 +15,8 @@ Clip at_rate(const Clip& clip, double rate);
 
 // Returns the clip that plays `factor` times as fast at the same rate: the motion is resampled by slerp, and keys,
 // handles, markers and the playing range keep their places in the motion, to the nearest frame. The clip's frame
-// `start` stays. Throws Error for a factor outside [kSlowest, kFastest].
-Clip at_speed(const Clip& clip, double factor);
+// `start` stays. Throws Error for a factor outside [kSlowest, kFastest], and Cancelled.
+Clip at_speed(const Clip& clip, double factor, Progress& progress = no_progress());
 // The same for poses. The first pose stays, and the duration changes by less than a frame.
 std::vector<Pose> at_speed(const std::vector<Pose>& poses, double factor);
 

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::int64_t kMostFrames = 10'000'000;
+constexpr int kFramesAtOnce = 256;  // after so many frames, resampling reports its progress; they take under 10 ms
 
 bool is_rotation(BvhChannel channel) { return channel >= BvhChannel::Xrotation; }
 int axis_of(BvhChannel channel) { return static_cast<int>(channel) % 3; }
@@ -117,7 +118,7 @@ Motion y_up_from_z_up(const Motion& motion) {
   return up;
 }
 
-Motion resampled(const Motion& motion, double rate) {
+Motion resampled(const Motion& motion, double rate, Progress& progress) {
   if (!(rate >= 0.1 && rate <= 1000))
     throw Error("this rate cannot be used", std::to_string(rate) + " frames in a second",
                 "choose one from 0.1 to 1000");
@@ -131,6 +132,7 @@ Motion resampled(const Motion& motion, double rate) {
   out.frame_count = static_cast<int>(count);
   out.values.assign(static_cast<std::size_t>(out.frame_count) * motion.channel_count, 0.0f);
   for (int frame = 0; frame < out.frame_count; ++frame) {
+    if (frame % kFramesAtOnce == 0) progress.update("frames", double(frame) / out.frame_count);
     const double place = std::min(frame / rate / motion.frame_time, static_cast<double>(motion.frame_count - 1));
     const int before = std::min(static_cast<int>(place + 1e-9), motion.frame_count - 1),
               after = std::min(before + 1, motion.frame_count - 1);

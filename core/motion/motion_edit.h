@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 
+#include "core/base/progress.h"
 #include "core/motion/bvh.h"
 #include "core/rig/pose.h"
 
@@ -27,8 +28,9 @@ Motion y_up_from_z_up(const Motion& motion);
 // Resamples a motion to another frame rate: rotations by slerp between the frames on either side, positions linearly.
 // The first frame stays, and the duration changes by less than a frame. A joint that does not rotate about three
 // different axes is interpolated channel by channel.
-//   rate  frames per second; throws Error outside of [0.1, 1000], or if it would give more than 10 million frames
-Motion resampled(const Motion& motion, double rate);
+//   rate  frames per second; throws Error outside of [0.1, 1000], or if it would give more than 10 million frames, and
+//         Cancelled
+Motion resampled(const Motion& motion, double rate, Progress& progress = no_progress());
 
 // Records a motion of the rig: one joint for each bone, one frame for each pose.
 //   pose_at  called once for each of the frames [0, frames)

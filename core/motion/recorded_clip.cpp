@@ -24,8 +24,9 @@ Clip clip_of_poses(const Clip& source, const Armature& armature, const std::vect
       start);
 }
 
-Clip baked_clip(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature) {
-  return recorded(*clip, played_motion(clip, armature), clip->range_start);
+Clip baked_clip(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature,
+                Progress& progress) {
+  return recorded(*clip, played_motion(clip, armature, progress), clip->range_start);
 }
 
 }  // namespace limber

@@ -12,7 +12,8 @@ namespace limber {
 Clip clip_of_poses(const Clip& source, const Armature& armature, const std::vector<Pose>& poses, int start);
 
 // Returns the clip with its keys and curves, and the retargeting, made part of the motion, for the frames range_start
-// to range_end. Throws Error as played_motion() does.
-Clip baked_clip(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature);
+// to range_end. Throws Error and Cancelled as played_motion() does.
+Clip baked_clip(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature,
+                Progress& progress = no_progress());
 
 }  // namespace limber

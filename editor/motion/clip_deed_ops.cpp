@@ -62,8 +62,8 @@ void bake(Editor& editor) {
   stop_playing(editor);
   require_frames(editor);
   const auto source = shared_clip(editor);
-  start_task(editor, "Bake clip", [source, rig = editor.document().armature](Progress&) -> Finish {
-    const auto baked = std::make_shared<const Clip>(baked_clip(source, rig));
+  start_task(editor, "Bake clip", [source, rig = editor.document().armature](Progress& progress) -> Finish {
+    const auto baked = std::make_shared<const Clip>(baked_clip(source, rig, progress));
     return [=](Editor& e) {
       take_in_clip(e, source, rig, "Bake clip", *baked, false);
       e.messages.ok(frames_text(baked->motion->frame_count) + " baked",
@@ -111,17 +111,15 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
 
 // The play head stays at its place in the motion.
 void change_speed(Editor& editor, double factor) {
-  settle_frame(editor);
-  Document next = editor.document();
-  auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
-  const Clip changed = at_speed(*shown, factor);
-  const double moment = changed.start + std::round((double(next.frame) - changed.start) / factor);
-  const double last = std::max(changed.range_end, changed.range_start);
-  next.frame = static_cast<int>(std::clamp(moment, double(changed.range_start), last));
-  shown = std::make_shared<const Clip>(changed);
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  editor.timeline->chosen.clear();
-  commit(editor, "Change speed", std::move(next));
+  const auto source = shared_clip(editor);
+  start_task(editor, "Change speed", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+    const auto changed = std::make_shared<const Clip>(at_speed(*source, factor, progress));
+    return [=](Editor& e) {
+      settle_frame(e);
+      const double moment = changed->start + std::round((double(e.document().frame) - changed->start) / factor);
+      take_in_clip(e, source, rig, "Change speed", *changed, false, moment);
+    };
+  });
 }
 
 void ask_speed(Editor& editor) {

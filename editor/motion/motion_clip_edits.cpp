@@ -171,20 +171,20 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
 }
 
 void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-                  const std::string& label, Clip clip, bool is_new) {
+                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame) {
   settle_frame(editor);
   Document next = editor.document();
   const auto place = std::find(next.clips.begin(), next.clips.end(), source);
   if (place == next.clips.end() || next.armature != rig)
     throw Error("the clip or the rig was changed meanwhile", source->name, "do this again: " + label);
-  const int frame = std::clamp(next.frame, clip.range_start, std::max(clip.range_start, clip.range_end));
+  const double last = std::max(clip.range_start, clip.range_end);
+  next.frame = static_cast<int>(std::clamp(frame.value_or(next.frame), double(clip.range_start), last));
   if (is_new) {
     add_clip(next, std::move(clip));
   } else {
     next.clip = static_cast<int>(place - next.clips.begin());
     next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
   }
-  next.frame = frame;
   next.pose = pose_at_frame(next, &editor.timeline->prepared);
   editor.timeline->chosen.clear();
   commit(editor, label, std::move(next));

@@ -28,10 +28,10 @@ RetargetMap map_in_use(const ClipOnRig& clip);
 Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
 
 // Takes in a clip that was computed from another clip of the document, in the background: as a new clip, or in place of
-// that clip. Goes to the nearest frame that plays. Throws Error if the document no longer has the source, or has
-// another rig than that for which the clip was computed.
+// that clip. Goes to the frame, or where none is given stays, or goes to the nearest frame that plays. Throws Error if
+// the document no longer has the source, or has another rig than that for which the clip was computed.
 void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-                  const std::string& label, Clip clip, bool is_new);
+                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame = {});
 
 void choose_clip(Editor& editor, int clip);
 // Reads a BVH file and opens a dialog that asks for the scale, up axis, first frame and frame rate of the new clip.

@@ -192,3 +192,31 @@ TEST_CASE("whole clips: what was computed for another rig is refused") {
                        doctest::Contains("rig was changed"), Error);
   CHECK(test.editor->document().clips[0] == source);
 }
+
+TEST_CASE("whole clips: a cancelled bake or change of speed leaves the document as it was") {
+  DeedEditor test;
+  test.editor->preferences.reduce_motion = true;
+  // As many frames as take longer to compute than to cancel.
+  Document document = test.editor->document();
+  const std::vector<Pose> poses = sliding_steps(test.rig, kFrames, 0.01);
+  const auto long_take = std::make_shared<const Motion>(
+      motion_of_poses(test.rig, 100'000, kRate, [&](int frame) { return poses[frame % kFrames]; }));
+  document.clips = {std::make_shared<const Clip>(clip_for(document, long_take, "long", 0))};
+  document.clip = 0;
+  test.editor->history.reset(document, "Open walker");
+  test.play("wait-idle");
+  const std::string speed =
+      "click \"Motion/Clip/Whole clip/Change speed...\"\n wait-idle\n double-click Speed/value\n key Ctrl+A\n type "
+      "0.5\n key Tab\n wait-idle\n click Change";
+  for (const std::string& deed : {std::string("click \"Motion/Clip/Whole clip/Bake clip\""), speed}) {
+    INFO(deed);
+    const Document before = test.editor->document();
+    test.play(deed);
+    REQUIRE(test.editor->jobs.busy());
+    test.editor->jobs.cancel_all();
+    test.play("wait-job\n wait-idle");
+    CHECK_FALSE(test.editor->jobs.busy());
+    CHECK(test.editor->document() == before);
+    CHECK(test.fact("error") == "none");
+  }
+}

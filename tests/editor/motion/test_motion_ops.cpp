@@ -376,7 +376,7 @@ std::vector<Proof> proofs_of_clips() {
        }},
       {"motion.speed",
        "click \"Motion/Clip/Whole clip/Change speed...\"\n wait-idle\n double-click Speed/value\n key Ctrl+A\n type "
-       "2\n key Return\n key Return\n wait-idle",
+       "2\n key Return\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
          return edit_is("Change speed")(s, b) && shown_clip(s.editor())->range_end == 30 &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(15)) - 30) < 1e-3;
