@@ -180,6 +180,46 @@ void remove_constraint(Editor& editor, const std::string& name) {
   });
 }
 
+const Constraint* order_neighbour(const Editor& editor, const std::string& name, InOrder where) {
+  const auto& list = constraints_of(editor.document()).list;
+  const auto place = std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == name; });
+  if (place == list.end()) return nullptr;
+  const ClipOnRig* clip = editor.timeline->prepared.get();
+  const bool is_shown = clip && clip->clip().get() == editor.document().shown_clip();
+  const ConstraintStack* stack = is_shown ? clip->constraints() : nullptr;
+  const auto turned = [&](std::size_t index) {
+    return stack && index < stack->constraints()->list.size() ? stack->turned(index) : std::vector<int>{};
+  };
+  const auto own = static_cast<std::size_t>(place - list.begin());
+  const auto is_rival = [&](std::size_t other) {
+    const std::vector<int> a = turned(own), b = turned(other);
+    return list[other].bone == list[own].bone || std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+  };
+  const bool earlier = where == InOrder::Earlier;
+  for (std::size_t step = 1; step <= (earlier ? own : list.size() - 1 - own); ++step)
+    if (const std::size_t other = earlier ? own - step : own + step; is_rival(other)) return &list[other];
+  return nullptr;
+}
+
+void move_constraint(Editor& editor, const std::string& name, InOrder where) {
+  clip_on_rig(editor);  // prepares the shown clip
+  const Constraint* found = order_neighbour(editor, name, where);
+  if (!found) return;
+  const std::string neighbour = found->name;
+  const bool earlier = where == InOrder::Earlier;
+  change_free_clip(editor, earlier ? "Move constraint up" : "Move constraint down", [&](Clip& clip) {
+    change_list(clip, [&](Constraints& constraints) {
+      auto& list = constraints.list;
+      const auto at = [&](const std::string& wanted) {
+        return std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == wanted; });
+      };
+      const auto from = at(name), to = at(neighbour);
+      if (earlier) std::rotate(to, from, from + 1);
+      else std::rotate(from, from + 1, to + 1);
+    });
+  });
+}
+
 void change_constraint(Editor& editor, const std::string& name, const std::string& label,
                        const std::function<void(Constraint&)>& change) {
   Constraints next = constraints_of(editor.document());

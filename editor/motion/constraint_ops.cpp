@@ -37,6 +37,15 @@ std::string adding(const ConstraintRule& rule) {
   return "Add " + name;
 }
 
+std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
+  return [where](const Editor& editor) -> std::string {
+    if (std::string why = needs_constraint(editor); !why.empty()) return why;
+    if (order_neighbour(editor, active_constraint(editor)->name, where)) return "";
+    return std::string("No ") + (where == InOrder::Earlier ? "earlier" : "later") +
+           " constraint of the clip turns the same bones";
+  };
+}
+
 // Runs an edit of the active bone's constraint.
 template <class Edit>
 std::function<void(Editor&)> of_active(Edit edit) {
@@ -72,6 +81,15 @@ std::vector<Operator> constraint_operators() {
       {"constraint.toggle", "Constraint on", "", "Motion", "Switch the active bone's constraint on or off.",
        of_active(toggle), needs_constraint,
        [](const Editor& e) { return active_constraint(e) && active_constraint(e)->on; }},
+      {"constraint.up", "Move constraint up", icon::kUp, "Motion",
+       "Apply the active bone's constraint before an earlier one that turns the same bones. The later one has the last "
+       "word.",
+       of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Earlier); }),
+       needs_neighbour(InOrder::Earlier)},
+      {"constraint.down", "Move constraint down", icon::kDown, "Motion",
+       "Apply the active bone's constraint after a later one that turns the same bones, so that it has the last word.",
+       of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Later); }),
+       needs_neighbour(InOrder::Later)},
       {"constraint.key_weight", "Key weight", icon::kKey, "Motion",
        "Insert or delete a key of the constraint's weight at this frame.", of_active(toggle_weight_key),
        needs_constraint,

@@ -2,6 +2,7 @@
 #include "editor/motion/constraint_panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -81,12 +82,45 @@ bool draw_small_icon(Editor& editor, const Rect& rect, const std::string& name, 
   return pressed.clicked;
 }
 
+// The constraints beside which the place of one in the list matters: an earlier and a later one; null: none.
+using OrderNeighbours = std::array<const Constraint*, 2>;
+
+// Draws the buttons that move a constraint in the list. Returns whether they did.
+bool draw_order(Editor& editor, const Rect& rect, const Constraint& constraint, const OrderNeighbours& others) {
+  const Look& look = editor.look;
+  const std::string name = constraint.name;
+  for (const InOrder where : {InOrder::Earlier, InOrder::Later}) {
+    const bool earlier = where == InOrder::Earlier;
+    const Constraint* other = others[earlier ? 0 : 1];
+    const float middle = std::round(rect.centre().x);
+    const Rect place = earlier ? Rect{rect.low, {middle, rect.high.y}} : Rect{{middle, rect.low.y}, rect.high};
+    if (!other) {
+      put_icon(look.fonts.regular, look.theme.text3, place, earlier ? icon::kUp : icon::kDown);
+      continue;
+    }
+    if (!draw_small_icon(editor, place, earlier ? "Up" : "Down", earlier ? icon::kUp : icon::kDown, look.theme.text2,
+                         std::string("Apply ") + (earlier ? "before " : "after ") + other->name,
+                         "Both turn the same bones, and the later one has the last word."))
+      continue;
+    attempt(editor, "Move constraint", [&](Editor& e) { move_constraint(e, name, where); });
+    return true;
+  }
+  return false;
+}
+
 // Draws the head of a constraint. Returns false when its deeds have replaced the document.
 bool draw_head(Editor& editor, Column& column, const Constraint& constraint, bool is_open, bool has_problem) {
   const Look& look = editor.look;
   const Rect row = column.row(26);
   const float left = row.low.x + look.px(10), right = row.high.x - look.px(10), side = look.px(20);
-  const Rect fold{{left, row.low.y}, {right - 2 * side, row.high.y}};
+  OrderNeighbours others{};
+  if (is_open)
+    others = {order_neighbour(editor, constraint.name, InOrder::Earlier),
+              order_neighbour(editor, constraint.name, InOrder::Later)};
+  const bool has_order = others[0] || others[1];
+  const Rect order{{right - 4 * side, row.low.y}, {right - 2 * side, row.high.y}};
+  if (has_order && draw_order(editor, order, constraint, others)) return false;
+  const Rect fold{{left, row.low.y}, {has_order ? order.low.x : order.high.x, row.high.y}};
   const Pressed pressed = press_area(editor, "Fold", fold);
   put_icon(look.fonts.regular, look.theme.text2, Rect{fold.low, {left + look.px(14), row.high.y}},
            is_open ? icon::kOpened : icon::kClosed);

@@ -25,6 +25,23 @@ std::function<void(Stage&)> ready(std::vector<Constraint> constraints, int bone 
 
 const std::vector<Constraint>& list_of(Stage& stage) { return constraints_of(stage.document()).list; }
 
+// Two that aim one arm at different places: the later one has the last word.
+std::vector<Constraint> two_aims() {
+  return {{.name = "A", .kind = ConstraintKind::Aim, .bone = "LeftArm", .place{90, 0, 0}},
+          {.name = "B", .kind = ConstraintKind::Aim, .bone = "LeftArm", .place{0, 0, -90}}};
+}
+std::function<void(Stage&)> ready_two(const std::string& active) {
+  return [=](Stage& s) {
+    ready(two_aims(), kUpper)(s);
+    s.editor().timeline->constraint = active;
+  };
+}
+std::function<bool(Stage&, const Seen&)> in_order(const std::string& first, const std::string& edit) {
+  return [=](Stage& s, const Seen&) {
+    return list_of(s)[0].name == first && list_of(s).size() == 2 && s.is("edit", edit);
+  };
+}
+
 std::function<bool(Stage&, const Seen&)> has_one(ConstraintKind kind, const std::string& bone,
                                                  const std::string& target) {
   return [=](Stage& s, const Seen&) {
@@ -59,6 +76,10 @@ std::vector<Proof> proofs_of_constraints() {
       {"constraint.toggle", choose("Constraint on"),
        [](Stage& s, const Seen&) { return !list_of(s)[0].on && s.is("edit", "Switch constraint off"); }, Shows::InBody,
        "", ready(one)},
+      {"constraint.up", choose("Move constraint up"), in_order("B", "Move constraint up"), Shows::InBody, "",
+       ready_two("B")},
+      {"constraint.down", choose("Move constraint down"), in_order("B", "Move constraint down"), Shows::InBody, "",
+       ready_two("A")},
       {"constraint.key_weight", choose("Key weight"),
        [](Stage& s, const Seen&) {
          return weights(s.editor()) == std::map<int, double>{{10, 1}};
@@ -277,6 +298,36 @@ TEST_CASE("constraint panel: circles and targets that move along are refused wit
   CHECK_THROWS_WITH(add_constraint(*test.editor, ConstraintKind::Plant),
                     "a plant needs two bones above the bone: Plant Trunk: choose a hand or foot");
   CHECK(test.document() == before);
+}
+
+TEST_CASE("constraint panel: the order is changed by the buttons, only past what turns the same bones, and undone") {
+  std::vector<Constraint> list = two_aims();
+  list.insert(list.begin() + 1, {.name = "Leg", .kind = ConstraintKind::Aim, .bone = "LeftThigh", .place{0, 90, 0}});
+  ArmEditor test(list, kUpper);
+  const auto names = [&] {
+    std::string all;
+    for (const Constraint& one : constraints_of(test.document()).list) all += one.name;
+    return all;
+  };
+  const auto aims_at = [&](const glm::dvec3& place) {
+    const Pose& pose = pose_of(test.document());
+    const glm::dvec3 head = test.document().armature->bones[kUpper].head, tail = tail_of(test.document(), kUpper);
+    const glm::dvec3 posed_head = tail_of(test.document(), pose, kTrunk);  // the arm begins at the trunk's tail
+    CHECK(head == test.document().armature->bones[kTrunk].tail);
+    return glm::dot(glm::normalize(tail - posed_head), glm::normalize(place - posed_head)) > 0.999;
+  };
+  test.editor->timeline->constraint = "A";
+  test.play("wait-idle");
+  CHECK(test.fact("widget:A/Up") != "shown");
+  CHECK(aims_at({0, 0, -90}));
+  test.play("click Constraints/A/Down\n wait-idle");
+  CHECK(names() == "LegBA");
+  CHECK(aims_at({90, 0, 0}));
+  test.play("click Constraints/A/Up\n wait-idle");
+  CHECK(names() == "LegAB");
+  test.play("key Ctrl+Z\n wait-idle\n key Ctrl+Z\n wait-idle");
+  CHECK(names() == "ALegB");
+  CHECK(aims_at({0, 0, -90}));
 }
 
 }  // namespace limber::test
