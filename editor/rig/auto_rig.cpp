@@ -13,6 +13,7 @@
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
+#include "editor/rig/rig_edits.h"
 #include "editor/shown/frame_all.h"
 #include "editor/ui/icons.h"
 
@@ -67,9 +68,10 @@ void start_auto_fit(Editor& editor, const std::string& which) {
     };
   });
   editor.step_of_job[id] = StepOfWork::Rig;
-  editor.after_job[id] = [fitted](Editor& e, const JobStatus& job) {
+  editor.after_job[id] = [fitted, before = from.armature](Editor& e, const JobStatus& job) {
     if (job.state != JobState::Done) return;
     show_fit(e, *fitted);
+    if (before) warn_of_moved_targets(e, "Skeleton fitted", *before, bones_of(*before, *e.document().armature));
   };
   editor.touch();
 }
@@ -83,6 +85,7 @@ void offer_fit(Editor& editor, const std::string& file, double inside) {
         if (ed.document().volume != from.volume || ed.document().armature != from.armature)
           throw Error("the rig or the volume was changed meanwhile", "placing the rig", "start it again");
         commit(ed, "Place rig", with_rig(ed.document(), rig));
+        warn_of_moved_targets(ed, "Place rig", *from.armature, bones_of(*from.armature, *rig));
         frame_all(ed, true);
       };
     });
@@ -148,7 +151,9 @@ void ask_template(Editor& editor) {
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {
     const RigTemplate& chosen = rig_templates()[fields[0].chosen];
     auto rig = std::make_shared<const Armature>(scaled_to_tissue(*e.document().volume, rig_template(chosen.name)));
+    const std::shared_ptr<const Armature> before = e.document().armature;
     e.history.commit("Template " + chosen.label, with_rig(e.document(), rig));
+    if (before) warn_of_moved_targets(e, "Template " + chosen.label, *before, bones_of(*before, *rig));
     e.messages.ok("Template " + chosen.label,
                   "The skeleton is scaled to the tissue. Use Auto-fit skeleton to find its joints");
   };

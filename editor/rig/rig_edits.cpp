@@ -5,6 +5,7 @@
 #include <functional>
 #include <numeric>
 
+#include "core/motion/moved_targets.h"
 #include "core/project/bone_names.h"
 #include "core/rig/mirror.h"
 #include "core/skin/transfer_to_volume.h"
@@ -62,6 +63,7 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
   document.armature = std::make_shared<const Armature>(std::move(next));
   commit(editor, label, std::move(document));
   if (weights_lost) editor.messages.info(label, lost);
+  if (before) warn_of_moved_targets(editor, label, *before, from);
   editor.selection = {};
   for (const int bone : chosen) {
     editor.selection.bone = bone;
@@ -70,6 +72,22 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
 }
 
 }  // namespace
+
+void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before,
+                           const std::vector<int>& from) {
+  constexpr std::size_t kMostNamed = 3;
+  std::vector<std::string> moved;
+  for (const auto& clip : editor.document().clips)
+    if (clip->constraints)
+      for (const std::string& name : moved_targets(*clip->constraints, before, *editor.document().armature, from))
+        moved.push_back(name + " (" + clip->name + ")");
+  if (moved.empty()) return;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(moved.size(), kMostNamed); ++i) names += (i == 0 ? "" : ", ") + moved[i];
+  if (moved.size() > kMostNamed) names += " and " + std::to_string(moved.size() - kMostNamed) + " more";
+  editor.messages.warn(label + ": the target of constraints moved",
+                       names + ". Look at their places in the Pose workspace");
+}
 
 std::shared_ptr<const Armature> shown_rig(const Editor& editor) {
   return editor.views->preview_armature ? editor.views->preview_armature : editor.document().armature;

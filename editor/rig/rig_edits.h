@@ -26,6 +26,12 @@ Armature mirrored_too(const Editor& editor, Armature next);
 // Commits the new rig as one edit and selects bones; does nothing when the rig is unchanged.
 //   chosen  bones of the new rig to select; the last one becomes active
 void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
+// Warns if the last edit moved the target bones of constraints (core/motion/moved_targets.h). The document has the new
+// rig already.
+//   before  the old rig
+//   from    for each bone of the new rig, its index in the old rig; -1: a new bone
+void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before,
+                           const std::vector<int>& from);
 // rename_bone() renames one bone. commit_names() commits a rig that differs from the document's rig only in the names
 // of bones. Each call makes one edit, and all that refers to a bone by name (keys, library poses, pins, locks) gets the
 // new name.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <cmath>
 
+#include "core/motion/constraint.h"
 #include "editor/context/transform_settings.h"
 #include "editor/context/view_projection.h"
 #include "editor/rig/joint_gizmo.h"
@@ -552,4 +553,33 @@ TEST_CASE(
       }
     }
   }
+}
+
+TEST_CASE("rigging: an edit that moves the target bone of a constraint says so, and others say nothing") {
+  RiggingEditor test;
+  Document document = test.editor->document();
+  const std::string child = test.rig().bones[1].name, root = test.rig().bones[0].name;
+  Clip clip{.name = "sit", .range_end = 10};
+  clip.constraints = std::make_shared<const Constraints>(
+      Constraints{{{.name = "Aim", .kind = ConstraintKind::Aim, .bone = root, .target = child, .place{0, 0, 9}},
+                   {.name = "Free", .kind = ConstraintKind::Aim, .bone = child, .place{0, 0, 9}}}});
+  document.clips = {std::make_shared<const Clip>(clip)};
+  test.editor->history.reset(document, "Open limb");
+  const auto warnings = [&] {
+    std::string all;
+    for (const LogLine& line : test.editor->messages.log)
+      if (line.severity == Severity::Warning) all += line.text + "\n";
+    return all;
+  };
+  Armature limits = test.rig();
+  limits.bones[1].roll += 0.1;
+  commit_rig(*test.editor, "Roll", limits, {1});
+  CHECK(warnings() == "");
+  rename_bone(*test.editor, 1, "Other");
+  CHECK(warnings() == "");
+  Armature moved = test.rig();
+  moved.bones[1].tail.x += 5;
+  commit_rig(*test.editor, "Move tail", moved, {1});
+  CHECK(warnings().find("Aim (sit)") != std::string::npos);
+  CHECK(warnings().find("Free") == std::string::npos);
 }

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/motion/moved_targets.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kUnmoved = 1e-6;  // mm; what a rig's file loses by rounding is no move
+
+bool is_moved(const Bone& before, const Bone& after) {
+  return glm::distance(before.head, after.head) > kUnmoved || glm::distance(before.tail, after.tail) > kUnmoved;
+}
+
+}  // namespace
+
+std::vector<std::string> moved_targets(const Constraints& constraints, const Armature& before, const Armature& after,
+                                       const std::vector<int>& from) {
+  std::vector<std::string> moved;
+  for (const Constraint& constraint : constraints.list) {
+    const auto target = after.find(constraint.target);
+    if (!target) continue;  // a place of the world, or a bone that is gone, which the constraint's problem says
+    const int old = from[static_cast<std::size_t>(*target)];
+    if (old < 0 || is_moved(before.bones[old], after.bones[*target])) moved.push_back(constraint.name);
+  }
+  return moved;
+}
+
+}  // namespace limber
