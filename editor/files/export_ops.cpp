@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "core/export/exporter.h"
+#include "core/motion/clip.h"
 #include "editor/context/operator_polls.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/files/export.h"
@@ -20,6 +21,14 @@ namespace {
 
 std::string stem_of(const Editor& editor) {
   return editor.name.empty() ? "Untitled" : Path(editor.name).stem().string();
+}
+
+// Returns the proposed name of what is made of the shown motion: that of its clip, without what file names cannot have.
+std::string motion_stem(const Editor& editor) {
+  const Clip* clip = editor.document().shown_clip();
+  std::string name = clip ? clip->name : "";
+  std::replace(name.begin(), name.end(), '/', '-');
+  return name.empty() || name[0] == '.' ? stem_of(editor) : name;
 }
 
 struct ExportFacts {
@@ -49,27 +58,29 @@ Operator export_operator(const ExportFacts& facts) {
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = facts.filters,
-                       .name = stem_of(e) + facts.suffix + facts.filters[0].ends[0],
+                       .name = (facts.kind == ExportKind::Motion ? motion_stem(e) : stem_of(e) + facts.suffix) +
+                               facts.filters[0].ends[0],
                        .folder = e.project_path.parent_path(),
                        .chosen = [kind = facts.kind](Editor& ed, const Path& path) { export_file(ed, kind, path); }});
           },
           [kind = facts.kind](const Editor& e) { return why_not_export(e, kind); }};
 }
 
-Operator picture_operator(const char* id, const char* label, const char* description, const char* suffix,
-                          std::vector<FileFilter> filters, void (*act)(Editor&, const Path&)) {
+Operator picture_operator(const char* id, const char* label, const char* description,
+                          std::string (*name)(const Editor&), std::vector<FileFilter> filters,
+                          void (*act)(Editor&, const Path&)) {
   return {id,
           label,
           icon::kCamera,
           "File",
           description,
-          [label, suffix, filters, act](Editor& e) {
+          [label, name, filters, act](Editor& e) {
             browse(e, {.purpose = "picture",
                        .title = title_of(label),
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = filters,
-                       .name = stem_of(e) + suffix + ".png",
+                       .name = name(e) + ".png",
                        .folder = e.project_path.parent_path(),
                        .chosen = act});
           },
@@ -81,8 +92,8 @@ Operator motion_pictures() {
       picture_operator("file.export_motion_pictures", "Motion as pictures...",
                        "Export the frames that play as the body in the 3D view: a video at the clip's speed, or a "
                        "picture of each frame.",
-                       "-motion", {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
-                       export_motion_pictures);
+                       motion_stem, {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
+                       ask_motion_pictures);
   op.disabled_reason = why_no_motion_pictures;
   return op;
 }
@@ -166,7 +177,7 @@ std::vector<Operator> export_operators() {
                        "Export the active motion as BVH.",
                        ExportKind::Motion,
                        {{"BVH", {".bvh"}}},
-                       "-motion"}),
+                       ""}),
       export_operator({"file.export_gltf",
                        "glTF...",
                        "Export the surface, skeleton, weights and every clip for other programs.",
@@ -196,16 +207,18 @@ std::vector<Operator> export_operators() {
                            export_report);
        },
        needs_result},
-      picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", "",
+      picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", stem_of,
                        {{"PNG pictures", {".png"}}}, export_picture),
       {"file.export_figure", "Figure...", icon::kCamera, "File",
        "Export the active view for a page: its size in mm, with a scale bar, a legend and a title, as PNG, TIFF or "
        "SVG.",
        [last = std::make_shared<FigureOptions>()](Editor& e) { ask_for_figure(e, last); }, needs_volume},
-      picture_operator("view.turntable", "Turntable...",
-                       "Export 36 pictures of the body, with the camera turning once around it, or a video of 5 s.",
-                       "-turn", {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
-                       [](Editor& e, const Path& path) { export_turntable(e, path); }),
+      picture_operator(
+          "view.turntable", "Turntable...",
+          "Export 36 pictures of the body, with the camera turning once around it, or a video of 5 s.",
+          [](const Editor& e) { return stem_of(e) + "-turn"; },
+          {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
+          [](Editor& e, const Path& path) { export_turntable(e, path); }),
       motion_pictures(),
   };
 }

@@ -5,7 +5,9 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "core/motion/followed_centre.h"
 #include "editor/dialogs/confirm_dialog.h"
+#include "editor/dialogs/form_dialog.h"
 #include "editor/figure/video.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
@@ -78,6 +80,22 @@ class PosedScenes {
   const std::shared_ptr<MapMaker> maker_;  // makes maps as fine as those that the 3D view shows at rest
 };
 
+// Returns the camera of each picture: the 3D view's own, or one that goes along with the body and shows it in the shown
+// frame as the 3D view does.
+std::function<render::Camera(int picture)> camera_of_pictures(const Editor& editor, const std::vector<int>& frames,
+                                                              MotionCamera kind) {
+  const render::Camera still = editor.views->body.camera;
+  if (kind == MotionCamera::Still) return [still](int) { return still; };
+  const Document& document = editor.document();
+  const auto centre =
+      std::make_shared<FollowedCentre>(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
+  return [still, frames, centre, shown = centre->at(document.frame)](int picture) {
+    render::Camera camera = still;
+    camera.centre += centre->at(frames[static_cast<std::size_t>(picture)]) - shown;
+    return camera;
+  };
+}
+
 }  // namespace
 
 glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
@@ -139,11 +157,11 @@ std::string why_no_motion_pictures(const Editor& editor) {
   return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
 }
 
-void export_motion_pictures(Editor& editor, const Path& path) {
+void export_motion_pictures(Editor& editor, const Path& path, MotionCamera camera) {
   if (const std::string why = why_no_motion_pictures(editor); !why.empty())
     throw Error("the motion cannot be shown", path.filename().string(), why);
   const std::vector<int> frames = frames_of_pictures(editor, path);
-  agree_on_pictures(editor, path, static_cast<int>(frames.size()), [path, frames](Editor& e) {
+  agree_on_pictures(editor, path, static_cast<int>(frames.size()), [path, frames, camera](Editor& e) {
     stop_playing(e);
     const auto scenes = std::make_shared<PosedScenes>(e, frames);
     start_picture_files(
@@ -152,11 +170,32 @@ void export_motion_pictures(Editor& editor, const Path& path) {
          .scene = e.views->scene,
          .size = size_of_view(e, ViewId::Body),
          .pictures = static_cast<int>(frames.size()),
-         .camera = [camera = e.views->body.camera](int) { return camera; },
+         .camera = camera_of_pictures(e, frames, camera),
          .prepare = [scenes](int picture, render::Scene& scene) { return scenes->pose(picture, scene); },
          .take = {},
          .finish = {}});
   });
+}
+
+void ask_motion_pictures(Editor& editor, const Path& path) {
+  if (const std::string why = why_no_motion_pictures(editor); !why.empty())
+    throw Error("the motion cannot be shown", path.filename().string(), why);
+  const auto outcome = [path](const Editor& e, const std::vector<FormField>&) {
+    const std::size_t pictures = frames_of_pictures(e, path).size();
+    return std::to_string(pictures) + (pictures == 1 ? " picture" : " pictures") + ", drawn in the background.";
+  };
+  const auto act = [path](Editor& e, const std::vector<FormField>& fields) {
+    export_motion_pictures(e, path, static_cast<MotionCamera>(fields[0].chosen));
+  };
+  editor.open_dialog(make_form({"Motion as pictures",
+                                "Draws the body in each frame that plays, from where the 3D view looks now.",
+                                "Export",
+                                {choice_of("Camera",
+                                           "A camera that follows the body keeps its pelvis, or its root, in the same "
+                                           "place of the picture.",
+                                           {"Stands still", "Follow the body"})},
+                                outcome,
+                                act}));
 }
 
 }  // namespace limber::editor

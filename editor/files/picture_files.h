@@ -20,6 +20,9 @@ void start_picture_files(Editor& editor, const Path& path, PictureTask task);
 std::string why_no_motion_pictures(const Editor& editor);
 // Writes the frames of the shown clip that play, posed as in the live preview, from where the 3D view looks: every
 // frame as a picture, or a video at the clip's speed.
-void export_motion_pictures(Editor& editor, const Path& path);
+enum class MotionCamera { Still, FollowsBody };
+void export_motion_pictures(Editor& editor, const Path& path, MotionCamera camera = MotionCamera::Still);
+// Asks whether the camera stands still or follows the body, and then exports.
+void ask_motion_pictures(Editor& editor, const Path& path);
 
 }  // namespace limber::editor

@@ -198,7 +198,7 @@ std::vector<Proof> proofs_of_files() {
               })},
       {"file.export_motion_pictures",
        "click \"Motion/Clip/Export/Motion as pictures...\"\n wait-idle\n key Ctrl+A\n type steps\n key Return\n "
-       "wait-job",
+       "wait-idle\n key Return\n wait-job",
        writes("steps-0001.png",
               [](const Path& p, const Document&) {
                 return render::read_png(p).rgba != render::read_png(p.parent_path() / "steps-0000.png").rgba;

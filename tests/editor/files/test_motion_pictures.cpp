@@ -2,6 +2,7 @@
 // The motion that plays as pictures: each shows the body as the 3D view does at rest in that frame.
 #include <doctest/doctest.h>
 
+#include "core/motion/recorded_clip.h"
 #include "editor/files/picture_files.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
@@ -41,7 +42,8 @@ TEST_CASE(
   const Document before = test.editor->document();
   const auto exported = [&](const char* menu, const std::string& file) {
     test.play(std::string("click \"File/Export/") + menu + "\"\n wait-idle\n key Ctrl+A\n type \"" +
-              (folder / file).string() + "\"\n key Return\n wait-job\n wait-idle");
+              (folder / file).string() + "\"\n key Return\n wait-idle\n" + (menu[0] == 'M' ? "key Return\n" : "") +
+              "wait-job\n wait-idle");
   };
   exported("Motion as pictures...", "steps.png");
   CHECK(test.editor->document() == before);
@@ -136,4 +138,34 @@ TEST_CASE("motion pictures: without weights or a clip it is said what is missing
   document.weights = nullptr;
   test.editor->history.reset(std::move(document), "Open limb");
   CHECK(op->disabled_reason(*test.editor) == "Compute the weights first");
+}
+
+TEST_CASE("motion pictures: a camera that follows the body keeps it where it is, and the file has the clip's name") {
+  LimbEditor test({900, 640});
+  Document document = bending_limb();
+  document.weights = half_weights(*document.volume);
+  std::vector<Pose> poses(4, rest_pose(*document.armature));
+  for (int frame = 0; frame < 4; ++frame) poses[frame].root_translation = {8.0 * frame, 0, 3.0 * frame};
+  document.clips = {
+      std::make_shared<const Clip>(clip_of_poses({.name = "off to/town", .rate = 30}, *document.armature, poses, 0))};
+  document.clip = 0;
+  document.frame = 0;
+  document.pose = nullptr;
+  test.editor->history.reset(std::move(document), "Open limb");
+  const TemporaryFolder folder;
+  test.editor->project_path = folder / "limb.limber";
+  test.play(
+      "key Ctrl+3\n move \"3D view/view\"\n wait-idle\n click \"File/Export/Motion as pictures...\"\n wait-idle\n key "
+      "Return\n wait-idle\n key Return\n wait-job\n wait-idle");
+  test.play("click \"File/Export/Motion as pictures...\"\n wait-idle\n key Ctrl+A\n type \"" +
+            (folder / "along.png").string() +
+            "\"\n key Return\n wait-idle\n click \"Camera/Follow the body\"\n wait-idle\n key Return\n wait-job\n "
+            "wait-idle");
+  const auto picture = [&](const char* name) { return render::read_png(folder / name); };
+  CHECK(difference(picture("off to-town-0000.png"), picture("along-0000.png")) == 0);
+  const double still = difference(picture("off to-town-0000.png"), picture("off to-town-0003.png"));
+  const double along = difference(picture("along-0000.png"), picture("along-0003.png"));
+  CAPTURE(still);
+  CAPTURE(along);
+  CHECK(still > 10 * along);  // what is left is the edges of voxels that are sampled elsewhere
 }
