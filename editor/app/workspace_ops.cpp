@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/operator_polls.h"
+#include "editor/resample/results.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
 
 namespace {
 
+void go_to(Editor& editor, Workspace workspace) {
+  const bool stays = editor.workspace == workspace;
+  editor.workspace = workspace;
+  if (workspace == Workspace::Resample && !stays) show_result_of_pose(editor);
+}
+
 Operator to_workspace(const char* id, const char* label, const char* icon, const char* description,
                       Workspace workspace) {
   return {id,          label,
           icon,        "Workspace",
-          description, [workspace](Editor& e) { e.workspace = workspace; },
+          description, [workspace](Editor& e) { go_to(e, workspace); },
           nullptr,     [workspace](const Editor& e) { return e.workspace == workspace; }};
 }
 
 Operator by_step(const char* id, const char* label, int step) {
   return {id, label, "", "Workspace", "Switch to the previous or next workspace of the top bar.", [step](Editor& e) {
-            e.workspace = static_cast<Workspace>((static_cast<int>(e.workspace) + step + 4) % 4);
+            go_to(e, static_cast<Workspace>((static_cast<int>(e.workspace) + step + 4) % 4));
           }};
 }
 

@@ -245,6 +245,22 @@ void show_result(Editor& editor, const std::string& name) {
   if (result_named(editor.document(), name) && !shown_result(editor)) editor.workspace = Workspace::Resample;
 }
 
+void show_result_of_pose(Editor& editor) {
+  const Document& document = editor.document();
+  const Comparison& comparison = editor.comparison;
+  if (comparison.views != Comparison::Views::One || comparison.shows_a) return;
+  const auto shown = result_named(document, comparison.b);
+  if (shown && is_of_this_pose(document, *shown)) return;
+  std::shared_ptr<const Result> best;
+  for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {
+    if (!is_of_this_pose(document, **at)) continue;
+    const bool is_fresh = stale_reason(document, **at).empty();
+    if (!best || is_fresh) best = *at;
+    if (is_fresh) break;
+  }
+  if (best) editor.comparison.b = best->name;
+}
+
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name) {
   Document next = editor.document();
   const auto place = std::find(next.results.begin(), next.results.end(), result);

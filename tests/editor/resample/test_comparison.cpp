@@ -266,6 +266,33 @@ TEST_CASE("results: gates, changes and provenance are read from the report of th
   }
 }
 
+TEST_CASE("results: the Resample workspace opens with the result of the current pose, if there is one") {
+  Compared test;
+  Document next = test.editor->document();
+  Pose bent = rest_pose(*next.armature);
+  bent.rotation[1] = glm::angleAxis(0.5, glm::dvec3(1, 0, 0));
+  const auto posed_by = [&](std::size_t at, const Pose& pose) {
+    auto one = std::make_shared<Result>(*next.results[at]);
+    one->from_pose = std::make_shared<const Pose>(pose);
+    next.results[at] = one;
+  };
+  posed_by(0, rest_pose(*next.armature));
+  posed_by(1, bent);
+  next.pose = std::make_shared<const Pose>(bent);
+  test.editor->history.commit("Pose", next);
+  test.play("click One/row\n wait-idle");
+  CHECK(test.shown().get() == test.volume(0));
+  test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
+  CHECK(test.shown().get() == test.volume(1));
+  // A pose without a result leaves what the user selected.
+  next = test.editor->document();
+  bent.rotation[0] = glm::angleAxis(0.2, glm::dvec3(1, 0, 0));
+  next.pose = std::make_shared<const Pose>(bent);
+  test.editor->history.commit("Pose", next);
+  test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
+  CHECK(test.shown().get() == test.volume(1));
+}
+
 TEST_CASE("results: without a choice the comparison is of the volume at rest and the last result") {
   Compared test;
   test.play("move \"3D view/view\"\n key 4");
