@@ -46,7 +46,14 @@ std::string minutes_text(double seconds) {
 
 std::string escaped(const std::string& text) {
   std::string result;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    // XML forbids U+FFFE and U+FFFF, too.
+    if (text.compare(i, 3, "\xef\xbf\xbe") == 0 || text.compare(i, 3, "\xef\xbf\xbf") == 0) {
+      result += "\ufffd";
+      i += 2;
+      continue;
+    }
+    const char c = text[i];
     switch (c) {
       case '&': result += "&amp;"; break;
       case '<': result += "&lt;"; break;

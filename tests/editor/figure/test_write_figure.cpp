@@ -137,6 +137,20 @@ TEST_CASE("figure file: an SVG drawn by librsvg is the figure, with real text an
   }
 }
 
+TEST_CASE("figure file: characters that XML forbids do not reach an SVG") {
+  const TemporaryFolder folder;
+  const Lettering lettering;
+  FigureSource source;
+  source.legend = [](const glm::ivec2&) {
+    return std::vector<LegendEntry>{{"A\uffffB\ufffeC\x01\x0b\ufffdD\u0416", glm::vec3(0.5f)}};
+  };
+  source.millimetres_per_pixel = [](const glm::ivec2&) { return 0.5; };
+  const FigureLayout layout = figure_layout({.size = {60, 50}, .dots_per_inch = 100}, source, lettering);
+  write_figure(layout, disc(layout.picture_pixels), lettering, folder / "figure.svg");
+  const std::string text = read_file(folder / "figure.svg");
+  CHECK(text.find(">A\ufffdB\ufffdC \ufffdD\u0416</text>") != std::string::npos);
+}
+
 TEST_CASE("figure file: names that are not UTF-8 leave an SVG that other programs read") {
   NEEDS_PROGRAM("rsvg-convert");
   const TemporaryFolder folder;
