@@ -351,8 +351,18 @@ void take_key(Editor& editor, const std::vector<Row>& rows) {
   }
 }
 
-void draw_search(Editor& editor, Column& column) {
-  if (!editor.outliner.searching) return;
+// Returns the first row whose own name matches the search; rows above it may be there because of it. 0 without one.
+int first_found(const Editor& editor, const std::vector<Row>& rows) {
+  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
+    return contains_ignoring_case(row.name, editor.outliner.search);
+  });
+  return found == rows.end() ? 0 : static_cast<int>(found - rows.begin());
+}
+
+// Returns true if the user has changed the search.
+bool draw_search(Editor& editor, Column& column) {
+  if (!editor.outliner.searching) return false;
+  const std::string before = editor.outliner.search;
   const Look& look = editor.look;
   const Rect row = column.row(32);
   const bool focus = std::exchange(editor.outliner.focus_search, false);
@@ -362,8 +372,12 @@ void draw_search(Editor& editor, Column& column) {
   if ((ImGui::IsItemActive() || ImGui::IsItemDeactivated()) &&
       (ImGui::IsKeyPressed(static_cast<int>(Key::Down)) || ImGui::IsKeyPressed(static_cast<int>(Key::Return)))) {
     ImGui::ClearActiveID();
-    focus_list(editor, kList, 0);
+    const std::vector<Row> rows = Tree(editor).rows;
+    const int found = first_found(editor, rows);
+    focus_list(editor, kList, found);
+    if (!rows.empty() && !editor.outliner.search.empty()) choose(editor, rows[static_cast<std::size_t>(found)], false);
   }
+  return editor.outliner.search != before && !editor.outliner.search.empty();
 }
 
 // Unfolds the armature and all ancestors of a bone.
@@ -424,7 +438,7 @@ void draw_outliner(Editor& editor, Column& column) {
   }
   if (ImGui::IsItemHovered()) operator_tooltip(editor, search, place);
   if (open) {
-    draw_search(editor, column);
+    const bool is_new_search = draw_search(editor, column);
     const auto revealed = newly_chosen(editor);
     if (revealed) unfold_to(editor, *revealed);
     const std::vector<Row> rows = Tree(editor).rows;
@@ -441,6 +455,7 @@ void draw_outliner(Editor& editor, Column& column) {
       if (revealed)
         if (const auto row = std::find_if(rows.begin(), rows.end(), is_revealed); row != rows.end())
           scroll_to_row(look, static_cast<int>(row - rows.begin()), place.height());
+      if (is_new_search) scroll_to_row(look, first_found(editor, rows), place.height());
       for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, list, i, rows[i]);
     }
     if (!editor.input.down(MouseButton::Left)) drag = {};

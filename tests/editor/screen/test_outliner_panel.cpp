@@ -156,6 +156,30 @@ TEST_CASE("outliner: the search keeps parents, and finds nothing with a way back
   CHECK(test.editor->selection.bone == 2);
 }
 
+TEST_CASE("outliner: what is found below the fold of the list is scrolled to, and Return goes to it") {
+  SmallEditor test({1280, 720});
+  Document document = small_body();
+  auto armature = std::make_shared<Armature>();
+  for (int b = 0; b < 60; ++b) {
+    Bone bone;
+    bone.name = b == 59 ? "Fingertip" : "Bone " + std::to_string(b);
+    bone.parent = b - 1;
+    bone.head = {0, 0, 1.0 * b};
+    bone.tail = {0, 0, 1.0 * b + 1};
+    armature->bones.push_back(bone);
+  }
+  document.armature = armature;
+  test.editor->history.reset(document, "Open");
+  test.play("key Ctrl+1\n wait-idle\n move \"3D view/view\"\n key Ctrl+F\n type \"finger\"\n wait-idle");
+  const Widget* found = test.editor->widgets.find("Outliner/bone Fingertip/name");
+  REQUIRE(found);
+  CHECK(found->rect.height() > 10 * test.editor->look.scale);
+  CHECK(found->rect.high.y <= test.editor->layout.sidebar.high.y);
+  test.play("key Return\n wait-idle");
+  REQUIRE(test.editor->selection.bone);
+  CHECK(*test.editor->selection.bone == 59);
+}
+
 TEST_CASE("outliner: a thousand tissues cost no more than what is seen of them") {
   SmallEditor test({1280, 720});
   Document document = small_body();
