@@ -7,6 +7,8 @@
 
 #include "core/base/json_text.h"
 #include "editor/context/layout_json.h"
+#include "editor/motion/constrained_pose.h"
+#include "editor/shown/shown_pose.h"
 #include "editor/skin/weight_display.h"
 #include "editor/volume/shown_image.h"
 
@@ -96,6 +98,30 @@ void restore_image(Editor& editor, const Json& json) {
   reopen_image(editor, file, json.contains("level") ? std::optional(shown) : std::nullopt);
 }
 
+// Stores the pose below the constraints where the user made it by hand: the document holds only what they made of it.
+void add_free_pose(Json& json, const Editor& editor) {
+  const auto free = free_pose_by_hand(editor);
+  if (!free) return;
+  Json& stored = json["free_pose"] = {{"root", json_of(free->root_translation)}, {"rotations", Json::array()}};
+  for (const glm::dquat& q : free->rotation) stored["rotations"].push_back(Json::array({q.w, q.x, q.y, q.z}));
+}
+
+void restore_free_pose(Editor& editor, const Json& json) {
+  const Document& document = editor.document();
+  const auto stored = json.find("free_pose");
+  if (!is_constrained(document) || stored == json.end() || !stored->is_object()) return;
+  Pose free = rest_pose(*document.armature);
+  const auto rotations = stored->find("rotations");
+  if (rotations == stored->end() || !rotations->is_array() || rotations->size() != free.rotation.size()) return;
+  if (!take_vector(*stored, "root", free.root_translation)) return;
+  for (std::size_t bone = 0; bone < free.rotation.size(); ++bone) {
+    glm::dvec4 q(0);
+    if (!take_vector(Json{{"q", (*rotations)[bone]}}, "q", q) || std::abs(glm::length(q) - 1) > 1e-6) return;
+    free.rotation[bone] = glm::dquat(q[0], q[1], q[2], q[3]);
+  }
+  remember_free_pose(editor, document, pose_of(document), free);
+}
+
 }  // namespace
 
 std::string editor_state(const Editor& editor) {
@@ -132,6 +158,7 @@ std::string editor_state(const Editor& editor) {
                      {"tissues", views.image->tissues},
                      {"rendering", static_cast<int>(views.image->rendering)}};
   else if (!views.image_path.empty()) json["image"] = {{"path", views.image_path.string()}};  // not there now
+  add_free_pose(json, editor);
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
   // A file's name may hold bytes that are no text; the state is stored all the same.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -181,6 +208,7 @@ void restore_editor_state(Editor& editor, const std::string& text) {
       take_vector((*all)[i], "centre", views.slices[i].camera.centre);
       take((*all)[i], "millimetres_per_pixel", 1e-6, 1e4, views.slices[i].camera.millimetres_per_pixel);
     }
+  restore_free_pose(editor, json);
   int tissue = -1;
   take(json, "tissue", 0, 65535, tissue);
   if (tissue >= 0 && editor.document().tissues && editor.document().tissues->find(static_cast<Label>(tissue))) {

@@ -19,13 +19,22 @@ bool is_constrained(const Document& document) {
   return document.armature && document.shown_clip() && document.shown_clip()->constraints;
 }
 
+std::optional<Pose> free_pose_by_hand(const Editor& editor) {
+  const Document& document = editor.document();
+  const auto& by_hand = editor.timeline->by_hand;
+  if (!by_hand || !is_constrained(document)) return std::nullopt;
+  const auto& clip = document.clips[static_cast<std::size_t>(document.clip)];
+  const Pose pose = pose_of(document);
+  for (const HandPoses::One& one : by_hand->poses)
+    if (one.clip.lock() == clip && one.frame == document.frame && one.shown == pose) return one.free;
+  return std::nullopt;
+}
+
 Pose unconstrained_pose(Editor& editor) {
   Pose pose = pose_of(editor.document());
   const ClipOnRig* clip = clip_on_rig(editor);
   if (!clip || !clip->constraints()) return pose;
-  if (const auto& by_hand = editor.timeline->by_hand)
-    for (const HandPoses::One& one : by_hand->poses)
-      if (one.clip.lock() == clip->clip() && one.frame == editor.document().frame && one.shown == pose) return one.free;
+  if (auto free = free_pose_by_hand(editor)) return *free;
   const int frame = editor.document().frame;
   const Pose made = clip->at(frame), free = clip->unconstrained_at(frame);
   for (std::size_t bone = 0; bone < pose.rotation.size(); ++bone)

@@ -8,6 +8,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,8 @@ Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
 // Remembers what the free pose of a pose is, at the frame of the document's shown clip.
 void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);
+// Returns the free pose below the document's pose, where that was made by hand; nothing where the clip makes it.
+std::optional<Pose> free_pose_by_hand(const Editor& editor);
 // Changes the shown clip as one edit. The free pose stays as it is, with the user's changes, and the clip's constraints
 // hold again.
 void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change);

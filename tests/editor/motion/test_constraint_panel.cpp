@@ -3,6 +3,7 @@
 #include "editor/motion/constraint_edits.h"
 
 #include "core/project/project_io.h"
+#include "editor/files/view_state_json.h"
 #include "editor/motion/constrained_pose.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/shown/shown_pose.h"
@@ -328,6 +329,33 @@ TEST_CASE("constraint panel: the order is changed by the buttons, only past what
   test.play("key Ctrl+Z\n wait-idle\n key Ctrl+Z\n wait-idle");
   CHECK(names() == "ALegB");
   CHECK(aims_at({0, 0, -90}));
+}
+
+TEST_CASE("constraint panel: a project reopens with the pose below the constraints that was made by hand") {
+  const TemporaryFolder folder;
+  DocumentWriter writer;
+  Pose shown, free;
+  std::string state;
+  {
+    ArmEditor test({planted_hand(0.5)});
+    Pose turned = pose_of(test.document());
+    turned.rotation[kUpper] = glm::angleAxis(0.7, glm::dvec3(0, 1, 0)) * turned.rotation[kUpper];
+    commit_pose(*test.editor, "Turn", turned);
+    shown = pose_of(test.document());
+    free = unconstrained_pose(*test.editor);
+    REQUIRE(free_pose_by_hand(*test.editor));
+    create_project({.document = test.document()}, folder / "arm.limber", writer);
+    state = editor_state(*test.editor);
+  }
+  ArmEditor other;
+  // A state of a clip without constraints changes nothing.
+  restore_editor_state(*other.editor, state);
+  CHECK_FALSE(free_pose_by_hand(*other.editor));
+  other.editor->history.reset(read_project(folder / "arm.limber").document, "Open");
+  REQUIRE(pose_of(other.document()) == shown);
+  CHECK(unconstrained_pose(*other.editor) != free);  // nothing of the document says what it was
+  restore_editor_state(*other.editor, state);
+  CHECK(unconstrained_pose(*other.editor) == free);
 }
 
 }  // namespace limber::test
