@@ -275,8 +275,8 @@ Menu pointer_menu(const std::string& name, ViewId view) {
     return {name, {"view.hide", "view.isolate_selected", "view.reveal", "view.frame_selected", "-",
         "skin.assign_tissue", "-",
         "edit.rename", "prepare.merge",
-        "> Labels", "labels.fill_holes", "labels.islands", "labels.grow", "labels.shrink", "labels.split", "-",
-        "labels.new_tissue", "<"}};
+        "> Labels", "labels.brush", "-", "labels.fill_holes", "labels.islands", "labels.grow", "labels.shrink",
+        "labels.split", "-", "labels.new_tissue", "<"}};
   if (name == "Edit labels") return {name, {"labels.fill_holes", "labels.islands", "labels.grow", "labels.shrink",
         "labels.split", "-", "labels.new_tissue", "labels.pick", "-", "prepare.merge", "prepare.specks"}};
   if (name == "Volume") return {name, {"view.reveal", "-", "prepare.regrid", "prepare.orient", "prepare.crop",

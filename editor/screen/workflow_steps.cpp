@@ -36,7 +36,8 @@ Step prepare_step(const Editor& editor) {
     step.line = "No labels yet";
     step.operator_id = labels_operator(editor);
     step.button = "Labels...";
-    step.more = {"labels.new_tissue", "prepare.regrid", "prepare.crop_to_clip_box", "prepare.pad", "prepare.orient"};
+    step.more = {"labels.new_tissue",        "labels.brush", "prepare.regrid",
+                 "prepare.crop_to_clip_box", "prepare.pad",  "prepare.orient"};
     return step;
   }
   step.state = StepState::Done;
@@ -44,8 +45,8 @@ Step prepare_step(const Editor& editor) {
               std::to_string(document.tissues ? document.tissues->tissues.size() : 0) + " tissues";
   step.operator_id = "prepare.statistics";
   step.button = "Statistics";
-  step.more = {"prepare.regrid", "prepare.crop",  "prepare.crop_to_clip_box", "prepare.pad", "prepare.orient",
-               "prepare.merge",  "prepare.specks"};
+  step.more = {"prepare.regrid", "prepare.crop",  "prepare.crop_to_clip_box", "prepare.pad",
+               "prepare.orient", "prepare.merge", "prepare.specks",           "labels.brush"};
   return step;
 }
 

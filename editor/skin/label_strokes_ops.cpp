@@ -2,6 +2,7 @@
 // Operators of the label brush: switch it on, and set what its strokes change.
 #include "editor/context/operator_polls.h"
 #include "editor/labels/label_brush.h"
+#include "editor/labels/label_edits.h"
 #include "editor/seams/seam_view.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
@@ -28,10 +29,15 @@ Operator erasing(const char* id, const char* label, const char* description, Era
           nullptr,     [erased](const Editor& e) { return brush_of(e).erased == erased; }};
 }
 
+// Where it is run in another workspace, the user wants to paint, whether the brush was on before or not.
 void toggle_brush(Editor& editor) {
   LabelBrush& brush = brush_of(editor);
-  brush.on = !brush.on;
+  const bool leads_here = editor.workspace != Workspace::Skin;
+  editor.workspace = Workspace::Skin;
+  brush.on = leads_here || !brush.on;
   if (brush.on) editor.seams->brush = false;
+  if (const std::string why = needs_edited_tissue(editor); leads_here && !why.empty())
+    editor.messages.info("Label brush", why);
   editor.touch();
 }
 
@@ -47,12 +53,8 @@ std::vector<Operator> label_brush_operators() {
   return {
       {"labels.brush", "Label brush", icon::kLabelBrush, "Labels",
        "Paint the selected tissue's labels, in slices and on the body. Hold Ctrl to erase them. Select any other brush "
-       "to paint weights again.",
-       toggle_brush,
-       [](const Editor& e) {
-         return e.workspace == Workspace::Skin ? needs_volume(e) : std::string("Switch to the Skin workspace first");
-       },
-       [](const Editor& e) { return brush_of(e).on; }},
+       "to paint weights again. Leads to the Skin workspace.",
+       toggle_brush, needs_volume, [](const Editor& e) { return e.workspace == Workspace::Skin && brush_of(e).on; }},
       over("labels.over_all", "Over all", "Paint over every tissue and over air.", PaintOver::All),
       over("labels.over_air", "Over air", "Paint only where there is air.", PaintOver::Air),
       over("labels.over_tissue", "Over tissue", "Paint only over other tissue, never over air.", PaintOver::Tissue),

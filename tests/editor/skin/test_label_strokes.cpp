@@ -269,6 +269,21 @@ TEST_CASE("label brush: what was painted is in the project's file, with the new 
   CHECK_FALSE(test.editor->document().tissues->find(label));
 }
 
+TEST_CASE("label brush: run from another workspace it leads to the Skin workspace and is on there") {
+  LimbEditor test({1120, 620});
+  select(*test.editor, 111);
+  test.play("key Ctrl+1\nwait-idle\nkey F3\nwait-idle\ntype \"label brush\"\nwait-idle\nkey Return\nwait-idle");
+  CHECK(test.editor->workspace == Workspace::Skin);
+  CHECK(brush_of(*test.editor).on);
+  test.play("key Ctrl+3\nwait-idle");
+  CHECK_FALSE(find_operator(*test.editor, "labels.brush")->checked(*test.editor));
+  run(*test.editor, "labels.brush");  // it was on, and is not switched off where it cannot be seen
+  CHECK(test.editor->workspace == Workspace::Skin);
+  CHECK(brush_of(*test.editor).on);
+  run(*test.editor, "labels.brush");
+  CHECK_FALSE(brush_of(*test.editor).on);
+}
+
 TEST_CASE("label brush: without a tissue it says what to do, and other brushes take over from it") {
   LabelEditor test;
   test.editor->selection = {};
