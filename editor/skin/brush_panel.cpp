@@ -6,6 +6,7 @@
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/seams/seam_view.h"
+#include "editor/skin/brush_presets.h"
 #include "editor/skin/paint_mode.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/input_fields.h"
@@ -104,12 +105,39 @@ void draw_test_pose(Editor& editor, Column& column) {
   operator_button(editor, "skin.unbend", {{rect.high.x - width, rect.low.y}, rect.high}, "Unbend");
 }
 
+// Draws the list of the user's presets, with buttons that save and delete one. The list says "Own" while the brush has
+// other settings than each preset.
+void draw_presets(Editor& editor, Column& column) {
+  const Look& look = editor.look;
+  const int in_use = brush_preset_in_use(editor);
+  std::vector<std::string> names;
+  if (in_use < 0) names.push_back(brush_presets(editor).empty() ? "None saved" : "Own");
+  for (const BrushPreset& preset : brush_presets(editor)) names.push_back(preset.name);
+  const Rect rect = column.property("Preset");
+  const float side = look.px(24);
+  const PathScope path(editor, "Preset");
+  int chosen = std::max(0, in_use);
+  const Rect list{rect.low, {rect.high.x - 2 * side - look.px(4), rect.high.y}};
+  if (choice_field(editor, list, names, chosen) && (in_use >= 0 || chosen > 0))
+    attempt(editor, "Use brush preset",
+            [name = names[static_cast<std::size_t>(chosen)]](Editor& e) { use_brush_preset(e, name); });
+  float x = list.high.x + look.px(4);
+  for (const char* id : {"skin.preset_save", "skin.preset_delete"}) {
+    const Operator& op = *find_operator(editor, id);
+    const Rect place{{x, rect.low.y}, {x + side, rect.high.y}};
+    x += side;
+    if (button(editor, id, place, {op.icon, "", ButtonStyle::Flat})) run(editor, op);
+    if (ImGui::IsItemHovered()) operator_tooltip(editor, op, place);
+  }
+}
+
 }  // namespace
 
 void draw_brush_section(Editor& editor, Column& column) {
   if (!column.begin_section("Brush", editor.seams->brush ? "Seam" : name_of(editor.skin->painting->kind)))
     return column.end_section();
   column.space(6);
+  draw_presets(editor, column);
   Painting& painting = *editor.skin->painting;
   bool committed = false;
   const auto number = [&](const char* label, double& value, double low, double high, const char* format,

@@ -21,6 +21,7 @@ struct PaintedRegion {
   std::int64_t voxels = 0;
 };
 
+struct BrushPresets;
 struct FoundProblems;
 struct LabelBrush;
 struct RepairedJoint;
@@ -56,6 +57,8 @@ struct Painting {
   bool subtree = false;  // paint only where the active bone, its parent or a descendant has most of the weight
   Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of()
   bool relative_to_locks = false;
+
+  std::shared_ptr<BrushPresets> presets;  // the user's (editor/skin/brush_presets.h); null: not read yet
 
   int dragged_point = -1;  // the point of `falloff_curve` being dragged; -1: none
   // The weight layer being painted (editor/skin/weight_layers.h).

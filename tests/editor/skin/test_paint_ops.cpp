@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Brushes are chosen, set and painted with.
+#include "editor/skin/brush_presets.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
 #include "tests/editor/operator_proofs.h"
@@ -54,6 +55,17 @@ std::vector<Proof> proofs_of_painting() {
       {"skin.brush_add", "click \"strip/skin.brush_add\"", is(&Painting::kind, BrushKind::Add)},
       {"skin.brush_pie", at_middle + "key W",
        [](Stage& s, const Seen&) { return s.editor().shown_popup == "Brushes"; }},
+      {"skin.preset_save",
+       "click Edit/Brush/Presets/\"Save brush preset...\"\n wait-idle\n type Wide\n key Return\n wait-idle",
+       [](Stage& s, const Seen&) {
+         const auto& presets = brush_presets(s.editor());
+         return presets.size() == 1 && presets[0].name == "Wide" && presets[0].radius == 77;
+       },
+       Shows::Nothing, "", with([](Painting& p) { p.radius = 77; })},
+      {"skin.preset_use", "click Edit/Brush/Presets/\"Use brush preset...\"\n wait-idle\n key Return\n wait-idle",
+       is_near(&Painting::radius, 77), Shows::Nothing, "", with([](Painting& p) { p.radius = 5; })},
+      {"skin.preset_delete", "click Edit/Brush/Presets/\"Delete brush preset...\"\n wait-idle\n key Return\n wait-idle",
+       [](Stage& s, const Seen&) { return brush_presets(s.editor()).empty(); }},
       {"skin.paint", "press \"3D view/view\"\n release\n wait-idle", edit_is("Add Fore"), Shows::InBody, at_middle,
        with([](Painting& p) { p.radius = 25, p.strength = 1; })},
       {"skin.paint_smooth", "key-down Shift\n press \"3D view/view\"\n release\n key-up Shift\n wait-idle",

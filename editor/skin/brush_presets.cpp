@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/skin/brush_presets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/json_text.h"
+#include "editor/labels/label_brush.h"
+#include "editor/seams/seam_view.h"
+#include "editor/skin/weight_display.h"
+
+namespace limber::editor {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kSchema = "limber-brushes/1";
+constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear", "constant"};  // order of FalloffShape
+constexpr std::size_t kMostPoints = 16;  // of a curve, as the panel lets the user make
+constexpr std::size_t kLongestName = 100;
+
+Path presets_path(const Editor& editor) {
+  return editor.preferences_path.empty() ? Path() : editor.preferences_path.parent_path() / "brushes.json";
+}
+
+Json json_of(const BrushPreset& preset) {
+  Json json{{"name", preset.name},        {"brush", brush_rules()[static_cast<std::size_t>(preset.kind)].id},
+            {"radius_mm", preset.radius}, {"strength", preset.strength},
+            {"value", preset.value},      {"falloff", kFalloffs[static_cast<std::size_t>(preset.falloff)]}};
+  for (const glm::dvec2& point : preset.falloff_curve) json["curve"].push_back({point.x, point.y});
+  return json;
+}
+
+double number_in(const Json& json, const char* key, double low, double high, double otherwise) {
+  const Json number = json.value(key, Json());
+  return number.is_number() ? std::clamp(number.get<double>(), low, high) : otherwise;
+}
+
+// Returns the points of a custom falloff; none if they are not two to sixteen points in [0, 1] whose x rise.
+std::vector<glm::dvec2> curve_of(const Json& json) {
+  std::vector<glm::dvec2> curve;
+  const Json points = json.value("curve", Json());
+  if (!points.is_array() || points.size() < 2 || points.size() > kMostPoints) return {};
+  for (const Json& point : points) {
+    if (!point.is_array() || point.size() != 2 || !point[0].is_number() || !point[1].is_number()) return {};
+    const glm::dvec2 at(point[0].get<double>(), point[1].get<double>());
+    const double least = curve.empty() ? 0 : std::nextafter(curve.back().x, 2);
+    if (!(at.x >= least && at.x <= 1 && at.y >= 0 && at.y <= 1)) return {};
+    curve.push_back(at);
+  }
+  return curve;
+}
+
+std::optional<BrushPreset> preset_of(const Json& json) {
+  if (!json.is_object() || !json.value("name", Json()).is_string() || !json.value("brush", Json()).is_string())
+    return std::nullopt;
+  BrushPreset preset;
+  preset.name = json["name"].get<std::string>();
+  const std::string id = json["brush"].get<std::string>();
+  const auto& rules = brush_rules();
+  const auto rule = std::find_if(rules.begin(), rules.end(), [&](const BrushRule& one) { return one.id == id; });
+  if (preset.name.empty() || preset.name.size() > kLongestName || rule == rules.end()) return std::nullopt;
+  preset.kind = rule->kind;
+  preset.radius = number_in(json, "radius_mm", Painting::kLeastRadius, Painting::kMostRadius, preset.radius);
+  preset.strength = number_in(json, "strength", 0, 1, preset.strength);
+  preset.value = number_in(json, "value", 0, 1, preset.value);
+  const Json falloff = json.value("falloff", Json());
+  for (std::size_t i = 0; i < kFalloffs.size(); ++i)
+    if (falloff == kFalloffs[i]) preset.falloff = static_cast<FalloffShape>(i);
+  preset.falloff_curve = curve_of(json);
+  return preset;
+}
+
+auto named(std::vector<BrushPreset>& presets, const std::string& name) {
+  return std::find_if(presets.begin(), presets.end(), [&](const BrushPreset& one) { return one.name == name; });
+}
+
+BrushPreset preset_of_brush(const Painting& painting, const std::string& name) {
+  return {name,           painting.kind,    painting.radius,       painting.strength,
+          painting.value, painting.falloff, painting.falloff_curve};
+}
+
+// Writes the presets, and then shows them.
+void keep(Editor& editor, std::vector<BrushPreset> presets) {
+  if (const Path path = presets_path(editor); !path.empty()) {
+    std::filesystem::create_directories(path.parent_path());
+    write_file_atomically(path, brush_presets_json(presets));
+  }
+  editor.skin->painting->presets = std::make_shared<BrushPresets>(BrushPresets{std::move(presets)});
+  editor.touch();
+}
+
+}  // namespace
+
+std::string brush_presets_json(const std::vector<BrushPreset>& presets) {
+  Json json{{"schema", kSchema}, {"presets", Json::array()}};
+  for (const BrushPreset& preset : presets) json["presets"].push_back(json_of(preset));
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const std::string& where) {
+  const Json json = Json::parse(checked_json(text, where), nullptr, false);
+  if (!json.is_object() || json.value("schema", Json()) != kSchema || !json.value("presets", Json()).is_array())
+    throw Error("this file holds no brush presets", where, "delete it, or save a preset, which replaces it");
+  std::vector<BrushPreset> presets;
+  for (const Json& one : json["presets"])
+    if (auto preset = preset_of(one);
+        preset && named(presets, preset->name) == presets.end() && presets.size() < kMostBrushPresets)
+      presets.push_back(std::move(*preset));
+  return presets;
+}
+
+const std::vector<BrushPreset>& brush_presets(Editor& editor) {
+  auto& presets = editor.skin->painting->presets;
+  if (presets) return presets->list;
+  presets = std::make_shared<BrushPresets>();
+  const Path path = presets_path(editor);
+  std::error_code unknown;
+  if (path.empty() || !std::filesystem::exists(path, unknown)) return presets->list;
+  try {
+    presets->list = brush_presets_from_json(read_file(path), path.string());
+  } catch (const Error& error) {
+    editor.messages.warn("The brush presets could not be read", error.what());
+  }
+  return presets->list;
+}
+
+int brush_preset_in_use(Editor& editor) {
+  const auto& presets = brush_presets(editor);
+  for (std::size_t i = 0; i < presets.size(); ++i)
+    if (preset_of_brush(*editor.skin->painting, presets[i].name) == presets[i]) return static_cast<int>(i);
+  return -1;
+}
+
+void save_brush_preset(Editor& editor, const std::string& name) {
+  if (name.empty() || name.size() > kLongestName)
+    throw Error("a brush preset needs a name", name.empty() ? "it has none" : "it is too long", "type a short one");
+  std::vector<BrushPreset> presets = brush_presets(editor);
+  const BrushPreset preset = preset_of_brush(*editor.skin->painting, name);
+  if (const auto old = named(presets, name); old != presets.end()) *old = preset;
+  else if (presets.size() < kMostBrushPresets) presets.push_back(preset);
+  else throw Error("there are too many brush presets", name, "delete one first");
+  keep(editor, std::move(presets));
+}
+
+void delete_brush_preset(Editor& editor, const std::string& name) {
+  std::vector<BrushPreset> presets = brush_presets(editor);
+  std::erase_if(presets, [&](const BrushPreset& one) { return one.name == name; });
+  keep(editor, std::move(presets));
+}
+
+void use_brush_preset(Editor& editor, const std::string& name) {
+  Painting& painting = *editor.skin->painting;
+  for (const BrushPreset& preset : brush_presets(editor)) {
+    if (preset.name != name) continue;
+    painting.kind = preset.kind;
+    painting.radius = preset.radius;
+    painting.strength = preset.strength;
+    painting.value = preset.value;
+    painting.falloff = preset.falloff;
+    painting.falloff_curve = preset.falloff_curve;
+    editor.seams->brush = painting.labels->on = false;
+    return editor.touch();
+  }
+  throw Error("there is no such brush preset any more", name, "select another one");
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Brush presets: kept between sittings, picked in the panel, and not lost or invented by a damaged file.
+#include "editor/skin/brush_presets.h"
+
+#include <doctest/doctest.h>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "tests/editor/paint_editor.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+namespace {
+
+Painting& brush_of(SmallEditor& test) { return *test.editor->skin->painting; }
+
+}  // namespace
+
+TEST_CASE("brush presets: one that is saved is there in the next sitting with every setting") {
+  const TemporaryFolder folder;
+  const Path preferences = folder / "config/preferences.json";
+  BrushPreset wanted;
+  {
+    PaintEditor test;
+    test.editor->preferences_path = preferences;
+    Painting& brush = brush_of(test);
+    brush.kind = BrushKind::Smooth;
+    brush.radius = 1.0 / 3;
+    brush.radius += 12;
+    brush.strength = 0.1;
+    brush.value = 0.7;
+    brush.falloff = FalloffShape::Sharp;
+    brush.falloff_curve = {{0, 1}, {0.3, 0.6}, {1, 0}};
+    save_brush_preset(*test.editor, "Caf\u00e9 \"fine\"");
+    wanted = brush_presets(*test.editor)[0];
+  }
+  PaintEditor next;
+  next.editor->preferences_path = preferences;
+  REQUIRE(brush_presets(*next.editor).size() == 1);
+  CHECK(brush_presets(*next.editor)[0] == wanted);
+  use_brush_preset(*next.editor, wanted.name);
+  CHECK(brush_of(next).radius == 12 + 1.0 / 3);
+  CHECK(brush_of(next).falloff_curve.size() == 3);
+  CHECK(brush_preset_in_use(*next.editor) == 0);
+  brush_of(next).strength = 0.2;
+  CHECK(brush_preset_in_use(*next.editor) == -1);
+  save_brush_preset(*next.editor, wanted.name);  // replaces it
+  REQUIRE(brush_presets(*next.editor).size() == 1);
+  CHECK(brush_presets(*next.editor)[0].strength == 0.2);
+  delete_brush_preset(*next.editor, wanted.name);
+  CHECK(brush_presets_from_json(read_file(folder / "config/brushes.json"), "").empty());
+}
+
+TEST_CASE("brush presets: the panel saves, picks and deletes them") {
+  PaintEditor test;
+  test.play("key N\nwait-idle");
+  REQUIRE(test.fact("widget:Brush/Preset/skin.preset_save") == "shown");
+  brush_of(test).radius = 33;
+  test.play("click Brush/Preset/skin.preset_save\nwait-idle\ntype \"Medium\"\nkey Return\nwait-idle");
+  brush_of(test).radius = 5;
+  brush_of(test).kind = BrushKind::Average;
+  test.play("click Brush/Preset/skin.preset_save\nwait-idle\ntype \"Tiny\"\nkey Return\nwait-idle");
+  REQUIRE(brush_presets(*test.editor).size() == 2);
+  use_brush_preset(*test.editor, "Medium");
+  test.play("wait-idle");
+  CHECK(brush_of(test).radius == 33);
+  CHECK(brush_of(test).kind == BrushKind::Add);
+  test.play("click Brush/Preset/skin.preset_delete\nwait-idle\nkey Return\nwait-idle");
+  REQUIRE(brush_presets(*test.editor).size() == 1);
+  CHECK(brush_presets(*test.editor)[0].name == "Tiny");
+  CHECK(brush_of(test).radius == 33);
+}
+
+TEST_CASE("brush presets: a damaged file is said to be so, and wrong numbers never reach the brush") {
+  CHECK_THROWS_WITH_AS(brush_presets_from_json("{\"schema\": 1}", "brushes.json"),
+                       doctest::Contains("holds no brush presets"), Error);
+  const auto read = brush_presets_from_json(
+      R"({"schema": "limber-brushes/1", "presets": [7, {"name": "A"}, {"name": "B", "brush": "no such"},
+        {"name": "C", "brush": "add", "radius_mm": 1e9, "strength": -4, "falloff": "odd", "curve": [[0, 1], [0, 0]]},
+        {"name": "C", "brush": "set"}]})",
+      "brushes.json");
+  REQUIRE(read.size() == 1);
+  CHECK(read[0].radius == Painting::kMostRadius);
+  CHECK(read[0].strength == 0);
+  CHECK(read[0].falloff == FalloffShape::Smooth);
+  CHECK(read[0].falloff_curve.empty());
+  const TemporaryFolder folder;
+  write_file_atomically(folder / "brushes.json", "no JSON");
+  PaintEditor test;
+  test.editor->preferences_path = folder / "preferences.json";
+  CHECK(brush_presets(*test.editor).empty());
+  REQUIRE(!test.editor->messages.toasts.empty());
+  CHECK(test.editor->messages.toasts.back().line == "The brush presets could not be read");
+}
