@@ -118,8 +118,8 @@ void ask_for_body(Editor& editor) {
   const GreyLevels& image = image_of(editor);
   editor.open_dialog(make_form(
       {"Body from image",
-       "Tell the body from its background. The values of this image have no unit, so the threshold is proposed from "
-       "its own histogram. Organs and bones are not told apart: paint them.",
+       "Tell the body from its background by a threshold that the image's own histogram proposes. Paint bones "
+       "afterwards.",
        "Make labels",
        {number_of("Body from", "Voxels from this value on are body. Proposed from the image's histogram.",
                   body_threshold(image), image.least, image.most(), "%.4g"),
