@@ -53,6 +53,7 @@ border-top:1px solid var(--line)}
 @media(max-width:800px){body{display:block}
 nav{position:static;height:auto;border-right:0;border-bottom:1px solid var(--line)}
 nav #pages{display:none}nav:focus-within #pages{display:block}main{padding:24px 18px 48px}}
+#pages[hidden]{display:none!important}
 @media print{nav,.turn{display:none}body{display:block}main{max-width:none}}
 )";
 

@@ -2,6 +2,7 @@
 #include "editor/guide/book_html.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <regex>
 #include <set>
 
@@ -12,6 +13,7 @@
 using namespace limber;
 using namespace limber::editor;
 using namespace limber::test;
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -36,9 +38,13 @@ TEST_CASE("guide html: every page is a file, every link leads to one, and elemen
   CHECK(files.size() == book.pages.size() + 2);
   for (const auto& [name, text] : files) {
     INFO(name);
-    CHECK(text.find("http") == std::string::npos);  // no network
+    // Nothing is loaded from a network: every file that is named is one of the book's own.
+    CHECK(text.find("@import") == std::string::npos);
+    CHECK(text.find("url(") == std::string::npos);
+    CHECK(text.find("http") == std::string::npos);
     if (!name.ends_with(".html")) continue;
-    for (const std::string& target : matches(text, "href=\"([^\"]*)\"")) CHECK(files.contains(target));
+    for (const std::string& target : matches(text, "(?:href|src)=\"([^\"]*)\""))
+      CHECK((files.contains(target) || fs::exists(fs::path(LIMBER_SOURCE_DIR) / "assets/docs/guide" / target)));
     std::vector<std::string> open;
     const std::set<std::string> empty{"meta", "link", "input", "img"};
     for (const std::string& tag : matches(text.substr(text.find("<html")), "<(/?[a-z0-9]+)[ >]")) {
@@ -63,6 +69,15 @@ TEST_CASE("guide html: marks of HTML in the text are text, steps keep their numb
   for (const char* part : {"<h1>A &amp; B</h1>", "<ol>\n<li value=\"1\">One <code>a&lt;b</code></li>\n",
                            "<li value=\"2\">Press <kbd>Ctrl+&lt;</kbd></li>\n</ol>\n<p>End &quot;now&quot;.</p>"})
     CHECK(page.find(part) != std::string::npos);
+}
+
+TEST_CASE(
+    "guide html: on a narrow screen the list of pages stays away while hits are shown, though the field has focus") {
+  const std::string style = html_files(guide()).at("guide.css");
+  const std::size_t shows = style.find("nav:focus-within #pages{display:block}"),
+                    hides = style.find("#pages[hidden]{display:none!important}");
+  CHECK(shows != std::string::npos);
+  CHECK(hides != std::string::npos);
 }
 
 TEST_CASE("guide html: the search knows each page's title and text") {
