@@ -2,6 +2,7 @@
 #include "editor/dialogs/block_drawing.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "editor/ui/widgets.h"
 
@@ -32,7 +33,19 @@ struct Word {
   float left;  // where lines begin
 };
 
-// Places the words of a block, and calls `draw` for each. Returns the y coordinate of the lower end.
+// Returns how many bytes of the word, at least one character, are no wider than `width`.
+std::size_t bytes_within(ImFont* font, std::string_view word, float width) {
+  std::size_t fitting = 0;
+  for (std::size_t end = 1; end <= word.size(); ++end) {
+    if (end < word.size() && (word[end] & 0xC0) == 0x80) continue;  // inside a character of UTF-8
+    if (fitting > 0 && text_size(font, word.substr(0, end)).x > width) break;
+    fitting = end;
+  }
+  return fitting;
+}
+
+// Places the words of a block, and calls `draw` for each. A word that is wider than a line goes on in the next one.
+// Returns the y coordinate of the lower end.
 float for_each_word(const Look& look, const Block& block, float left, float right, float y, float line,
                     const std::function<void(const Word&)>& draw) {
   float x = left;
@@ -47,15 +60,19 @@ float for_each_word(const Look& look, const Block& block, float left, float righ
         continue;
       }
       const std::size_t end = std::min(run.text.find(' ', at), run.text.size());
-      const std::string_view word = std::string_view(run.text).substr(at, end - at);
-      const float width = text_size(font, word).x;
+      std::string_view word = std::string_view(run.text).substr(at, end - at);
+      float width = text_size(font, word).x;
       if (x > left && x + width > right) {
         x = left;
         y += line;
       }
+      if (width > right - left) {
+        word = word.substr(0, bytes_within(font, word, right - left));
+        width = text_size(font, word).x;
+      }
       draw({run, word, {x, y}, width, index++, left});
       x += width;
-      at = end;
+      at += word.size();
     }
   }
   return y + line;

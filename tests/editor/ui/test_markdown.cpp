@@ -60,6 +60,11 @@ TEST_CASE("user guide: its lists of formats, exporters and brushes are the progr
     CHECK(guide.find(word) != std::string::npos);
 }
 
+TEST_CASE("markdown: what is new has no links, because its viewer follows none") {
+  for (const Block& block : parse_markdown(read_file(asset("docs/new.md")), [](const std::string& id) { return id; }))
+    for (const Run& run : block.runs) CHECK_MESSAGE(run.style != Run::Style::Link, run.text);
+}
+
 TEST_CASE("user guide: it names only operators that exist and have a key") {
   SmallEditor test({1280, 720});
   test.play("click \"Help/What is new\"\n expect \"text:What is new\"\n key Escape");
