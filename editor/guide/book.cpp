@@ -2,6 +2,7 @@
 #include "editor/guide/book.h"
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <sstream>
 

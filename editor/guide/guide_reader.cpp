@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/guide/guide_reader.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "core/base/error.h"
@@ -11,6 +14,7 @@
 #include "editor/ui/asset_path.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
+#include "editor/ui/keyboard.h"
 #include "editor/ui/section.h"
 #include "render/image_io.h"
 
@@ -22,7 +26,7 @@ constexpr float kWidth = 1040, kHeight = 680, kContents = 268, kMargin = 28, kFo
 
 class GuideReader final : public Dialog {
  public:
-  explicit GuideReader(std::string search) : search_(std::move(search)), focus_(!search_.empty()) {}
+  explicit GuideReader(Book book) : book_(std::move(book)) {}
   void draw(Editor& editor) override;
   bool key(Editor& editor, const Chord& chord) override;
 
@@ -35,12 +39,22 @@ class GuideReader final : public Dialog {
   void draw_foot(Editor& editor, const Rect& rect);
   DocumentPicture picture(Editor& editor, const std::string& file);
   void go_to(Editor& editor, int page, int block = 0);
+  void go_along(Editor& editor, int step);
+  void turn_to_target(Editor& editor);
+  int next_page() const { return target_ ? target_->page : page_; }  // the page of the next frame
   bool ends_list(int block) const;
+
+  struct Target {
+    int page = 0, block = 0;
+    bool seen_before = false;  // the page comes back as it was left
+  };
 
   Book book_;
   std::string search_, searched_;
   std::vector<Found> found_;
   int page_ = 0, marked_ = 0;  // marked_: the block that a search has led to; 0: none
+  std::optional<Target> target_;
+  std::vector<int> before_, after_;  // the pages that Alt+Left and Alt+Right come to, the next one last
   bool focus_ = false, scroll_to_mark_ = false, first_found_ = false, show_row_ = false;
   float scroll_by_ = 0;
   std::map<std::string, glm::vec2> sizes_;  // of the page's pictures
@@ -49,20 +63,42 @@ class GuideReader final : public Dialog {
 bool GuideReader::key(Editor& editor, const Chord& chord) {
   if (chord.key == Key::F && chord.modifiers.ctrl) return focus_ = true;
   // Only remember that Return was pressed: the text field has not yet read all typed letters.
-  if ((chord.key == Key::Return || chord.key == Key::NumEnter) && !search_.empty()) return first_found_ = true;
+  if ((chord.key == Key::Return || chord.key == Key::NumEnter) && is_typing(editor)) return first_found_ = true;
   if (!chord.modifiers.alt || (chord.key != Key::Left && chord.key != Key::Right)) return false;
-  go_to(editor, page_ + (chord.key == Key::Right ? 1 : -1));
+  go_along(editor, chord.key == Key::Right ? 1 : -1);
   return true;
 }
 
+// Only remembers where to go: the page's pictures are already part of this frame.
 void GuideReader::go_to(Editor& editor, int page, int block) {
   if (page < 0 || page >= std::ssize(book_.pages)) return;
+  if (page != next_page()) {
+    before_.push_back(next_page());
+    after_.clear();
+  }
+  target_ = Target{page, block};
+  editor.touch();
+}
+
+// Goes back to the page that was shown before, or forward again. Where there is none, goes by the order of reading.
+void GuideReader::go_along(Editor& editor, int step) {
+  std::vector<int>&from = step < 0 ? before_ : after_, &to = step < 0 ? after_ : before_;
+  if (from.empty()) return go_to(editor, next_page() + step);
+  to.push_back(next_page());
+  target_ = Target{from.back(), 0, true};
+  from.pop_back();
+  editor.touch();
+}
+
+void GuideReader::turn_to_target(Editor& editor) {
+  const std::optional<Target> target = std::exchange(target_, std::nullopt);
+  if (!target) return;
   for (const auto& [file, size] : sizes_) editor.pictures.forget("guide " + file);
   sizes_.clear();
-  page_ = page;
-  marked_ = block;
-  scroll_to_mark_ = show_row_ = true;
-  editor.touch();
+  page_ = target->page;
+  marked_ = target->block;
+  scroll_to_mark_ = !target->seen_before;
+  show_row_ = true;
 }
 
 // Whether a paragraph or a picture follows a list.
@@ -220,11 +256,7 @@ void GuideReader::draw_foot(Editor& editor, const Rect& rect) {
 
 void GuideReader::draw(Editor& editor) {
   const Look& look = editor.look;
-  if (book_.pages.empty())
-    book_ = read_guide([&](const std::string& id) {
-      const auto chord = editor.keymap.chord_of(id);
-      return chord ? to_text(*chord) : std::string("(no key)");
-    });
+  turn_to_target(editor);
   const Rect rect = begin_dialog(editor, "User guide", kWidth, kHeight);
   const Rect body{rect.low - look.px(18) + glm::vec2(look.line(), 0), rect.high + look.px(18) - look.line()};
   take_scroll_keys(editor, body.height() - look.px(kFoot));
@@ -246,6 +278,11 @@ void GuideReader::draw(Editor& editor) {
 
 }  // namespace
 
-std::unique_ptr<Dialog> open_guide(const std::string& search) { return std::make_unique<GuideReader>(search); }
+std::unique_ptr<Dialog> open_guide(const Editor& editor) {
+  return std::make_unique<GuideReader>(read_guide([&](const std::string& id) {
+    const auto chord = editor.keymap.chord_of(id);
+    return chord ? to_text(*chord) : std::string("(no key)");
+  }));
+}
 
 }  // namespace limber::editor

@@ -4,14 +4,12 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "editor/context/editor.h"
 
 namespace limber::editor {
 
-// Makes the dialog. Throws Error when a page of the guide is missing.
-//   search  what the search field holds at first
-std::unique_ptr<Dialog> open_guide(const std::string& search = "");
+// Reads the guide and makes the dialog. Throws Error when a page of the guide is missing.
+std::unique_ptr<Dialog> open_guide(const Editor& editor);
 
 }  // namespace limber::editor
