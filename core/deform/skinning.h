@@ -10,7 +10,8 @@
 //                     quaternion blending]
 //    mixed            kQuaternionShare of the way from the linear blend to dual quaternions. Linear blending thins bent
 //                     and twisted joints, dual quaternions make them bulge, and most of both errors cancels. Whole
-//                     bodies that sit or raise their arms keep their volume best (figures in assets/docs/guide.md).
+//                     bodies that sit or raise their arms keep their volume best (figures in
+//                     assets/docs/guide/blending.md).
 // Dual quaternions contain no scale. A bone that stretches is split into a stretch along its own rest axes, then a
 // rigid motion; the stretches are blended linearly and applied first.
 #pragma once
