@@ -56,11 +56,11 @@ TEST_CASE("search: a command that is named stands before those that only speak o
   // What it says leads to where it can run.
   test.play(R"(
     key F3
-    type "label brush"
+    type "add constraint"
     key Return
-    expect "text:Switch to the Skin workspace first"
-    click "toast 0/Skin"
-    expect workspace skin
+    expect "text:Switch to the Pose workspace first"
+    click "toast 0/Pose"
+    expect workspace pose
   )");
 }
 
