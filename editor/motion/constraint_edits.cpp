@@ -99,6 +99,30 @@ void show_changed(Editor& editor, const std::function<void(Clip&)>& change) {
   show_pose(editor, constrained_pose(changed, unconstrained_pose(editor), editor.document().frame));
 }
 
+// Moves one to the place of another, which goes one place towards where the first was.
+void move_in_list(std::vector<Constraint>& list, std::size_t from, std::size_t to) {
+  const auto first = list.begin();
+  const auto at = [&](std::size_t index) { return first + static_cast<std::ptrdiff_t>(index); };
+  if (to < from) std::rotate(at(to), at(from), at(from + 1));
+  else std::rotate(at(from), at(from + 1), at(to + 1));
+}
+
+bool share_turned_bones(const ConstraintStack& stack, std::size_t one, std::size_t other) {
+  const std::vector<int>&a = stack.turned(one), &b = stack.turned(other);
+  return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+}
+
+// Returns the names of a constraint and of all that turn one of its bones, in the order in which they are applied.
+std::vector<std::string> order_of_rivals(const ConstraintStack& stack, const std::string& name) {
+  const auto& list = stack.constraints()->list;
+  const auto place = std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == name; });
+  const auto own = static_cast<std::size_t>(place - list.begin());
+  std::vector<std::string> names;
+  for (const std::size_t index : stack.order())
+    if (index == own || share_turned_bones(stack, own, index)) names.push_back(list[index].name);
+  return names;
+}
+
 void put_weight(Clip& clip, const std::string& name, int frame, double weight) {
   if (clip.keys.weights.contains(name)) return insert_weight_key(clip.keys, name, frame, weight);
   change_list(clip, [&](Constraints& constraints) { named(constraints, name).weight = weight; });
@@ -182,22 +206,28 @@ void remove_constraint(Editor& editor, const std::string& name) {
 
 const Constraint* order_neighbour(const Editor& editor, const std::string& name, InOrder where) {
   const auto& list = constraints_of(editor.document()).list;
+  const auto& armature = editor.document().armature;
   const auto place = std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == name; });
-  if (place == list.end()) return nullptr;
+  if (place == list.end() || !armature) return nullptr;
   const ClipOnRig* clip = editor.timeline->prepared.get();
   const bool is_shown = clip && clip->clip().get() == editor.document().shown_clip();
-  const ConstraintStack* stack = is_shown ? clip->constraints() : nullptr;
-  const auto turned = [&](std::size_t index) {
-    return stack && index < stack->constraints()->list.size() ? stack->turned(index) : std::vector<int>{};
-  };
+  const ConstraintStack* shown = is_shown ? clip->constraints() : nullptr;
   const auto own = static_cast<std::size_t>(place - list.begin());
-  const auto is_rival = [&](std::size_t other) {
-    const std::vector<int> a = turned(own), b = turned(other);
-    return list[other].bone == list[own].bone || std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
+  const auto is_changed_by_move_to = [&](std::size_t other) {
+    Constraints both{list};
+    both.list[own].on = both.list[other].on = true;
+    const bool as_shown = shown && list[own].on && list[other].on && shown->constraints()->list == list;
+    std::optional<ConstraintStack> made;
+    if (!as_shown) made.emplace(std::make_shared<const Constraints>(both), armature);
+    const ConstraintStack& now = as_shown ? *shown : *made;
+    if (!share_turned_bones(now, own, other)) return false;
+    const std::vector<std::string> before = order_of_rivals(now, name);
+    move_in_list(both.list, own, other);
+    return order_of_rivals(ConstraintStack(std::make_shared<const Constraints>(both), armature), name) != before;
   };
   const bool earlier = where == InOrder::Earlier;
   for (std::size_t step = 1; step <= (earlier ? own : list.size() - 1 - own); ++step)
-    if (const std::size_t other = earlier ? own - step : own + step; is_rival(other)) return &list[other];
+    if (const std::size_t other = earlier ? own - step : own + step; is_changed_by_move_to(other)) return &list[other];
   return nullptr;
 }
 
@@ -213,9 +243,8 @@ void move_constraint(Editor& editor, const std::string& name, InOrder where) {
       const auto at = [&](const std::string& wanted) {
         return std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == wanted; });
       };
-      const auto from = at(name), to = at(neighbour);
-      if (earlier) std::rotate(to, from, from + 1);
-      else std::rotate(from, from + 1, to + 1);
+      move_in_list(list, static_cast<std::size_t>(at(name) - list.begin()),
+                   static_cast<std::size_t>(at(neighbour) - list.begin()));
     });
   });
 }

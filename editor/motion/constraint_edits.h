@@ -28,8 +28,9 @@ const Constraint* find_constraint(const Document& document, const std::string& n
 // the world: a hand stays where it is. Throws Error with one line if it cannot be.
 void add_constraint(Editor& editor, ConstraintKind kind);
 void remove_constraint(Editor& editor, const std::string& name);
-// Returns the constraint beside which another one's place in the list matters: the nearest earlier or later one that
-// has the same bone, or turns a bone that it turns too. Of two such, the later one has the last word. nullptr: none.
+// Returns the nearest earlier or later constraint past which a move of the named one changes the order in which those
+// are applied that turn the same bones: of two such, the later one has the last word, unless the first must wait for it
+// (core/motion/constraint_stack.h). Of constraints that are switched off, what holds once they are on. nullptr: none.
 enum class InOrder { Earlier, Later };
 const Constraint* order_neighbour(const Editor& editor, const std::string& name, InOrder where);
 // Moves a constraint in the list, before its earlier neighbour or after its later one. Does nothing without one.

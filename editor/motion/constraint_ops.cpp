@@ -41,8 +41,8 @@ std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
   return [where](const Editor& editor) -> std::string {
     if (std::string why = needs_constraint(editor); !why.empty()) return why;
     if (order_neighbour(editor, active_constraint(editor)->name, where)) return "";
-    return std::string("No ") + (where == InOrder::Earlier ? "earlier" : "later") +
-           " constraint of the clip turns the same bones";
+    return std::string("A move ") + (where == InOrder::Earlier ? "up" : "down") +
+           " changes nothing: what turns the same bones keeps its order";
   };
 }
 

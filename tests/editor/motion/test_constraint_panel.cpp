@@ -358,4 +358,36 @@ TEST_CASE("constraint panel: a project reopens with the pose below the constrain
   CHECK(unconstrained_pose(*other.editor) == free);
 }
 
+TEST_CASE("constraint panel: no order is offered where one constraint must wait for the other whatever the order") {
+  const Constraint aim{.name = "Look", .kind = ConstraintKind::Aim, .bone = "LeftForeArm", .place{90, 0, 0}};
+  const Constraint leg{.name = "Leg", .kind = ConstraintKind::Aim, .bone = "LeftThigh", .place{0, 90, 0}};
+  for (const bool plant_first : {true, false}) {
+    CAPTURE(plant_first);
+    const std::vector<Constraint> list =
+        plant_first ? std::vector{planted_hand(), leg, aim} : std::vector{aim, leg, planted_hand()};
+    ArmEditor test(list, kFore);
+    // Both turn the forearm, and the pose is the same in either order.
+    const ConstraintStack* stack = test.editor->timeline->prepared->constraints();
+    REQUIRE(stack);
+    const std::vector<int>&a = stack->turned(0), &b = stack->turned(2);
+    REQUIRE(std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end());
+    for (const InOrder where : {InOrder::Earlier, InOrder::Later})
+      for (const Constraint& one : list) CHECK_FALSE(order_neighbour(*test.editor, one.name, where));
+    CHECK(disabled_reason(*test.editor, *find_operator(*test.editor, "constraint.up")) ==
+          "A move up changes nothing: what turns the same bones keeps its order");
+  }
+}
+
+TEST_CASE("constraint panel: one that is switched off is moved past what it would rival once it is on") {
+  std::vector<Constraint> list = two_aims();
+  list[1].on = false;
+  ArmEditor test(list, kUpper);
+  const Constraint* earlier = order_neighbour(*test.editor, "B", InOrder::Earlier);
+  REQUIRE(earlier);
+  CHECK(earlier->name == "A");
+  CHECK_FALSE(order_neighbour(*test.editor, "B", InOrder::Later));
+  move_constraint(*test.editor, "B", InOrder::Earlier);
+  CHECK(constraints_of(test.document()).list[0].name == "B");
+}
+
 }  // namespace limber::test
