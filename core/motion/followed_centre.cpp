@@ -36,8 +36,10 @@ FollowedCentre::FollowedCentre(std::shared_ptr<const Clip> clip, std::shared_ptr
 const glm::dvec3& FollowedCentre::measured(int frame) {
   const auto known = measured_.find(frame);
   if (known != measured_.end()) return known->second;
-  return measured_.emplace(frame, PosedRig(*clip_.armature(), clip_.at(frame)).head(bone_)).first->second;
+  return measured_.emplace(frame, in_pose(clip_.at(frame))).first->second;
 }
+
+glm::dvec3 FollowedCentre::in_pose(const Pose& pose) const { return PosedRig(*clip_.armature(), pose).head(bone_); }
 
 glm::dvec3 FollowedCentre::extended(int frame) {
   if (frame >= first_ && frame <= last_) return measured(frame);

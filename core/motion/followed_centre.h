@@ -18,6 +18,8 @@ class FollowedCentre {
   // Returns the smoothed centre at a frame, mm. Only frames range_start to range_end of the clip count; a frame outside
   // of them has the centre of the nearest one.
   glm::dvec3 at(int frame);
+  // Returns the centre in a pose that may be none of the clip's, mm, not smoothed.
+  glm::dvec3 in_pose(const Pose& pose) const;
 
  private:
   const glm::dvec3& measured(int frame);

@@ -58,7 +58,7 @@ Operator export_operator(const ExportFacts& facts) {
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = facts.filters,
-                       .name = (facts.kind == ExportKind::Motion ? motion_stem(e) : stem_of(e) + facts.suffix) +
+                       .name = (facts.kind == ExportKind::Motion ? motion_stem(e) : stem_of(e)) + facts.suffix +
                                facts.filters[0].ends[0],
                        .folder = e.project_path.parent_path(),
                        .chosen = [kind = facts.kind](Editor& ed, const Path& path) { export_file(ed, kind, path); }});
@@ -177,7 +177,7 @@ std::vector<Operator> export_operators() {
                        "Export the active motion as BVH.",
                        ExportKind::Motion,
                        {{"BVH", {".bvh"}}},
-                       ""}),
+                       "-motion"}),  // an imported file has the clip's name: no export is proposed over a capture
       export_operator({"file.export_gltf",
                        "glTF...",
                        "Export the surface, skeleton, weights and every clip for other programs.",

@@ -13,6 +13,7 @@
 #include "editor/pose/live_preview.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/preview_blend.h"
+#include "editor/shown/shown_pose.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/icons.h"
 #include "render/image_io.h"
@@ -80,8 +81,18 @@ class PosedScenes {
   const std::shared_ptr<MapMaker> maker_;  // makes maps as fine as those that the 3D view shows at rest
 };
 
-// Returns the camera of each picture: the 3D view's own, or one that goes along with the body and shows it in the shown
-// frame as the 3D view does.
+// Returns where the body is that the 3D view shows: in the clip's motion, or where the shown frame is outside of the
+// frames that play or its pose was changed by hand, in the pose itself.
+glm::dvec3 shown_centre(const Document& document, FollowedCentre& centre) {
+  const Clip& clip = *document.shown_clip();
+  const bool plays = document.frame >= clip.range_start && document.frame <= clip.range_end;
+  const std::shared_ptr<const Pose> of_clip = plays ? pose_at_frame(document) : nullptr;
+  const bool is_clip_s = of_clip && (!document.pose || *of_clip == *document.pose);
+  return is_clip_s ? centre.at(document.frame) : centre.in_pose(pose_of(document));
+}
+
+// Returns the camera of each picture: the 3D view's own, or one that goes along with the body and has it in the same
+// place as the 3D view shows it now.
 std::function<render::Camera(int picture)> camera_of_pictures(const Editor& editor, const std::vector<int>& frames,
                                                               MotionCamera kind) {
   const render::Camera still = editor.views->body.camera;
@@ -89,7 +100,7 @@ std::function<render::Camera(int picture)> camera_of_pictures(const Editor& edit
   const Document& document = editor.document();
   const auto centre =
       std::make_shared<FollowedCentre>(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
-  return [still, frames, centre, shown = centre->at(document.frame)](int picture) {
+  return [still, frames, centre, shown = shown_centre(document, *centre)](int picture) {
     render::Camera camera = still;
     camera.centre += centre->at(frames[static_cast<std::size_t>(picture)]) - shown;
     return camera;

@@ -168,4 +168,42 @@ TEST_CASE("motion pictures: a camera that follows the body keeps it where it is,
   CAPTURE(still);
   CAPTURE(along);
   CHECK(still > 10 * along);  // what is left is the edges of voxels that are sampled elsewhere
+  // The motion's own file may lie in the same folder and have the clip's name.
+  test.play("click \"File/Export/Motion...\"\n wait-idle\n key Return\n wait-job\n wait-idle");
+  CHECK(std::filesystem::exists(folder / "off to-town-motion.bvh"));
+  CHECK_FALSE(std::filesystem::exists(folder / "off to-town.bvh"));
+}
+
+TEST_CASE("motion pictures: a camera follows the body from where it is seen, outside of the range or moved by hand") {
+  LimbEditor test({900, 640});
+  Document document = bending_limb();
+  document.weights = half_weights(*document.volume);
+  std::vector<Pose> poses(4, rest_pose(*document.armature));
+  for (int frame = 0; frame < 4; ++frame) poses[frame].root_translation = {8.0 * frame, 0, 3.0 * frame};
+  Clip clip = clip_of_poses({.name = "walk", .rate = 30}, *document.armature, poses, 0);
+  clip.range_end = 1;
+  document.clips = {std::make_shared<const Clip>(clip)};
+  document.clip = 0;
+  const TemporaryFolder folder;
+  for (const bool by_hand : {false, true}) {
+    CAPTURE(by_hand);
+    document.frame = by_hand ? 0 : 3;
+    document.pose = std::make_shared<const Pose>(poses[3]);
+    test.editor->history.reset(document, "Open limb");
+    test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle\n wait 1\n wait-idle");
+    const auto exported = [&](const char* menu, const std::string& file, const char* answer) {
+      test.play(std::string("click \"File/Export/") + menu + "\"\n wait-idle\n key Ctrl+A\n type \"" +
+                (folder / file).string() + "\"\n key Return\n wait-idle\n" + answer + "wait-job\n wait-idle");
+      return folder / file;
+    };
+    const std::string name = by_hand ? "hand" : "outside";
+    const auto seen = render::read_png(exported("Picture...", name + "-seen.png", ""));
+    exported("Motion as pictures...", name + ".png", "click \"Camera/Follow the body\"\n wait-idle\n key Return\n");
+    exported("Motion as pictures...", name + "-still.png", "key Return\n");
+    const double along = difference(render::read_png(folder / (name + "-0000.png")), seen),
+                 still = difference(render::read_png(folder / (name + "-still-0000.png")), seen);
+    CAPTURE(still);
+    CAPTURE(along);
+    CHECK(still > 5 * along);
+  }
 }
