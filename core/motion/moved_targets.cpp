@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/motion/moved_targets.h"
 
+#include "core/motion/constraint_rule.h"
+
 namespace limber {
 
 namespace {
@@ -17,6 +19,8 @@ std::vector<std::string> moved_targets(const Constraints& constraints, const Arm
                                        const std::vector<int>& from) {
   std::vector<std::string> moved;
   for (const Constraint& constraint : constraints.list) {
+    // Rotations are copied wherever the target is.
+    if (constraint_rule(constraint.kind).target != ConstraintTarget::Place) continue;
     const auto target = after.find(constraint.target);
     if (!target) continue;  // a place of the world, or a bone that is gone, which the constraint's problem says
     const int old = from[static_cast<std::size_t>(*target)];

@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// Returns the names of the constraints whose target bone has another head or tail in the new rig.
+// Returns the names of the constraints that need a place, whose target bone has another head or tail in the new rig.
 //   from  for each bone of the new rig, its index in the old rig; -1: a new bone
 std::vector<std::string> moved_targets(const Constraints& constraints, const Armature& before, const Armature& after,
                                        const std::vector<int>& from);

@@ -27,6 +27,7 @@
 #include "editor/motion/timeline.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/rig/auto_rig.h"
+#include "editor/rig/rig_edits.h"
 #include "editor/shown/frame_all.h"
 #include "editor/skin/weight_layers.h"
 #include "editor/volume/grey_image_panel.h"
@@ -250,14 +251,12 @@ Import read_weights_file(const Path& path, const Document& now) {
   if (!now.volume || !now.armature)
     refuse("weights need a volume and a rig", path, now.volume ? "import the rig first" : "open the volume first");
   WeightsFile file = read_weights(path, *now.volume, TissueVoxels(*now.volume), *now.armature);
-  auto weights = shared(std::move(file.weights));
-  return {[weights](Document& d) { set_weights(d, weights); }, file.warnings};
+  return {[weights = shared(std::move(file.weights))](Document& d) { set_weights(d, weights); }, file.warnings};
 }
 
 Import read_pose_file(const Path& path, const Document& now) {
   if (!now.armature) refuse("a pose needs a rig", path, "import the rig first");
-  auto pose = shared(read_pose(path, *now.armature));
-  return {[pose](Document& d) { d.pose = pose; }};
+  return {[pose = shared(read_pose(path, *now.armature))](Document& d) { d.pose = pose; }};
 }
 
 Import read_motion(const Path& path) {
@@ -423,6 +422,7 @@ void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
           else commit(e, imported(path), std::move(next));
           e.inputs.insert(e.inputs.end(), import->inputs.begin(), import->inputs.end());
           warn_of(e, path, import->warnings);
+          if (kind == FileKind::Rig && before.armature) warn_of_moved_targets(e, imported(path), *before.armature);
           if (kind == FileKind::Volume) {
             e.selection = {};
             frame_all(e, false);

@@ -8,6 +8,7 @@
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/transform_settings.h"
+#include "editor/rig/rig_edits.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/widgets.h"
 #include "editor/volume/body_seams.h"
@@ -121,7 +122,9 @@ void take_proposed_joint(Editor& editor) {
   leave_proposed_joint(editor);
   Document next = editor.document();
   next.armature = proposed->fitted;
-  commit(editor, "Fit joint axis of " + proposed->bone, std::move(next));
+  const std::string label = "Fit joint axis of " + proposed->bone;
+  commit(editor, label, std::move(next));
+  warn_of_moved_targets(editor, label, *proposed->from);
 }
 
 void leave_proposed_joint(Editor& editor) {

@@ -7,6 +7,7 @@
 
 #include "core/motion/moved_targets.h"
 #include "core/project/bone_names.h"
+#include "core/rig/edit_armature.h"
 #include "core/rig/mirror.h"
 #include "core/skin/transfer_to_volume.h"
 #include "core/skin/weight_layers.h"
@@ -87,6 +88,10 @@ void warn_of_moved_targets(Editor& editor, const std::string& label, const Armat
   if (moved.size() > kMostNamed) names += " and " + std::to_string(moved.size() - kMostNamed) + " more";
   editor.messages.warn(label + ": the target of constraints moved",
                        names + ". Look at their places in the Pose workspace");
+}
+
+void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before) {
+  warn_of_moved_targets(editor, label, before, bones_of(before, *editor.document().armature));
 }
 
 std::shared_ptr<const Armature> shown_rig(const Editor& editor) {

@@ -32,6 +32,8 @@ void commit_rig(Editor& editor, const std::string& label, Armature next, const s
 //   from    for each bone of the new rig, its index in the old rig; -1: a new bone
 void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before,
                            const std::vector<int>& from);
+// The same for a rig whose bones are those of the old rig with the same names.
+void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before);
 // rename_bone() renames one bone. commit_names() commits a rig that differs from the document's rig only in the names
 // of bones. Each call makes one edit, and all that refers to a bone by name (keys, library poses, pins, locks) gets the
 // new name.

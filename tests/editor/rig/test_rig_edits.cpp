@@ -2,17 +2,21 @@
 #include <cmath>
 
 #include "core/motion/constraint.h"
+#include "core/rig_io/rig_io.h"
 #include "editor/context/transform_settings.h"
 #include "editor/context/view_projection.h"
+#include "editor/files/import.h"
 #include "editor/rig/joint_gizmo.h"
 #include "editor/rig/rig_check.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/viewport/snap.h"
 #include "tests/editor/small_limb.h"
+#include "tests/support/program.h"
 
 using namespace limber;
 using namespace limber::editor;
 using limber::test::LimbEditor;
+using limber::test::TemporaryFolder;
 
 namespace {
 
@@ -562,6 +566,7 @@ TEST_CASE("rigging: an edit that moves the target bone of a constraint says so, 
   Clip clip{.name = "sit", .range_end = 10};
   clip.constraints = std::make_shared<const Constraints>(
       Constraints{{{.name = "Aim", .kind = ConstraintKind::Aim, .bone = root, .target = child, .place{0, 0, 9}},
+                   {.name = "Copy", .kind = ConstraintKind::CopyRotation, .bone = root, .target = child},
                    {.name = "Free", .kind = ConstraintKind::Aim, .bone = child, .place{0, 0, 9}}}});
   document.clips = {std::make_shared<const Clip>(clip)};
   test.editor->history.reset(document, "Open limb");
@@ -582,4 +587,17 @@ TEST_CASE("rigging: an edit that moves the target bone of a constraint says so, 
   commit_rig(*test.editor, "Move tail", moved, {1});
   CHECK(warnings().find("Aim (sit)") != std::string::npos);
   CHECK(warnings().find("Free") == std::string::npos);
+  CHECK(warnings().find("Copy") == std::string::npos);  // a rotation is copied wherever its bone is
+  // A rig that is imported over it.
+  const TemporaryFolder folder;
+  write_armature(test.rig(), folder / "same.json");
+  moved.bones[1].tail.x += 5;
+  moved.bones[1].name = test.rig().bones[1].name;
+  write_armature(moved, folder / "other.json");
+  import_file(*test.editor, FileKind::Rig, folder / "same.json");
+  test.play("wait-job\n wait-idle");
+  CHECK(warnings().find("Import same.json") == std::string::npos);
+  import_file(*test.editor, FileKind::Rig, folder / "other.json");
+  test.play("wait-job\n wait-idle");
+  CHECK(warnings().find("Import other.json: the target of constraints moved") != std::string::npos);
 }

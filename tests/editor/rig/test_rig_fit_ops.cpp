@@ -2,6 +2,7 @@
 // Skeletons are laid into the volume.
 #include <algorithm>
 
+#include "core/motion/constraint.h"
 #include "core/phantom/phantom.h"
 #include "core/rig_io/rig_templates.h"
 #include "editor/rig/auto_rig.h"
@@ -91,6 +92,22 @@ std::vector<Proof> proofs_of_rig_fitting() {
        },
        Shows::InBody, "key Shift+J\n wait-job\n wait-idle"},
   };
+}
+
+TEST_CASE("joint axis: a fit that moves the target bone of a constraint says so") {
+  Stage stage;
+  open_bars(stage);
+  Document document = stage.document();
+  Clip clip{.name = "sit", .range_end = 10};
+  clip.constraints = std::make_shared<const Constraints>(Constraints{
+      {{.name = "Aim", .kind = ConstraintKind::Aim, .bone = "Fixed", .target = "Turning", .place{0, 0, 9}}}});
+  document.clips = {std::make_shared<const Clip>(clip)};
+  stage.editor().history.commit("Aim", document);
+  stage.play("wait-idle\n key Shift+J\n wait-job\n wait-idle\n click \"3D view/joint axis/rig.take_joint_fit\"");
+  const auto& log = stage.editor().messages.log;
+  CHECK(std::any_of(log.begin(), log.end(), [](const LogLine& line) {
+    return line.severity == Severity::Warning && line.text.find("Fit joint axis of Turning: the target") == 0;
+  }));
 }
 
 TEST_CASE("joint axis: a joint without a hinge is fitted as the hinge it bends by, and says that it becomes one") {
