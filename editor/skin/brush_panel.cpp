@@ -5,6 +5,7 @@
 
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/labels/label_brush.h"
 #include "editor/seams/seam_view.h"
 #include "editor/skin/brush_presets.h"
 #include "editor/skin/paint_mode.h"
@@ -105,13 +106,14 @@ void draw_test_pose(Editor& editor, Column& column) {
   operator_button(editor, "skin.unbend", {{rect.high.x - width, rect.low.y}, rect.high}, "Unbend");
 }
 
-// Draws the list of the user's presets, with buttons that save and delete one. The list says "Own" while the brush has
-// other settings than each preset.
+// Draws the list of the user's presets, with buttons that save and delete one. The list says "Custom" while the brush
+// has other settings than each preset, or another brush than the weight brush paints.
 void draw_presets(Editor& editor, Column& column) {
   const Look& look = editor.look;
-  const int in_use = brush_preset_in_use(editor);
+  const bool paints_weights = !editor.seams->brush && !editor.skin->painting->labels->on;
+  const int in_use = paints_weights ? brush_preset_in_use(editor) : -1;
   std::vector<std::string> names;
-  if (in_use < 0) names.push_back(brush_presets(editor).empty() ? "None saved" : "Own");
+  if (in_use < 0) names.push_back(brush_presets(editor).empty() ? "None saved" : "Custom");
   for (const BrushPreset& preset : brush_presets(editor)) names.push_back(preset.name);
   const Rect rect = column.property("Preset");
   const float side = look.px(24);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <nlohmann/json.hpp>
 
@@ -33,6 +34,7 @@ Json json_of(const BrushPreset& preset) {
   Json json{{"name", preset.name},        {"brush", brush_rules()[static_cast<std::size_t>(preset.kind)].id},
             {"radius_mm", preset.radius}, {"strength", preset.strength},
             {"value", preset.value},      {"falloff", kFalloffs[static_cast<std::size_t>(preset.falloff)]}};
+  if (preset.kind == BrushKind::JointCapsule) json["blend_mm"] = preset.blend;
   for (const glm::dvec2& point : preset.falloff_curve) json["curve"].push_back({point.x, point.y});
   return json;
 }
@@ -70,6 +72,7 @@ std::optional<BrushPreset> preset_of(const Json& json) {
   preset.radius = number_in(json, "radius_mm", Painting::kLeastRadius, Painting::kMostRadius, preset.radius);
   preset.strength = number_in(json, "strength", 0, 1, preset.strength);
   preset.value = number_in(json, "value", 0, 1, preset.value);
+  if (preset.kind == BrushKind::JointCapsule) preset.blend = number_in(json, "blend_mm", 1, 300, preset.blend);
   const Json falloff = json.value("falloff", Json());
   for (std::size_t i = 0; i < kFalloffs.size(); ++i)
     if (falloff == kFalloffs[i]) preset.falloff = static_cast<FalloffShape>(i);
@@ -82,38 +85,75 @@ auto named(std::vector<BrushPreset>& presets, const std::string& name) {
 }
 
 BrushPreset preset_of_brush(const Painting& painting, const std::string& name) {
-  return {name,           painting.kind,    painting.radius,       painting.strength,
-          painting.value, painting.falloff, painting.falloff_curve};
+  BrushPreset preset{.name = name,
+                     .kind = painting.kind,
+                     .radius = painting.radius,
+                     .strength = painting.strength,
+                     .value = painting.value,
+                     .falloff = painting.falloff,
+                     .falloff_curve = painting.falloff_curve};
+  if (preset.kind == BrushKind::JointCapsule) preset.blend = painting.blend_mm;
+  return preset;
 }
 
-// Writes the presets, and then shows them.
-void keep(Editor& editor, std::vector<BrushPreset> presets) {
-  if (const Path path = presets_path(editor); !path.empty()) {
-    std::filesystem::create_directories(path.parent_path());
-    write_file_atomically(path, brush_presets_json(presets));
-  }
-  editor.skin->painting->presets = std::make_shared<BrushPresets>(BrushPresets{std::move(presets)});
-  editor.touch();
-}
-
-}  // namespace
-
-std::string brush_presets_json(const std::vector<BrushPreset>& presets) {
+Json file_of(const std::vector<BrushPreset>& presets) {
   Json json{{"schema", kSchema}, {"presets", Json::array()}};
   for (const BrushPreset& preset : presets) json["presets"].push_back(json_of(preset));
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json;
 }
 
-std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const std::string& where) {
-  const Json json = Json::parse(checked_json(text, where), nullptr, false);
+// Throws Error if the text holds no presets.
+Json file_from(const std::string& text, const std::string& where) {
+  Json json = Json::parse(checked_json(text, where), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != kSchema || !json.value("presets", Json()).is_array())
-    throw Error("this file holds no brush presets", where, "delete it, or save a preset, which replaces it");
+    throw Error("this file holds no brush presets", where, "move it away, then save presets anew");
+  return json;
+}
+
+std::vector<BrushPreset> presets_in(const Json& file) {
   std::vector<BrushPreset> presets;
-  for (const Json& one : json["presets"])
+  for (const Json& one : file["presets"])
     if (auto preset = preset_of(one);
         preset && named(presets, preset->name) == presets.end() && presets.size() < kMostBrushPresets)
       presets.push_back(std::move(*preset));
   return presets;
+}
+
+std::string text_of_file(const Json& file) { return file.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+// Reads the file again, lets `change` change its list of presets, and writes it. So what another program that runs has
+// saved meanwhile is kept, and so is each entry that this one does not understand.
+void change_file(Editor& editor, const std::function<void(Json& presets)>& change) {
+  const Path path = presets_path(editor);
+  Json file = file_of(path.empty() ? brush_presets(editor) : std::vector<BrushPreset>{});
+  if (!path.empty() && std::filesystem::exists(path)) file = file_from(read_file(path), path.string());
+  change(file["presets"]);
+  if (!path.empty()) {
+    std::filesystem::create_directories(path.parent_path());
+    write_file_atomically(path, text_of_file(file));
+  }
+  editor.skin->painting->presets = std::make_shared<BrushPresets>(BrushPresets{presets_in(file)});
+  editor.touch();
+}
+
+bool is_preset_named(const Json& entry, const std::string& name) {
+  const auto preset = preset_of(entry);
+  return preset && preset->name == name;
+}
+
+}  // namespace
+
+std::string brush_presets_json(const std::vector<BrushPreset>& presets) { return text_of_file(file_of(presets)); }
+
+std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const std::string& where) {
+  return presets_in(file_from(text, where));
+}
+
+bool has_brush_presets(const Editor& editor) {
+  if (const auto& presets = editor.skin->painting->presets) return !presets->list.empty();
+  std::error_code unknown;
+  const Path path = presets_path(editor);
+  return !path.empty() && std::filesystem::exists(path, unknown);
 }
 
 const std::vector<BrushPreset>& brush_presets(Editor& editor) {
@@ -138,21 +178,32 @@ int brush_preset_in_use(Editor& editor) {
   return -1;
 }
 
+void require_preset_name(const std::vector<BrushPreset>& presets, const std::string& name) {
+  const char* const kHint = "type a name of up to 100 letters";
+  if (name.find_first_not_of(" \t") == std::string::npos) throw Error("a brush preset needs a name", "name", kHint);
+  if (name.size() > kLongestName) throw Error("this name is too long", std::to_string(name.size()) + " bytes", kHint);
+  const bool is_new = std::none_of(presets.begin(), presets.end(), [&](const auto& one) { return one.name == name; });
+  if (is_new && presets.size() >= kMostBrushPresets)
+    throw Error("there are too many brush presets", std::to_string(presets.size()), "delete one first");
+}
+
 void save_brush_preset(Editor& editor, const std::string& name) {
-  if (name.empty() || name.size() > kLongestName)
-    throw Error("a brush preset needs a name", name.empty() ? "it has none" : "it is too long", "type a short one");
-  std::vector<BrushPreset> presets = brush_presets(editor);
-  const BrushPreset preset = preset_of_brush(*editor.skin->painting, name);
-  if (const auto old = named(presets, name); old != presets.end()) *old = preset;
-  else if (presets.size() < kMostBrushPresets) presets.push_back(preset);
-  else throw Error("there are too many brush presets", name, "delete one first");
-  keep(editor, std::move(presets));
+  const Json saved = json_of(preset_of_brush(*editor.skin->painting, name));
+  change_file(editor, [&](Json& presets) {
+    require_preset_name(presets_in(Json{{"presets", presets}}), name);
+    for (Json& entry : presets)
+      if (is_preset_named(entry, name)) return void(entry = saved);
+    presets.push_back(saved);
+  });
 }
 
 void delete_brush_preset(Editor& editor, const std::string& name) {
-  std::vector<BrushPreset> presets = brush_presets(editor);
-  std::erase_if(presets, [&](const BrushPreset& one) { return one.name == name; });
-  keep(editor, std::move(presets));
+  change_file(editor, [&](Json& presets) {
+    Json kept = Json::array();
+    for (const Json& entry : presets)
+      if (!is_preset_named(entry, name)) kept.push_back(entry);
+    presets = std::move(kept);
+  });
 }
 
 void use_brush_preset(Editor& editor, const std::string& name) {
@@ -165,6 +216,7 @@ void use_brush_preset(Editor& editor, const std::string& name) {
     painting.value = preset.value;
     painting.falloff = preset.falloff;
     painting.falloff_curve = preset.falloff_curve;
+    if (preset.kind == BrushKind::JointCapsule) painting.blend_mm = preset.blend;
     editor.seams->brush = painting.labels->on = false;
     return editor.touch();
   }

@@ -15,13 +15,16 @@ namespace {
 
 using Fields = std::vector<FormField>;
 
+std::string needs_preset(const Editor& editor) { return has_brush_presets(editor) ? "" : "Save a brush preset first"; }
+
 void ask_name(Editor& editor) {
   const int in_use = brush_preset_in_use(editor);
   const std::string name = in_use < 0 ? "" : brush_presets(editor)[static_cast<std::size_t>(in_use)].name;
   std::vector<std::string> names;
   for (const BrushPreset& preset : brush_presets(editor)) names.push_back(preset.name);
-  const auto outcome = [names](const Editor& e, const Fields& fields) -> std::string {
+  const auto outcome = [names, presets = brush_presets(editor)](const Editor& e, const Fields& fields) -> std::string {
     if (fields[0].text.empty()) throw NotYet{"Type a name."};
+    require_preset_name(presets, fields[0].text);
     if (std::find(names.begin(), names.end(), fields[0].text) != names.end())
       return "Replaces the preset \"" + fields[0].text + "\".";
     return "Saves " + name_of(e.skin->painting->kind) + " with its radius, strength, value and falloff.";
@@ -61,12 +64,14 @@ std::vector<Operator> brush_preset_operators() {
       {"skin.preset_use", "Use brush preset...", icon::kSkin, "Brush", "Give the brush the settings of a saved preset.",
        [](Editor& e) {
          ask_preset(e, "Use brush preset", "Gives the weight brush the settings of a preset.", "Use", use_brush_preset);
-       }},
+       },
+       needs_preset},
       {"skin.preset_delete", "Delete brush preset...", icon::kClose, "Brush", "Delete a saved brush preset.",
        [](Editor& e) {
          ask_preset(e, "Delete brush preset", "Deletes a preset. The brush keeps its settings.", "Delete",
                     delete_brush_preset);
-       }},
+       },
+       needs_preset},
   };
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "editor/seams/seam_view.h"
 #include "tests/editor/paint_editor.h"
 
 using namespace limber;
@@ -93,4 +94,78 @@ TEST_CASE("brush presets: a damaged file is said to be so, and wrong numbers nev
   CHECK(brush_presets(*test.editor).empty());
   REQUIRE(!test.editor->messages.toasts.empty());
   CHECK(test.editor->messages.toasts.back().line == "The brush presets could not be read");
+}
+
+TEST_CASE("brush presets: what another program has saved, and what this one does not understand, is kept") {
+  const TemporaryFolder folder;
+  const Path file = folder / "brushes.json";
+  PaintEditor one;
+  one.editor->preferences_path = folder / "preferences.json";
+  CHECK(disabled_reason(*one.editor, *find_operator(*one.editor, "skin.preset_use")) == "Save a brush preset first");
+  CHECK(brush_presets(*one.editor).empty());
+  // What another program knows, which read the file before it was written.
+  auto of_other = std::make_shared<BrushPresets>();
+  const auto other = [&]() -> Editor& {
+    std::swap(brush_of(one).presets, of_other);
+    return *one.editor;
+  };
+  write_file_atomically(file, R"({"schema": "limber-brushes/1", "later": 3, "presets": [
+    {"name": "Of tomorrow", "brush": "one that this program lacks", "radius_mm": 7}]})");
+  save_brush_preset(*one.editor, "One");
+  save_brush_preset(other(), "Other");
+  other();
+  save_brush_preset(*one.editor, "Third");
+  delete_brush_preset(other(), "One");
+  CHECK(disabled_reason(*one.editor, *find_operator(*one.editor, "skin.preset_use")).empty());
+  const std::string text = read_file(file);
+  for (const char* kept : {"Of tomorrow", "one that this program lacks", "\"later\": 3", "\"Other\"", "\"Third\""})
+    CHECK_MESSAGE(text.find(kept) != std::string::npos, kept);
+  CHECK(text.find("\"One\"") == std::string::npos);
+  REQUIRE(brush_presets(*one.editor).size() == 2);
+  CHECK(brush_presets(*one.editor)[1].name == "Third");
+  // What is no list of presets is not written over.
+  write_file_atomically(file, "no JSON");
+  CHECK_THROWS_AS(save_brush_preset(*one.editor, "Fourth"), Error);
+  CHECK(read_file(file) == "no JSON");
+  CHECK(brush_presets(*one.editor).size() == 2);
+}
+
+TEST_CASE("brush presets: the joint capsule brush keeps its blend, and names that cannot be are refused") {
+  const TemporaryFolder folder;
+  PaintEditor test;
+  test.editor->preferences_path = folder / "preferences.json";
+  brush_of(test).kind = BrushKind::JointCapsule;
+  brush_of(test).blend_mm = 71;
+  save_brush_preset(*test.editor, "Knee");
+  brush_of(test).blend_mm = 12;
+  CHECK(brush_preset_in_use(*test.editor) == -1);
+  use_brush_preset(*test.editor, "Knee");
+  CHECK(brush_of(test).blend_mm == 71);
+  CHECK(brush_presets_from_json(read_file(folder / "brushes.json"), "")[0].blend == 71);
+
+  for (const std::string& name : {std::string(), std::string("  "), std::string(101, 'n')})
+    CHECK_THROWS_AS(save_brush_preset(*test.editor, name), Error);
+  std::vector<BrushPreset> full(kMostBrushPresets);
+  for (std::size_t i = 0; i < full.size(); ++i) full[i].name = std::to_string(i);
+  CHECK_NOTHROW(require_preset_name(full, "7"));
+  CHECK_THROWS_WITH_AS(require_preset_name(full, "new"), doctest::Contains("too many"), Error);
+  test.play("key N\nwait-idle\nclick Brush/Preset/skin.preset_save\nwait-idle\nkey Ctrl+A\ntype \"" +
+            std::string(101, 'n') + "\"\nwait-idle\nkey Return\nwait-idle");
+  CHECK(test.editor->dialog);
+  CHECK(brush_presets(*test.editor).size() == 1);
+}
+
+TEST_CASE("brush presets: the one in use is not shown as such while the seam brush paints") {
+  PaintEditor test;
+  save_brush_preset(*test.editor, "Wide");
+  test.play("key N\nwait-idle");
+  CHECK(test.fact("text:Wide") == "shown");
+  test.editor->seams->brush = true;
+  test.editor->touch();
+  test.play("wait-idle");
+  CHECK(test.fact("text:Custom") == "shown");
+  use_brush_preset(*test.editor, "Wide");
+  test.play("wait-idle");
+  CHECK_FALSE(test.editor->seams->brush);
+  CHECK(test.fact("text:Wide") == "shown");
 }
