@@ -102,9 +102,8 @@ const std::vector<TourStep>& tour_steps() {
        "Steps/Pose/Flex...", "pose.flex", bent},
       {"Resample", "Writes the posed arm as a new label volume, with a report of what changed.",
        "Steps/Resample/Resample", "resample.run", resampled},
-      {"See the result",
-       "Go to the Resample workspace and click the posed arm in its list: you see it, and what changed.",
-       "top/Resample", "workspace.resample", sees_result},
+      {"See the result", "Go to the Resample workspace: it shows the posed arm, and what changed.", "top/Resample",
+       "workspace.resample", sees_result},
   };
   return steps;
 }

@@ -237,10 +237,15 @@ std::string unique_name(const std::vector<std::shared_ptr<const Result>>& result
     if (const std::string candidate = name + " (" + std::to_string(i) + ")"; !taken(candidate)) return candidate;
 }
 
+void show_rest(Comparison& comparison) {
+  comparison.shows_a = comparison.a.empty();
+  if (!comparison.shows_a) comparison.b.clear();
+}
+
 void show_result(Editor& editor, const std::string& name) {
   stop_watching(editor);
-  editor.comparison.b = name;
-  editor.comparison.shows_a = false;
+  if (name.empty()) show_rest(editor.comparison);
+  else editor.comparison.b = name, editor.comparison.shows_a = false;
   // Where the workspace shows the body itself or another pose, the user would see nothing of the result.
   if (result_named(editor.document(), name) && !shown_result(editor)) editor.workspace = Workspace::Resample;
 }
@@ -251,14 +256,10 @@ void show_result_of_pose(Editor& editor) {
   if (comparison.views != Comparison::Views::One || comparison.shows_a) return;
   const auto shown = result_named(document, comparison.b);
   if (shown && is_of_this_pose(document, *shown)) return;
-  std::shared_ptr<const Result> best;
-  for (auto at = document.results.rbegin(); at != document.results.rend(); ++at) {
-    if (!is_of_this_pose(document, **at)) continue;
-    const bool is_fresh = stale_reason(document, **at).empty();
-    if (!best || is_fresh) best = *at;
-    if (is_fresh) break;
-  }
-  if (best) editor.comparison.b = best->name;
+  const auto fresh = std::find_if(document.results.rbegin(), document.results.rend(), [&](const auto& result) {
+    return is_of_this_pose(document, *result) && stale_reason(document, *result).empty();
+  });
+  if (fresh != document.results.rend()) editor.comparison.b = (*fresh)->name;
 }
 
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name) {

@@ -55,10 +55,12 @@ std::string name_of_pose(const Armature& armature, const Pose& pose);
 // Returns `name`, with a number appended if a result already has that name.
 std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name);
 
-// Where one result is shown and belongs to another pose, shows the newest one of the current pose instead: one that is
-// not stale, if there is one. Shows the same as before if the current pose has no result.
+// Where a result of another pose is shown, or the body at rest without the user having chosen it, shows the newest
+// result of the current pose that is not stale. Otherwise shows the same as before.
 void show_result_of_pose(Editor& editor);
 void show_result(Editor& editor, const std::string& name);  // "" shows the volume at rest
+// Lets the views show the volume at rest: as side A where that is the volume, so that it counts as chosen.
+void show_rest(Comparison& comparison);
 // Renames a result as one edit; makes the name unique among the results.
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name);
 // Puts the shown result or the current pose into this frame's scene, and side A of a comparison into the second scene.

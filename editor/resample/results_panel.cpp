@@ -68,6 +68,8 @@ void choose_side(Editor& editor, const std::string& name) {
   Comparison& comparison = editor.comparison;
   if (editor.input.modifiers().shift) {
     comparison.a = name;
+  } else if (comparison.b == name && !comparison.shows_a && !comparing(editor)) {
+    show_rest(comparison);
   } else {
     comparison.b = comparison.b == name && !comparison.shows_a ? "" : name;
     comparison.shows_a = false;

@@ -284,6 +284,23 @@ TEST_CASE("results: the Resample workspace opens with the result of the current 
   CHECK(test.shown().get() == test.volume(0));
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
   CHECK(test.shown().get() == test.volume(1));
+  // The body at rest stays where the user selected it, and a stale result is not shown.
+  test.play("click Two/row\n wait-idle");
+  CHECK(test.shown() == test.editor->document().volume);
+  test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
+  CHECK(test.shown() == test.editor->document().volume);
+  test.play("click One/row\n wait-idle");
+  const Document fresh = test.editor->document();
+  Document stale = fresh;
+  auto grown = std::make_shared<Armature>(*stale.armature);
+  grown->bones[1].tail.z += 1;
+  stale.armature = grown;
+  test.editor->history.commit("Rig", stale);
+  test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
+  CHECK(test.shown().get() == test.volume(0));
+  test.editor->history.commit("Rig", fresh);
+  test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
+  CHECK(test.shown().get() == test.volume(1));
   // A pose without a result leaves what the user selected.
   next = test.editor->document();
   bent.rotation[0] = glm::angleAxis(0.2, glm::dvec3(1, 0, 0));
