@@ -351,11 +351,12 @@ void take_key(Editor& editor, const std::vector<Row>& rows) {
   }
 }
 
-// Returns the first row whose own name matches the search; rows above it may be there because of it. 0 without one.
+// Returns the first row whose own name matches the search: a tissue, bone or result rather than the volume or a
+// heading. Rows above it may be there because of it. 0 without one.
 int first_found(const Editor& editor, const std::vector<Row>& rows) {
-  const auto found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) {
-    return contains_ignoring_case(row.name, editor.outliner.search);
-  });
+  const auto matches = [&](const Row& row) { return contains_ignoring_case(row.name, editor.outliner.search); };
+  auto found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return can_rename(row) && matches(row); });
+  if (found == rows.end()) found = std::find_if(rows.begin(), rows.end(), matches);
   return found == rows.end() ? 0 : static_cast<int>(found - rows.begin());
 }
 
@@ -416,9 +417,10 @@ float height_of_list(const Editor& editor, const Column& column, float whole) {
   return height = std::min(whole, std::max(kRow * kFewestRows, room));
 }
 
-// Scrolls the list so that a row is in its middle. Does nothing if the row is already visible.
-void scroll_to_row(const Look& look, int row, float height) {
-  const float top = look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
+// Scrolls what holds the list so that a row is in its middle. Does nothing if the row is already visible.
+//   above  the height of what lies above the list's first row in it, pixels
+void scroll_to_row(const Look& look, int row, float height, float above = 0) {
+  const float top = above + look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
   if (top < scroll || top + look.px(kRow) > scroll + height)
     ImGui::SetScrollY(std::max(0.0f, top - (height - look.px(kRow)) / 2));
 }
@@ -447,6 +449,9 @@ void draw_outliner(Editor& editor, Column& column) {
     if (editor.input.down(Key::Escape)) drag = {};
     const float whole = kRow * static_cast<float>(rows.size()), height = height_of_list(editor, column, whole);
     if (height >= whole) {
+      const Rect& sidebar = editor.layout.sidebar;
+      const float above = column.row(0).low.y + ImGui::GetScrollY() - sidebar.low.y;
+      if (is_new_search && !rows.empty()) scroll_to_row(look, first_found(editor, rows), sidebar.height(), above);
       for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[i]);
     } else {
       const Rect place = column.row(height);

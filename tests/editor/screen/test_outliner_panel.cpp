@@ -198,3 +198,28 @@ TEST_CASE("outliner: a thousand tissues cost no more than what is seen of them")
   CHECK(test.editor->widgets.find("Outliner/tissue 2999/name"));
   CHECK(test.editor->selection.tissue == Label{2999});
 }
+
+TEST_CASE("outliner: the search goes to a bone rather than to a heading, and scrolls where the list has no fold") {
+  SmallEditor test({1280, 720});
+  Document document = small_body();
+  auto armature = std::make_shared<Armature>();
+  for (int b = 0; b < 60; ++b) {
+    Bone bone;
+    bone.name = b == 59 ? "LeftArm" : "Bone " + std::to_string(b);
+    bone.parent = b - 1;
+    bone.head = {0, 0, 1.0 * b};
+    bone.tail = {0, 0, 1.0 * b + 1};
+    armature->bones.push_back(bone);
+  }
+  document.armature = armature;
+  test.editor->history.reset(document, "Open");
+  test.play("key Ctrl+3\n wait-idle\n move \"3D view/view\"\n key Ctrl+F\n type \"arm\"\n wait-idle");
+  const Widget* found = test.editor->widgets.find("Outliner/bone LeftArm/name");
+  REQUIRE(found);
+  CHECK(found->rect.low.y >= test.editor->layout.sidebar.low.y);
+  CHECK(found->rect.high.y <= test.editor->layout.sidebar.high.y);
+  CHECK(found->rect.height() > 10 * test.editor->look.scale);
+  test.play("key Return\n wait-idle");
+  REQUIRE(test.editor->selection.bone);
+  CHECK(*test.editor->selection.bone == 59);
+}
