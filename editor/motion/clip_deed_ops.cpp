@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 #include <set>
 
 #include "core/base/error.h"
@@ -21,6 +22,7 @@ namespace limber::editor {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are recorded at once
+constexpr double kFewFrames = 2000;        // clips of fewer frames change their speed at once
 constexpr double kHasty = 1.5;             // a seam in which bones turn faster than this is warned of
 
 std::string needs_clip(const Editor& editor) {
@@ -109,20 +111,32 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
                      : std::string());
 }
 
-// The play head stays at its place in the motion.
+// The play head stays at its place in the motion, if that is still shown.
+void take_in_speed(Editor& editor, const std::shared_ptr<const Clip>& source,
+                   const std::shared_ptr<const Armature>& rig, const Clip& changed, double factor) {
+  settle_frame(editor);
+  std::optional<double> moment;
+  if (editor.document().shown_clip() == source.get())
+    moment = changed.start + std::round((double(editor.document().frame) - changed.start) / factor);
+  take_in_clip(editor, source, rig, "Change speed", changed, false, moment);
+}
+
+// A short clip is changed at once, so that its speed can be adjusted afterwards; a long one as a job that cancels.
 void change_speed(Editor& editor, double factor) {
   const auto source = shared_clip(editor);
-  start_task(editor, "Change speed", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+  const auto rig = editor.document().armature;
+  const std::int64_t recorded = source->motion ? source->motion->frame_count : 0;
+  const double steps = std::max<double>(double(recorded), double(source->range_end) - source->range_start);
+  if (std::max(steps, steps / factor) < kFewFrames)
+    return take_in_speed(editor, source, rig, at_speed(*source, factor), factor);
+  start_task(editor, "Change speed", [=](Progress& progress) -> Finish {
     const auto changed = std::make_shared<const Clip>(at_speed(*source, factor, progress));
-    return [=](Editor& e) {
-      settle_frame(e);
-      const double moment = changed->start + std::round((double(e.document().frame) - changed->start) / factor);
-      take_in_clip(e, source, rig, "Change speed", *changed, false, moment);
-    };
+    return [=](Editor& e) { take_in_speed(e, source, rig, *changed, factor); };
   });
 }
 
 void ask_speed(Editor& editor) {
+  stop_playing(editor);
   const auto [low, high] = playing_range(editor);
   editor.open_dialog(make_form(
       {"Change speed",

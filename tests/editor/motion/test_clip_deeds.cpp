@@ -10,6 +10,7 @@
 #include "core/motion/loop_poses.h"
 #include "core/motion/motion_edit.h"
 #include "core/rig/mirror.h"
+#include "editor/dialogs/redo_last_operator.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/motion/timeline.h"
 #include "tests/editor/small_editor.h"
@@ -181,6 +182,7 @@ TEST_CASE("whole clips: the play head stays at its place in the motion when the 
   const glm::dquat spine = test.editor->document().pose->rotation[1];
   test.deed("Change speed...", "double-click Speed/value\n key Ctrl+A\n type 2\n key Tab\n wait-idle\n click Change");
   CHECK(test.editor->document().frame == kStart + 20);
+  CHECK(why_not_redo(*test.editor) == "");  // its speed can be adjusted
   CHECK(glm::length(turn_between(test.editor->document().pose->rotation[1], spine)) < 1e-6);
 }
 
