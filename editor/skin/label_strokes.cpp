@@ -10,6 +10,7 @@
 #include "editor/labels/label_edits.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
+#include "editor/volume/shown_image.h"
 #include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
@@ -80,6 +81,14 @@ void end_label_stroke(Editor& editor) {
 }
 
 }  // namespace
+
+void begin_range(Editor& editor) {
+  LabelBrush& brush = *editor.skin->painting->labels;
+  const LabelBrush usual;
+  if (!editor.views->image || brush.low != usual.low || brush.high != usual.high) return;
+  const GreyLevels& image = *editor.views->image->image;
+  if (!looks_like_ct(image)) brush.low = image.least, brush.high = image.most();
+}
 
 std::string why_not_paint_labels(const Editor& editor) {
   if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";

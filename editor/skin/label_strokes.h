@@ -20,6 +20,9 @@ std::string why_not_paint_labels(const Editor& editor);
 std::optional<BrushPlace> label_brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel);
 // Begins a stroke at the pointer. The stroke ends when the button is released.
 void begin_label_stroke(Editor& editor, bool erases);
+// Call it when strokes begin to keep to a range of values. In an image that is no CT, where the range is still the
+// usual bone of a CT, it becomes that of all the image's values.
+void begin_range(Editor& editor);
 void draw_label_brush_section(Editor& editor, Column& column);  // draws nothing while the brush is off
 
 }  // namespace limber::editor

@@ -4,6 +4,7 @@
 #include "editor/labels/label_brush.h"
 #include "editor/labels/label_edits.h"
 #include "editor/seams/seam_view.h"
+#include "editor/skin/label_strokes.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/icons.h"
@@ -27,6 +28,12 @@ Operator erasing(const char* id, const char* label, const char* description, Era
           "",          "Labels",
           description, [erased](Editor& e) { brush_of(e).erased = erased; },
           nullptr,     [erased](const Editor& e) { return brush_of(e).erased == erased; }};
+}
+
+void toggle_range(Editor& editor) {
+  LabelBrush& brush = brush_of(editor);
+  brush.in_range = !brush.in_range;
+  if (brush.in_range) begin_range(editor);
 }
 
 // Where it is run in another workspace, the user wants to paint, whether the brush was on before or not.
@@ -68,8 +75,7 @@ std::vector<Operator> label_brush_operators() {
        [](Editor& e) { brush_of(e).flat = !brush_of(e).flat; }, nullptr,
        [](const Editor& e) { return brush_of(e).flat; }},
       {"labels.in_range", "In a range of values", "", "Labels",
-       "Change only voxels whose value in the shown image lies in a range, such as bone in a CT.",
-       [](Editor& e) { brush_of(e).in_range = !brush_of(e).in_range; },
+       "Change only voxels whose value in the shown image lies in a range, such as bone in a CT.", toggle_range,
        [](const Editor& e) {
          return e.views->image ? std::string() : std::string("Open an image first: File > Import > Image");
        },

@@ -57,9 +57,11 @@ void draw_choice(Editor& editor, Column& column, const char* name, const std::ve
 void draw_range(Editor& editor, Column& column, LabelBrush& brush) {
   if (!editor.views->image) return;
   const Rect rect = column.property("");
+  const bool was_in_range = brush.in_range;
   checkbox(editor, "In a range", rect, "In a range", brush.in_range);
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "labels.in_range"), rect);
   if (!brush.in_range) return;
+  if (!was_in_range) begin_range(editor);
   const GreyLevels& image = *editor.views->image->image;
   bool committed = false;
   number_field(editor, "From", column.property("From"), brush.low, image.least, image.most(), "%.0f", "", true,

@@ -196,6 +196,13 @@ TEST_CASE("label brush: it paints over what it may, in one slice, and in a range
 
   show_halves(*test.editor);
   run(*test.editor, "labels.in_range");
+  LabelBrush& brush = *test.editor->skin->painting->labels;
+  const GreyLevels& image = *test.editor->views->image->image;
+  CHECK_FALSE(looks_like_ct(image));  // so the range is not that of bone in a CT
+  CHECK(brush.low == image.least);
+  CHECK(brush.high == image.most());
+  brush.low = LabelBrush().low;
+  brush.high = LabelBrush().high;
   run(*test.editor, "labels.flat");
   test.editor->skin->painting->radius = 25;
   test.stroke(ViewId::Axial, middle, middle + glm::dvec3(1, 0, 0));
