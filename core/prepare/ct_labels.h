@@ -38,8 +38,10 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds = 
 double body_threshold(const GreyLevels& image);
 
 // Returns the labels of an image whose values have no unit, on its own grid: the body and its skin. Whatever is dark
-// and enclosed by the body, such as cortical bone in an MR, counts as body. Throws Error if no value is below the
-// threshold, or if nothing in the image is a body (as labels_of_ct).
+// and enclosed by the body, such as cortical bone in an MR, counts as body. It is enough that it is enclosed in one
+// slice across the body's longest axis, as lungs are where the windpipe is open: so the air in a ring that arms and
+// trunk close in a slice is filled too. Throws Error if no value is below the threshold, or if nothing in the image is
+// a body (as labels_of_ct).
 CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_mm = 2,
                         Progress& progress = no_progress());
 

@@ -121,7 +121,9 @@ void ask_for_body(Editor& editor) {
        "Tell the body from its background by a threshold that the image's own histogram proposes. Paint bones "
        "afterwards.",
        "Make labels",
-       {number_of("Body from", "Voxels from this value on are body. Proposed from the image's histogram.",
+       {number_of("Body from",
+                  "Voxels from this value on are body, and so is what they enclose in an axial slice: erase air "
+                  "that clasped arms or crossed legs enclose.",
                   body_threshold(image), image.least, image.most(), "%.4g"),
         number_of("Skin", "The thickness of the skin, at least one voxel.", 2, 0, 10, "%.1f", "mm")},
        outcome_of_body,
