@@ -75,7 +75,7 @@ TEST_CASE("test pose: a joint is bent on trial, the project's pose stays, and an
   CHECK(test.editor->trial->degrees == 60);
   CHECK(shows_pose(*test.editor));
   // In the sidebar, with the way back.
-  for (const char* folded : {"Bones", "Layers"}) test.editor->open_sections[folded] = false;
+  for (const char* folded : {"Steps", "Bones", "Layers"}) test.editor->open_sections[folded] = false;
   test.play("key N\nwait-idle\nclick \"sidebar/sections/Brush/skin.unbend\"\nwait-idle");
   CHECK_FALSE(shows_pose(*test.editor));
   CHECK(!test.editor->views->scene.pose);
