@@ -156,20 +156,29 @@ TEST_CASE("outliner: the search keeps parents, and finds nothing with a way back
   CHECK(test.editor->selection.bone == 2);
 }
 
-TEST_CASE("outliner: what is found below the fold of the list is scrolled to, and Return goes to it") {
-  SmallEditor test({1280, 720});
+namespace {
+
+// A body with 60 bones, more than the list shows at once, the last of which has this name.
+Document body_with_many_bones(const std::string& last) {
   Document document = small_body();
   auto armature = std::make_shared<Armature>();
   for (int b = 0; b < 60; ++b) {
     Bone bone;
-    bone.name = b == 59 ? "Fingertip" : "Bone " + std::to_string(b);
+    bone.name = b == 59 ? last : "Bone " + std::to_string(b);
     bone.parent = b - 1;
     bone.head = {0, 0, 1.0 * b};
     bone.tail = {0, 0, 1.0 * b + 1};
     armature->bones.push_back(bone);
   }
   document.armature = armature;
-  test.editor->history.reset(document, "Open");
+  return document;
+}
+
+}  // namespace
+
+TEST_CASE("outliner: what is found below the fold of the list is scrolled to, and Return goes to it") {
+  SmallEditor test({1280, 720});
+  test.editor->history.reset(body_with_many_bones("Fingertip"), "Open");
   test.play("key Ctrl+1\n wait-idle\n move \"3D view/view\"\n key Ctrl+F\n type \"finger\"\n wait-idle");
   const Widget* found = test.editor->widgets.find("Outliner/bone Fingertip/name");
   REQUIRE(found);
@@ -201,18 +210,7 @@ TEST_CASE("outliner: a thousand tissues cost no more than what is seen of them")
 
 TEST_CASE("outliner: the search goes to a bone rather than to a heading, and scrolls where the list has no fold") {
   SmallEditor test({1280, 720});
-  Document document = small_body();
-  auto armature = std::make_shared<Armature>();
-  for (int b = 0; b < 60; ++b) {
-    Bone bone;
-    bone.name = b == 59 ? "LeftArm" : "Bone " + std::to_string(b);
-    bone.parent = b - 1;
-    bone.head = {0, 0, 1.0 * b};
-    bone.tail = {0, 0, 1.0 * b + 1};
-    armature->bones.push_back(bone);
-  }
-  document.armature = armature;
-  test.editor->history.reset(document, "Open");
+  test.editor->history.reset(body_with_many_bones("LeftArm"), "Open");
   test.play("key Ctrl+3\n wait-idle\n move \"3D view/view\"\n key Ctrl+F\n type \"arm\"\n wait-idle");
   const Widget* found = test.editor->widgets.find("Outliner/bone LeftArm/name");
   REQUIRE(found);
