@@ -113,7 +113,7 @@ void draw_presets(Editor& editor, Column& column) {
   const bool paints_weights = !editor.seams->brush && !editor.skin->painting->labels->on;
   const int in_use = paints_weights ? brush_preset_in_use(editor) : -1;
   std::vector<std::string> names;
-  if (in_use < 0) names.push_back(brush_presets(editor).empty() ? "None saved" : "Custom");
+  if (in_use < 0) names.push_back(brush_presets(editor).empty() ? "None" : "Custom");
   for (const BrushPreset& preset : brush_presets(editor)) names.push_back(preset.name);
   const Rect rect = column.property("Preset");
   const float side = look.px(24);
