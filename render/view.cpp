@@ -16,7 +16,7 @@ namespace limber::render {
 namespace {
 
 constexpr double kRest = 0.1;          // time without a change after which the picture is refined, seconds
-constexpr double kFrame = 0.028;       // time limit for drawing the body while something moves, seconds
+constexpr double kFrame = 0.024;       // time limit for drawing the body while something moves, seconds
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
 constexpr int kTile = 128;             // edge length of a tile, pixels
 constexpr int kLightTile = 64;         // the same where rays go on from the hits to the light and the sky

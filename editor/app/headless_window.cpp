@@ -50,11 +50,13 @@ class Picture final : public Offscreen {
     glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colours_);
   }
 
+  void finish() override {
+    paint();
+    glFinish();
+  }
+
   render::Image picture() override {
-    if (const auto paint = std::exchange(paint_, {})) {
-      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-      paint();
-    }
+    paint();
     render::Image image{size_, std::vector<std::uint8_t>(std::size_t{4} * size_.x * size_.y)};
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
@@ -68,6 +70,13 @@ class Picture final : public Offscreen {
   }
 
  private:
+  void paint() {
+    if (const auto paint = std::exchange(paint_, {})) {
+      glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+      paint();
+    }
+  }
+
   render::HeadlessContext context_;
   double monitor_scale_;
   unsigned framebuffer_ = 0, colours_ = 0;

@@ -17,16 +17,12 @@
 #include "editor/skin/paint_mode.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/picture_blit.h"
 #include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
 
 namespace {
-
-void put_picture(unsigned texture, const Rect& rect) {
-  ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
-                                       im(rect.low), im(rect.high), {0, 1}, {1, 0});
-}
 
 void draw_picture(Editor& editor, const ViewPlace& place) {
   Views& views = *editor.views;
@@ -34,11 +30,11 @@ void draw_picture(Editor& editor, const ViewPlace& place) {
   const unsigned other = body                              ? (views.body.other ? views.body.other->texture() : 0)
                          : slice_of(views, place.id).other ? slice_of(views, place.id).other->texture()
                                                            : 0;
-  if (place.side_a) return put_picture(other, place.rect);
-  put_picture(body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture(), place.rect);
+  if (place.side_a) return blit_picture(other, place.rect);
+  blit_picture(body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture(), place.rect);
   if (!other || editor.layout.by_sides) return;
   ImGui::PushClipRect(im(place.rect.low), {wipe_line(editor, place.rect), place.rect.high.y}, true);
-  put_picture(other, place.rect);
+  blit_picture(other, place.rect);
   ImGui::PopClipRect();
 }
 
