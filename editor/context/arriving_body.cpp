@@ -49,7 +49,7 @@ bool ArrivingBodies::upload(render::Renderer& renderer) {
   bool is_done = true;
   try {
     is_done = renderer.upload(*body);
-  } catch (const Error&) {  // ignored: when the views draw the body, they try it at a coarser resolution
+  } catch (const Error&) {  // ignored: the views retry at a coarser resolution when they draw the body
   }
   lock.lock();
   if (is_done) std::erase(waiting_, body);

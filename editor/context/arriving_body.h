@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes a body ready to be drawn while a job still reads or computes it, so that the frame that shows it first takes no
-// longer than others. The job's thread computes everything that needs no OpenGL; the frames then upload it bit by bit,
-// and the job ends when they are done.
+// Makes a body ready to be drawn while a job still reads or computes it, so that the first frame that shows the body
+// takes no longer than other frames. The job's thread does all work that needs no OpenGL. Each frame then uploads a
+// part of the body, and the job ends when the upload is complete.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ namespace limber::editor {
 
 struct Views;
 
-// The bodies that jobs want to be uploaded. Jobs and frames share it.
+// The queue of bodies to upload to OpenGL. The threads of jobs add bodies, and frames upload them.
 class ArrivingBodies {
  public:
   // Waits in a job's thread until frames have uploaded the body. Returns early if no frame came for half a second, as
@@ -39,8 +39,9 @@ class ArrivingBodies {
   std::chrono::steady_clock::time_point last_frame_{};
 };
 
-// Returns a function that a job calls in its own thread with the document that will be shown when the job ends. It
-// makes the document's body ready to be drawn as the views show bodies now. Where no frames are drawn, it does nothing.
+// Returns a function that a job calls in its own thread with the document that will be shown when the job ends. The
+// function makes the document's body ready to be drawn with the views' current display mode. If the window draws no
+// frames, such as while it is minimized, the function does nothing.
 using MakeReady = std::function<void(const Document&, Progress&)>;
 MakeReady body_maker(const Views& views);
 

@@ -20,7 +20,7 @@ struct KnownResult {
 // unknown name means the volume at rest.
 struct Comparison {
   std::string a, b;
-  bool shows_a = false;  // true: the views show a while nothing is compared; false: they show b
+  bool shows_a = false;  // used while nothing is compared. true: the views show result a; false: they show result b
   enum class Views {
     One,         // no comparison: the views show either a or b
     Wipe,        // each view is divided by a movable line: a is shown left of the line, b right of it

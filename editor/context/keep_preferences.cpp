@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr char kUnbound[] = "unbound";  // member of an exported key map: operators without any key
+constexpr char kUnbound[] = "unbound";  // JSON member of an exported key map: the list of operators without any key
 
 std::set<std::string> operators_of(const Keymap& keymap) {
   std::set<std::string> ids;
@@ -21,7 +21,7 @@ std::set<std::string> operators_of(const Keymap& keymap) {
   return ids;
 }
 
-// Returns the operators that a key map's file knows: those with keys, and those that it lists as being without.
+// Returns the operators that a key map file mentions: those with keys, and those in its list "unbound".
 std::set<std::string> operators_known_to(const Keymap& keymap, const Path& path) {
   std::set<std::string> ids = operators_of(keymap);
   const auto json = nlohmann::json::parse(checked_json(read_file(path), path.string()), nullptr, false);
@@ -46,7 +46,7 @@ void export_keymap(Editor& editor, const Path& path) {
 void import_keymap(Editor& editor, const Path& path) {
   const Keymap wanted = read_keymap(path, TwoMeanings::LetIn);
   editor.preferences.keys = differences(keymap_preset(editor.preferences.keymap), wanted);
-  // Operators that are newer than the file keep their keys.
+  // An operator that the file does not mention is newer than the file. Such an operator keeps its keys.
   const std::set<std::string> known = operators_known_to(wanted, path);
   std::erase_if(editor.preferences.keys, [&](const auto& change) { return !known.contains(change.first.second); });
   keep_preferences(editor);

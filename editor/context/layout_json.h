@@ -11,8 +11,8 @@ namespace limber::editor {
 
 // Returns a JSON array with one object for each workspace.
 std::string json_text(const Arrangements& arrangements);
-// Sets the arrangements from JSON text. A setting that is missing in the text, or out of range, keeps its value. Only
-// "maximized" does not: if it is missing, no view is maximized.
+// Sets the arrangements from JSON text. A setting that is missing in the text, or out of range, keeps its value. The
+// exception is "maximized": if it is missing, no view is maximized.
 void restore(const std::string& json, Arrangements& arrangements);
 
 }  // namespace limber::editor

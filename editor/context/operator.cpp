@@ -66,7 +66,8 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
   return false;
 }
 
-// Says why an operator cannot run now. If that is the workspace, the message has a button that goes to the right one.
+// Shows a message that says why an operator cannot run now. If the operator belongs to another workspace, the message
+// has a button that opens that workspace.
 static void tell_why_not(Editor& editor, const Operator& op, const std::string& reason) {
   editor.messages.info(op.label, reason);
   for (const auto& [name, id] : {std::pair("Rig", "workspace.rig"),

@@ -20,13 +20,13 @@ void draw_splitters(Editor& editor);
 void draw_start_screen(Editor& editor);
 void draw_tour(Editor& editor);
 
-// What is drawn over the views
+// Overlays, drawn over the pictures of the views
 void draw_body_overlay(Editor& editor, const ViewPlace& place);
 void draw_slice_overlay(Editor& editor, const ViewPlace& place);
 bool draw_weight_legend(Editor& editor, const Rect& view);  // returns true if a legend was drawn
 bool draw_fem_legend(Editor& editor, const Rect& view);     // returns true if a legend was drawn
-// Draws the legend of the marked voxels: those in which two volumes differ, or those to which two points of the body at
-// rest were moved (overlaps). Returns the legend's height in pixels at scale 1; 0: no legend.
+// Draws the legend of the marked voxels. These are the voxels in which two volumes differ, or the voxels in which
+// parts of the posed body overlap. Returns the legend's height in pixels at scale 1; 0: no legend.
 float draw_marks_legend(Editor& editor, const Rect& view);
 // Draws a label in place of the title of a view that shows one of two compared results: A or B, and the result's name.
 void draw_side_chip(Editor& editor, const ViewPlace& place);
@@ -70,8 +70,8 @@ void draw_results(Editor& editor, const Rect& rect);
 void draw_change_plot(Editor& editor, const Rect& rect);
 void draw_timeline(Editor& editor, const Rect& rect);
 
-// Draws the running job into the status bar, so that it ends at x = `right`. Returns the x where the job's left end is.
-// The space to its left is still free.
+// Draws the running job in the status bar, with its right end at x = `right`. Returns the x of its left end; the bar
+// is still free to the left of it.
 float draw_job_slot(Editor& editor, const Rect& bar, float right);
 
 // Messages

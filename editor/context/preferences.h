@@ -23,7 +23,7 @@ struct Preferences {
   // What is shown in the views when the editor starts
   bool grid = true, axes = true, scale_bar = true, letters = true, cross_hair = true;
   std::string display = "solid";  // "solid", "xray" or "tissue"
-  bool fine_light = true;         // true: at rest the 3D view has shadows that are computed by rays
+  bool fine_light = true;         // true: the 3D view gets ray-traced shadows while its picture does not change
 
   // Undo and saving
   int undo_limit_mb = 1024;  // memory limit of the undo history, MB, [64, 65536]

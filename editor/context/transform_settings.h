@@ -48,8 +48,9 @@ struct TransformSettings {
     bool moved = false;
   } row_drag;
 
-  std::string library_pose;  // selected pose of the library; for body poses: library_name() of body_pose_cards.h
-  struct {                   // the program's own body poses, made for the current rig
+  // name of the selected pose of the library; of a body pose, its library_name() (body_pose_cards.h)
+  std::string library_pose;
+  struct {  // the program's own body poses, made for the current rig
     std::shared_ptr<const Armature> armature;
     PoseLibrary poses;  // the poses' pictures are drawn when they are first shown
   } body_poses;

@@ -23,8 +23,8 @@ Box box_of_voxels(const Grid& grid, const glm::dvec3& low, const glm::dvec3& hig
   return box;
 }
 
-// Most memory for the textures of one volume. It suffices for a body of 300 million voxels of tissue; one with more is
-// shown at half its resolution, so that it opens in seconds and leaves memory for the work on it.
+// Memory limit for the textures of one volume, bytes. It suffices for a body of 300 million tissue voxels. A larger
+// body is shown at half its resolution, so that it opens within seconds and leaves memory for other work.
 constexpr std::int64_t kMostBytes = 1'500'000'000;
 
 }  // namespace

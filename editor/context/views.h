@@ -31,7 +31,8 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
 struct BodyView {
   render::Camera camera;
   std::optional<CameraMove> move;
-  std::string name;  // "Front" while the body is seen from there; empty between the standard views
+  // name of the standard view that the camera shows, such as "Front"; empty between the standard views
+  std::string name;
   std::unique_ptr<render::View3D> picture;
   std::unique_ptr<render::View3D> other;  // picture of result A (Views::other_scene) in a comparison
 };
@@ -100,15 +101,16 @@ struct Views {
   bool bone_names = false, bone_axes = false, bones_in_front = false;
   std::optional<render::ShownGrey> image;  // the grey image shown with the labels (editor/volume/shown_image.h)
   Path image_path;                         // the file or the DICOM folder from which `image` was read
-  std::vector<PosedImage> posed_images;    // of the results that were made while an image was shown
+  std::vector<PosedImage> posed_images;    // made together with the results while an image was shown
   ViewId active = ViewId::Body;
   Hover hover;
 
-  std::shared_ptr<const Extents> extents;             // the tissues' bounding boxes in the document's volume
-  std::shared_ptr<const TissueVoxels> tissue_voxels;  // those of the volume tissue_voxels_of; computed at first use
+  std::shared_ptr<const Extents> extents;  // the tissues' bounding boxes in the document's volume
+  // tissue voxels of the volume `tissue_voxels_of`; computed at first use
+  std::shared_ptr<const TissueVoxels> tissue_voxels;
   std::shared_ptr<const LabelVolume> tissue_voxels_of;
-  // What the views show instead of the document's objects while the user drags. At the end of the drag, these objects
-  // are put into the document or dropped. Null: the view shows the document's object.
+  // Objects that the views show instead of the document's objects while the user drags. When the drag ends, they are
+  // committed to the document or discarded. Null: the view shows the document's object.
   std::shared_ptr<const Visibility> preview_visibility;
   std::shared_ptr<const TissueTable> preview_tissues;
   std::shared_ptr<const Pose> preview_pose;

@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kMostSteps = 96;  // upper limit on the steps of a search for the surface along the normal
+constexpr int kMostSteps = 96;  // largest number of steps in the search for the surface along the normal
 constexpr int kHalvings = 4;    // number of bisections that refine where the last step crossed the surface
 // Number of neighbours on either side of a ring point whose heights above the tangent plane are averaged with the
 // point's own height. The average smooths the ring, because a surface of voxels has steps.

@@ -106,8 +106,8 @@ void draw_test_pose(Editor& editor, Column& column) {
   operator_button(editor, "skin.unbend", {{rect.high.x - width, rect.low.y}, rect.high}, "Unbend");
 }
 
-// Draws the list of the user's presets, with buttons that save and delete one. The list says "Custom" while the brush
-// has other settings than each preset, or another brush than the weight brush paints.
+// Draws the list of the user's presets, with buttons that save and delete a preset. The list says "Custom" if no
+// preset equals the brush's settings, or if the label brush or the seam brush is on.
 void draw_presets(Editor& editor, Column& column) {
   const Look& look = editor.look;
   const bool paints_weights = !editor.seams->brush && !editor.skin->painting->labels->on;

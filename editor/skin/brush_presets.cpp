@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "limber-brushes/1";
 constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear", "constant"};  // order of FalloffShape
-constexpr std::size_t kMostPoints = 16;  // of a curve, as the panel lets the user make
+constexpr std::size_t kMostPoints = 16;  // largest number of points of a falloff curve, the same as in the Brush panel
 constexpr std::size_t kLongestName = 100;
 
 Path presets_path(const Editor& editor) {
@@ -44,7 +44,8 @@ double number_in(const Json& json, const char* key, double low, double high, dou
   return number.is_number() ? std::clamp(number.get<double>(), low, high) : otherwise;
 }
 
-// Returns the points of a custom falloff; none if they are not two to sixteen points in [0, 1] whose x rise.
+// Returns the points of a custom falloff curve. Returns no points unless there are 2 to 16 points in [0, 1] with
+// increasing x.
 std::vector<glm::dvec2> curve_of(const Json& json) {
   std::vector<glm::dvec2> curve;
   const Json points = json.value("curve", Json());
@@ -102,7 +103,7 @@ Json file_of(const std::vector<BrushPreset>& presets) {
   return json;
 }
 
-// Throws Error if the text holds no presets.
+// Parses the text of a presets file. Throws Error if the text holds no presets.
 Json file_from(const std::string& text, const std::string& where) {
   Json json = Json::parse(checked_json(text, where), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != kSchema || !json.value("presets", Json()).is_array())
@@ -121,8 +122,8 @@ std::vector<BrushPreset> presets_in(const Json& file) {
 
 std::string text_of_file(const Json& file) { return file.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
-// Reads the file again, lets `change` change its list of presets, and writes it. So what another program that runs has
-// saved meanwhile is kept, and so is each entry that this one does not understand.
+// Reads the presets file again, lets `change` change its list of presets, and writes the file. Reading it again keeps
+// the presets that another running Limber has saved meanwhile, and entries that this version cannot read.
 void change_file(Editor& editor, const std::function<void(Json& presets)>& change) {
   const Path path = presets_path(editor);
   Json file = file_of(path.empty() ? brush_presets(editor) : std::vector<BrushPreset>{});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Named sets of brush settings that the user saves, uses and deletes. They belong to the user, not to a project, and
-// are kept in brushes.json beside the preferences.
+// Named sets of brush settings that the user saves, uses and deletes. They apply to all projects and are stored in
+// brushes.json beside the preferences.
 #pragma once
 
 #include <string>
@@ -15,10 +15,10 @@ namespace limber::editor {
 struct BrushPreset {
   std::string name;  // unique among the presets
   BrushKind kind = {};
-  double radius = 20, strength = 0.75, value = 1;  // mm; [0, 1]; [0, 1]
-  double blend = 40;  // Painting::blend_mm of the joint capsule brush, mm; of others always 40
+  double radius = 20, strength = 0.75, value = 1;  // radius in mm; strength and value in [0, 1]
+  double blend = 40;  // Painting::blend_mm of the joint capsule brush, mm; always 40 for other brushes
   FalloffShape falloff = {};
-  std::vector<glm::dvec2> falloff_curve;  // as Painting::falloff_curve
+  std::vector<glm::dvec2> falloff_curve;  // points in the format of Painting::falloff_curve
 
   bool operator==(const BrushPreset&) const = default;
 };
@@ -36,19 +36,20 @@ std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const 
 
 // Returns the user's presets. Reads the file at the first call; warns if it is damaged.
 const std::vector<BrushPreset>& brush_presets(Editor& editor);
-// Returns false where there is no preset, as far as that is known without reading the file.
+// Returns false if the user is known to have no preset. Does not read the file.
 bool has_brush_presets(const Editor& editor);
-// Returns the index of the preset that the brush has all settings of; -1: none.
+// Returns the index of the preset whose settings all equal the brush's settings; -1: none.
 int brush_preset_in_use(Editor& editor);
 
-// Saves the brush's settings under a name, in place of the preset that has the name already, and writes the file.
-// Throws Error if it cannot be written, or if the file holds no presets and so is not Limber's to replace; the presets
-// then stay as they were. What other programs have saved meanwhile, and entries that are not understood, are kept.
-// Throws Error if no preset can be saved under a name: it is blank or too long, or there are too many presets.
+// Saves the brush's settings under a name and writes the file. A preset of that name is replaced. Presets that other
+// programs have saved meanwhile, and entries that cannot be read, stay in the file. Throws Error if the file cannot be
+// written, or if it is not a presets file; the presets then do not change.
+// Throws Error if the name cannot be used for a preset because it is blank or too long, or if there are too many
+// presets.
 void require_preset_name(const std::vector<BrushPreset>& presets, const std::string& name);
 void save_brush_preset(Editor& editor, const std::string& name);
 void delete_brush_preset(Editor& editor, const std::string& name);
-// Gives the weight brush the settings of a preset, and lets it paint instead of the label or seam brush.
+// Gives the weight brush the settings of a preset, and selects it instead of the label brush or the seam brush.
 void use_brush_preset(Editor& editor, const std::string& name);
 
 }  // namespace limber::editor

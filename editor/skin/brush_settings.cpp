@@ -56,8 +56,8 @@ std::string why_brush_reaches_nothing(const Editor& editor) {
 
 namespace {
 
-// Returns the set of the bone, its parent and all its descendants. The set has one entry for each bone of `weights`, in
-// their order.
+// Returns the set of the bone, its parent and all its descendants. The set has one entry for each bone of `weights`,
+// in the order of the weights.
 BoneSet bones_about(const Armature& armature, int bone, const SkinWeights& weights) {
   BoneSet set(weights.bones().size(), 0);
   for (int b = 0; b < std::ssize(armature.bones); ++b) {

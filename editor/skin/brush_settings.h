@@ -21,8 +21,8 @@ std::string why_brush_reaches_nothing(const Editor& editor);
 
 // Returns the stroke settings from the current brush settings, selection, locks, clip and region.
 StrokeSettings stroke_settings(const Editor& editor, BrushKind kind);
-// Returns how strokes normalize weights: by the user's setting, except that the base weights and masks use Unlocked in
-// place of WhenComposed. Only a layer's weights can be normalized later, when the layers are composed.
+// Returns how strokes normalize weights. This is the user's setting, except that WhenComposed becomes Unlocked when
+// the base weights or a mask are painted: only a layer's weights can be normalized when the layers are composed.
 Normalize normalize_of(const Editor& editor);
 
 }  // namespace limber::editor

@@ -12,7 +12,8 @@ enum class BindingMethod { Heat, Geodesic, Rigid };
 
 struct Computation {
   enum class Bones { All, Chosen, Unlocked };
-  // The voxels whose weights are computed. ChosenBones: those where a selected bone has the largest weight.
+  // The voxels whose weights are computed. ChosenTissue: the voxels of the selected tissues. ChosenBones: the voxels
+  // in which a selected bone has the largest weight.
   enum class Where { Everywhere, ChosenTissue, ChosenBones };
 
   BindingMethod method = BindingMethod::Heat;

@@ -17,7 +17,8 @@ namespace {
 
 constexpr char kRepairing[] = "Repair joint";
 
-// Returns the document's layers with a new one on top, which has the repaired weights where they differ.
+// Returns the document's layers with a new layer on top. The new layer has the repaired weights in the voxels that the
+// repair has changed.
 EditedLayers on_own_layer(const LayerToEdit& edited, const std::string& name, const SkinWeights& repaired) {
   const WeightLayers before = edited.layers ? *edited.layers : WeightLayers{edited.came_out, {}};
   WeightLayers layers = with_new_layer(before, name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Repairs the joint of the active bone in a job (core/repair/repair_joint.h), puts the new weights on a weight layer of
-// its own, and shows in the sidebar what the repair has gained.
+// Repairs the weights at the active bone's joint in a job (core/repair/repair_joint.h), puts the new weights on a
+// weight layer of their own, and shows in the sidebar how much the repair has improved.
 #pragma once
 
 #include <string>
@@ -15,13 +15,15 @@ class Column;
 
 // The outcome of the last repair.
 struct RepairedJoint {
-  std::string bone;                     // name of the bone below the joint
-  JointRepair figures;                  // without its weights
-  std::weak_ptr<const SkinWeights> in;  // the document's weights right after the repair; with others it tells nothing
+  std::string bone;  // name of the bone below the joint
+  // numbers that rate the joint before and after the repair; without the repaired weights
+  JointRepair figures;
+  // the document's weights right after the repair; if they have changed, the outcome is not shown
+  std::weak_ptr<const SkinWeights> in;
 };
 
-// Starts the job. The document must have weights that belong to its rig, and an active bone with a parent. Without a
-// gain, the document does not change and a message says so.
+// Starts the repair in a job. The document must have weights that belong to its rig, and an active bone with a parent.
+// If the repair improves nothing, the document does not change and a message says so.
 void start_repairing_joint(Editor& editor);
 bool repairs_joint(const Editor& editor);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the section "Joint" of the Skin workspace's sidebar: which joint the active bone has, a button that repairs it,
-// and what the last repair has gained.
+// Draws the section "Joint" of the Skin workspace's sidebar: the joint of the active bone, a button that repairs it,
+// and how much the last repair has improved.
 #include <cstdio>
 
 #include "editor/context/operator_button.h"

@@ -20,8 +20,8 @@ std::string why_not_paint_labels(const Editor& editor);
 std::optional<BrushPlace> label_brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel);
 // Begins a stroke at the pointer. The stroke ends when the button is released.
 void begin_label_stroke(Editor& editor, bool erases);
-// Call it when strokes begin to keep to a range of values. In an image that is no CT, where the range is still the
-// usual bone of a CT, it becomes that of all the image's values.
+// Call this function when the user limits strokes to a range of image values. If the image is not a CT and the range
+// still has its default values (bone in a CT), the range becomes the range of all values of the image.
 void begin_range(Editor& editor);
 void draw_label_brush_section(Editor& editor, Column& column);  // draws nothing while the brush is off
 

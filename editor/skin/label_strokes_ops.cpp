@@ -36,7 +36,7 @@ void toggle_range(Editor& editor) {
   if (brush.in_range) begin_range(editor);
 }
 
-// Where it is run in another workspace, the user wants to paint, whether the brush was on before or not.
+// Switches the brush on or off. From another workspace, it always switches the brush on.
 void toggle_brush(Editor& editor) {
   LabelBrush& brush = brush_of(editor);
   const bool leads_here = editor.workspace != Workspace::Skin;

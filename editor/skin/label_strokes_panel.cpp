@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the section "Label brush" of the Skin workspace's sidebar: which tissue strokes paint, over what, and the edits
-// of the whole tissue.
+// Draws the section "Label brush" of the Skin workspace's sidebar: the tissue that strokes paint, the tissues that
+// they may replace, and edits of the whole painted tissue.
 #include "editor/context/operator_button.h"
 #include "editor/labels/label_edits.h"
 #include "editor/skin/label_strokes.h"
@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-// Draws the colour of the painted tissue and a list from which another one is selected.
+// Draws the colour of the painted tissue, and a list in which the user selects another tissue.
 void draw_painted_tissue(Editor& editor, Column& column) {
   const Look& look = editor.look;
   const Rect rect = column.property("Paints");
@@ -39,7 +39,7 @@ void draw_painted_tissue(Editor& editor, Column& column) {
     select_tissue(editor, tissues->tissues[static_cast<std::size_t>(picked)].label, false);
 }
 
-// Draws a list of operators of which one is on. `words` are their names in this list.
+// Draws a drop-down list of operators, exactly one of which is on. `words` are the operators' names in this list.
 void draw_choice(Editor& editor, Column& column, const char* name, const std::vector<const char*>& ids,
                  const std::vector<std::string>& words) {
   int chosen = 0;

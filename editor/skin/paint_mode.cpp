@@ -44,9 +44,9 @@ struct Painting::Running {
   std::shared_ptr<const TissueVoxels> tissue;
   LayerToEdit edited;
   // The quantity that the stroke paints. Canvas: the composed weights of the layer and all layers below it. Mask: the
-  // layer's mask. Shares: the painted bone's weight in the layer itself; the layer's other bones keep theirs. A
-  // stroke can paint only weights
-  // of bones, so `before` and `bones` represent a mask or shares in the form of bone weights.
+  // layer's mask. Shares: the painted bone's weight in the layer itself, while the layer's other bones keep their
+  // weights. A stroke can paint only weights of bones, so `before` and `bones` represent a mask or shares as bone
+  // weights.
   enum class Of { Canvas, Mask, Shares } of = Of::Canvas;
   std::shared_ptr<const SkinWeights> before;
   Armature bones;

@@ -16,7 +16,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kGrowth = 1.15, kStep = 0.05;  // per key press: factor of the radius, change of strength
+// change of the brush per key press: the radius is multiplied by kGrowth, kStep is added to the strength
+constexpr double kGrowth = 1.15, kStep = 0.05;
 
 bool paints_labels(const Editor& editor) { return editor.skin->painting->labels->on; }
 

@@ -54,7 +54,8 @@ struct Painting {
   BrushDepth depth = BrushDepth::ToDepth;
   double depth_mm = 25;
   PaintedTissue tissue = PaintedTissue::Visible;
-  bool subtree = false;  // paint only where the active bone, its parent or a descendant has most of the weight
+  // true: paints only where the active bone, its parent or one of its descendants has the largest weight
+  bool subtree = false;
   Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of()
   bool relative_to_locks = false;
 
@@ -76,7 +77,7 @@ struct Painting {
 
   std::optional<BrushPlace> place;  // the brush's position in the last frame; none: no tissue was under the pointer
 
-  // State of the weight edits that change the whole body or a region at once (weight_edits.h).
+  // State of the weight edits that change many voxels at once, without a brush (weight_edits.h)
   std::int64_t edited_at_once = 300'000;  // largest body, in voxels, edited without a job (some 10 ms)
   std::optional<int> edit_job;            // id of the running job of an edit; none: no edit runs
   PaintedRegion region;                   // the region that limits brushes and edits

@@ -91,7 +91,7 @@ SkinDisplay::SkinDisplay() : painting(std::make_unique<Painting>()) {}
 SkinDisplay::~SkinDisplay() = default;
 
 WeightShares::Counted WeightShares::count(const std::shared_ptr<const SkinWeights>& weights) {
-  constexpr std::int64_t kGrain = 512;  // bricks summed in one block of work
+  constexpr std::int64_t kGrain = 512;  // number of bricks that one parallel work block sums
   const std::int64_t blocks = (weights->chunk_count() + kGrain - 1) / kGrain;
   std::vector<std::vector<std::int64_t>> sums(static_cast<std::size_t>(blocks));
   parallel_for(weights->chunk_count(), kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -208,8 +208,8 @@ double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
   const Grid& grid = volume.grid;
   const glm::dvec3 s = grid.spacing;
   double nearest = 1e300;  // squared distance, mm2
-  // Search the voxels around `voxel` for air in order of their distance along each axis, and only those that are nearer
-  // than the nearest air voxel found so far.
+  // Search for air around `voxel` with growing distance along each axis. Skip voxels that are farther away than the
+  // nearest air voxel found so far.
   const auto within = [&](int off, int axis) { return (off * s[axis]) * (off * s[axis]) < nearest; };
   for (int dz = 0; within(dz, 2); ++dz) {
     bool any = false;

@@ -50,7 +50,7 @@ struct SkinDisplay {
   bool searching = false, focus_search = false;
   std::optional<int> revealed;  // the active bone that the list last scrolled to
 
-  std::unique_ptr<Painting> painting;  // see painting.h; never null
+  std::unique_ptr<Painting> painting;  // brush settings and running stroke, declared in painting.h; never null
 
   WeightShares shares;
   // Cache of the volume without the hidden regions (`volume`), with the inputs from which it was computed.

@@ -21,7 +21,7 @@ namespace limber::editor {
 struct WeightsToEdit {
   Document document;  // copy of the document; if there are layers, its weights are those of the active layer
   std::shared_ptr<const TissueVoxels> tissue;
-  StrokeSettings settings;  // bones to change, locks and voxel filter, as if a brush painted
+  StrokeSettings settings;  // bones to change, locked bones and voxel filter, as in a brush stroke
   LayerToEdit layer;
 
   WeightedBody body() const { return {*document.volume, *tissue, *document.tissues, *document.armature}; }

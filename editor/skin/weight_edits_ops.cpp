@@ -214,8 +214,9 @@ void smooth_all(Editor& editor) {
       });
 }
 
-// Returns an operation that changes the weights of each voxel independently of its neighbours. The operation must bring
-// every voxel closer to following a single bone. So it may change bone tissue too, which should stay rigid.
+// Returns an operation that changes the weights of each voxel independently of its neighbours. The operation may also
+// change voxels of bone tissue. Bone tissue should move rigidly, so the operation must move each voxel's weights
+// towards a single bone.
 WeightOperation voxel_edit(
     const std::string& label,
     const std::function<WeightEdit(const WeightedBody&, const SkinWeights&, const EditScope&)>& edit) {

@@ -110,8 +110,8 @@ Document with_edited(const Document& now, const LayerToEdit& edited, const Edite
 
 void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made) {
   commit(editor, label, with_edited(editor.document(), edited, made));
-  // Cache the new weights: they are the layer's canvas (its weights composed with all layers below it), which the next
-  // stroke on the layer changes.
+  // Cache the new weights of the edited layer, composed with all layers below it. The next stroke on the layer starts
+  // from them.
   if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, made.after};
 }
 

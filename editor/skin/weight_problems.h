@@ -19,15 +19,16 @@ struct FoundProblems {
   std::vector<bool> repaired;  // for each problem, true if the user has repaired it with its button in the list
 };
 
-// Returns why the weights cannot be searched or repaired: they are not shown, or belong to another rig. "": they can.
+// Returns why the weights cannot be searched or repaired (they are not shown, or belong to another rig); "" if they
+// can.
 std::string why_not_these_weights(const Editor& editor);
 
 // Starts a job that searches the weights for problems, which the sidebar then lists. The weights must belong to the
 // rig.
 void start_finding_problems(Editor& editor);
 bool finds_problems(const Editor& editor);
-// Returns true if the weights or the rig have changed since the search for problems. Repairs from the list do not
-// count.
+// Returns true if the weights or the rig have changed since the search for problems, other than by repairs from the
+// list.
 bool problems_stale(const Editor& editor);
 
 // Selects the problem in the list, makes its bone active, and moves the view and the crosshair to its position.

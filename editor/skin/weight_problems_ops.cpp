@@ -24,7 +24,8 @@ std::string needs_problem(const Editor& editor) {
                                                                                  : "";
 }
 
-// Says which problem the views show, since its row may be out of sight. Replaces what was said of another one.
+// Shows a message that describes the problem in the views, because its row in the list may be scrolled out of view.
+// The message replaces the message about the previous problem.
 void tell_of_problem(Editor& editor) {
   constexpr std::string_view kLine = "Problem ";
   const Painting& painting = *editor.skin->painting;
