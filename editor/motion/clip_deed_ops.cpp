@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators on the whole shown clip: it is mirrored, repeated, played faster or slower, and its keys become motion.
+// Operators that change the whole shown clip: mirror it, change its speed, repeat it as a loop, and turn its keys into
+// a recorded motion.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -22,8 +23,10 @@ namespace limber::editor {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are recorded at once
-constexpr double kFewFrames = 2000;        // clips of fewer frames change their speed at once
-constexpr double kHasty = 1.5;             // a seam in which bones turn faster than this is warned of
+// a clip of fewer frames changes its speed at once, a longer clip in a background task
+constexpr double kFewFrames = 2000;
+// the user is warned of a loop in which bones turn faster than this at the seam
+constexpr double kHasty = 1.5;
 
 std::string needs_clip(const Editor& editor) {
   return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
@@ -44,7 +47,7 @@ std::shared_ptr<const Clip> shared_clip(const Editor& editor) {
 
 std::string frames_text(int frames) { return std::to_string(frames) + (frames == 1 ? " frame" : " frames"); }
 
-// Throws Error if there is no clip any more, or if too many frames play.
+// Throws Error if no clip or rig is left, or if the playing range has too many frames.
 void require_frames(const Editor& editor) {
   if (!needs_clip_and_rig(editor).empty()) throw Error("there is no clip any more", "clip", "open this again");
   const auto [first, last] = playing_range(editor);
@@ -82,7 +85,8 @@ const Clip& require_clip(const Editor& editor) {
   return *clip;
 }
 
-// The factor that the fields ask for: the speed, or what gives the playing range the wanted length.
+// Returns the speed factor from the form's fields: the given speed, or the speed at which the playing range gets the
+// given length.
 double factor_of(const Clip& clip, const std::vector<FormField>& fields) {
   if (fields[0].chosen == 0) return fields[1].value;
   const int steps = clip.range_end - clip.range_start, wanted = static_cast<int>(std::lround(fields[2].value)) - 1;
@@ -111,7 +115,8 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
                      : std::string());
 }
 
-// The play head stays at its place in the motion, if that is still shown.
+// Replaces the shown clip by the clip with the changed speed. The play head moves to the frame that shows the same
+// moment of the motion.
 void take_in_speed(Editor& editor, const std::shared_ptr<const Clip>& source,
                    const std::shared_ptr<const Armature>& rig, const Clip& changed, double factor) {
   settle_frame(editor);
@@ -121,7 +126,8 @@ void take_in_speed(Editor& editor, const std::shared_ptr<const Clip>& source,
   take_in_clip(editor, source, rig, "Change speed", changed, false, moment);
 }
 
-// A short clip is changed at once, so that its speed can be adjusted afterwards; a long one as a job that cancels.
+// Changes the speed of a short clip at once, so that the user can adjust the speed afterwards. Changes a long clip in
+// a background task, which the user can cancel.
 void change_speed(Editor& editor, double factor) {
   const auto source = shared_clip(editor);
   const auto rig = editor.document().armature;

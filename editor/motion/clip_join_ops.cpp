@@ -19,9 +19,9 @@ namespace limber::editor {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames of the joined clip
-constexpr double kSlides = 10;             // mm: a standing foot that slides further is warned of
+constexpr double kSlides = 10;             // mm; the user is warned of a standing foot that slides farther than this
 
-// A take that was read from a file, before the user says how it is joined.
+// A take (a recorded motion) that was read from a file, before the user says how it is joined to the clip.
 struct NextTake {
   std::shared_ptr<const Motion> motion;
   std::string name;
@@ -39,10 +39,10 @@ std::string needs_clip_and_rig(const Editor& editor) {
   return editor.document().armature ? "" : "Import a rig first";
 }
 
-// Whether the take has the rate of the clip, which counts to a thousandth.
+// Returns true if the take has the clip's frame rate, to within 0.001 frames per second.
 bool is_at_rate(const Motion& motion, double rate) { return std::abs(1 / motion.frame_time - rate) <= 1e-3; }
 
-// The number of frames that the take has at the rate of the clip.
+// Returns the number of frames of the take after it is resampled to the clip's frame rate.
 std::int64_t frames_at_rate(const Motion& motion, double rate) {
   if (is_at_rate(motion, rate)) return motion.frame_count;
   const double steps = std::floor(std::max(0, motion.frame_count - 1) * motion.frame_time * rate + 1e-6);
@@ -64,8 +64,9 @@ std::vector<Pose> poses_of(const ClipOnRig& clip, int first, int last, Progress&
   return poses;
 }
 
-// Returns the poses of the second take at the rate of the first one, with the root motion of the first one. A take of
-// the same skeleton is retargeted as the first one is, any other as an import is.
+// Returns the poses of the second take, resampled to the frame rate of the first take. If both takes have the same
+// joints, the second is retargeted with the settings of the first; otherwise with the settings of a newly imported
+// clip.
 std::vector<Pose> poses_of_next(const Clip& source, const std::shared_ptr<const Armature>& rig, const NextTake& next,
                                 UpAxis up, Progress& progress) {
   Motion motion = up == UpAxis::Z ? y_up_from_z_up(*next.motion) : *next.motion;

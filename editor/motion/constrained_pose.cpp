@@ -80,7 +80,8 @@ void change_free_clip(Editor& editor, const std::string& label, const std::funct
   settle_frame(editor);
   Document next = editor.document();
   const Pose free = unconstrained_pose(editor), rest = rest_pose(*next.armature);
-  // A motion that cannot move the rig leaves the pose to the user, as no motion does.
+  // The clip has no effect on the rig if it has no keys, no constraints, and no motion that can be retargeted. The
+  // pose is then all the user's own work, so it is keyed: otherwise it would be lost.
   const ClipOnRig* before = clip_on_rig(editor);
   const bool is_bare = !before || (!before->retarget() && before->clip()->keys.empty() && !before->clip()->constraints);
   if (is_bare && free != rest) key_changes(next, rest, free);

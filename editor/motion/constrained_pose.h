@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Constraints while the rig is posed by hand. The document's pose is the one in which they hold. Below it lies the free
-// pose, without them: the one of the clip's motion and keys, with the user's changes. A change of a bone by hand
-// changes the free pose, and the constraints then hold again: the trunk is turned, and a planted hand stays. Keys store
-// the free pose; otherwise constraints that count only partly would count twice.
+// Constraints while the rig is posed by hand. The document's pose fulfils the constraints of the shown clip. It is
+// computed from the free pose, which ignores the constraints: the pose of the clip's motion and keys, with the changes
+// that the user made by hand. When the user moves a bone, the free pose changes and the constraints are applied again.
+// For example, a planted hand stays in place when the user turns the trunk. Keys store the free pose. If they stored
+// the constrained pose, constraints with a weight below 1 would be applied twice.
 #pragma once
 
 #include <deque>
@@ -16,7 +17,8 @@
 
 namespace limber::editor {
 
-// The free poses of the last poses that were made by hand, at a frame of a clip. Undo brings these back.
+// The free poses of the poses that the user last made by hand, each at a frame of a clip. Undo looks up the free pose
+// of a restored pose here.
 struct HandPoses {
   struct One {
     std::weak_ptr<const Clip> clip;
@@ -28,23 +30,26 @@ struct HandPoses {
 
 // Returns whether the shown clip has constraints that change the poses of motion and keys.
 bool is_constrained(const Document& document);
-// Returns the document's pose without what constraints have made of it.
+// Returns the document's free pose: the pose before constraints are applied.
 Pose unconstrained_pose(Editor& editor);
-// Returns the free pose after the user has changed the document's pose to `changed`: bones that constraints have turned
-// are turned by as much, the others as they are in `changed`.
-//   set  bones whose rotations were set and not turned. They too are as in `changed`; else each repetition would turn
-//        them further.
+// Returns the new free pose after the user has changed the document's pose to `changed`. A bone that constraints have
+// turned is turned by the same rotation as in the document's pose. Other bones get their rotation in `changed`.
+//   set  bones whose rotations the user has set to a value. They also get their rotation in `changed`: otherwise,
+//   setting the same value again would turn them further.
 Pose unconstrained_pose(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
-// Returns `free` with the constraints of a clip; unchanged if it has none.
+// Applies the clip's constraints to the pose `free` and returns the result. Returns `free` if the clip has no
+// constraints.
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
-// Returns the pose to show after the user has changed the document's pose to `changed`.
+// Returns the pose to show after the user has changed the document's pose to `changed`: the new free pose, with the
+// constraints applied again.
 Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
-// Remembers what the free pose of a pose is, at the frame of the document's shown clip.
+// Stores the free pose that belongs to the pose `shown` at the frame of the document's shown clip.
 void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);
-// Returns the free pose below the document's pose, where that was made by hand; nothing where the clip makes it.
+// Returns the stored free pose of the document's pose if the user made that pose by hand. Returns nothing if the pose
+// comes from the clip.
 std::optional<Pose> free_pose_by_hand(const Editor& editor);
-// Changes the shown clip as one edit. The free pose stays as it is, with the user's changes, and the clip's constraints
-// hold again.
+// Changes the shown clip as one edit. The free pose does not change, so the user's changes are kept. The constraints
+// of the changed clip are applied to it.
 void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change);
 
 }  // namespace limber::editor

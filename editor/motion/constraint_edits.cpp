@@ -17,8 +17,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 100'000;  // longer ranges are not baked into keys
-constexpr double kInFrontMm = 300;             // how far in front of its bone a new aim has its target
+constexpr std::int64_t kMostFrames = 100'000;  // longest range, in frames, that is baked into keys
+constexpr double kInFrontMm = 300;             // distance from the bone to the target of a new aim constraint
 
 void change_list(Clip& clip, const std::function<void(Constraints&)>& change) {
   Constraints constraints = clip.constraints ? *clip.constraints : Constraints{};
@@ -33,14 +33,15 @@ Constraint& named(Constraints& constraints, const std::string& name) {
   return *found;
 }
 
-// Throws Error if the constraint cannot be applied beside the others.
+// Throws Error if the constraint cannot be applied together with the other constraints.
 void require_applicable(const Editor& editor, const Constraints& constraints, const std::string& name) {
   const ConstraintStack stack(std::make_shared<const Constraints>(constraints), editor.document().armature);
   for (std::size_t i = 0; i < constraints.list.size(); ++i)
     if (constraints.list[i].name == name) stack.require_applied(i);
 }
 
-// Returns the place of a bone's end in the document's pose: of a planted foot or hand the point that stays.
+// Returns the initial target position of a constraint in the document's pose: the planted point of a hand or foot, a
+// point in front of a bone that aims, otherwise the bone's tail.
 glm::dvec3 end_of(const Constraint& constraint, const Armature& armature, const PosedRig& rig, int bone) {
   if (constraint.kind == ConstraintKind::Plant)
     return planted_point(on_rig(constraint, armature, planted_limbs(armature)), rig);
@@ -50,7 +51,7 @@ glm::dvec3 end_of(const Constraint& constraint, const Armature& armature, const 
   return rig.tail(bone) + kInFrontMm * (rig.turn(bone) * axis);
 }
 
-// Gives the constraint a target at which the bone is already, or at which it can look.
+// Gives the constraint a target that does not change the pose: the bone already reaches the target or points at it.
 void place_target(Constraint& constraint, const Armature& armature, const Pose& pose) {
   const ConstraintTarget needed = constraint_rule(constraint.kind).target;
   if (needed != ConstraintTarget::Place) return;
@@ -58,7 +59,8 @@ void place_target(Constraint& constraint, const Armature& armature, const Pose& 
   const int bone = require_bone(armature, constraint.bone);
   const bool on_bone = !constraint.target.empty();
   const int target = on_bone ? require_bone(armature, constraint.target) : -1;
-  // Limbs stay where they are, relative to a bone too; a bone that looks at another one looks at its tail.
+  // The target is where the limb is now, also if it is stored relative to a target bone. A bone that aims at another
+  // bone gets that bone's tail as its target.
   const glm::dvec3 place =
       on_bone && constraint.kind == ConstraintKind::Aim ? rig.tail(target) : end_of(constraint, armature, rig, bone);
   constraint.place = on_bone ? inverse(rig.posed(target)) * place : place;
@@ -66,8 +68,8 @@ void place_target(Constraint& constraint, const Armature& armature, const Pose& 
   constraint.rotation = glm::normalize(glm::conjugate(frame) * rig.turn(bone));
 }
 
-// Returns the direction in which a bone looks: along itself, but a head along that of its own axes which points most
-// nearly to the front at rest.
+// Returns the axis with which a bone aims at a target. This is the bone's own +y axis, which runs along the bone. A
+// head aims with its x, y or z axis that points most nearly to the front at rest.
 BoneAxis looking_axis(const Armature& armature, int bone) {
   const auto role = skeleton_of(armature).role[static_cast<std::size_t>(bone)];
   if (!role || role->part != BodyPart::Head) return BoneAxis::PlusY;
@@ -99,7 +101,7 @@ void show_changed(Editor& editor, const std::function<void(Clip&)>& change) {
   show_pose(editor, constrained_pose(changed, unconstrained_pose(editor), editor.document().frame));
 }
 
-// Moves one to the place of another, which goes one place towards where the first was.
+// Moves the constraint at index `from` to index `to`. The constraints between them move by one index.
 void move_in_list(std::vector<Constraint>& list, std::size_t from, std::size_t to) {
   const auto first = list.begin();
   const auto at = [&](std::size_t index) { return first + static_cast<std::ptrdiff_t>(index); };
@@ -112,7 +114,8 @@ bool share_turned_bones(const ConstraintStack& stack, std::size_t one, std::size
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-// Returns the names of a constraint and of all that turn one of its bones, in the order in which they are applied.
+// Returns the names of the constraint and of all constraints that turn one of the same bones, in the order in which
+// they are applied.
 std::vector<std::string> order_of_rivals(const ConstraintStack& stack, const std::string& name) {
   const auto& list = stack.constraints()->list;
   const auto place = std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == name; });
@@ -328,7 +331,7 @@ void toggle_weight_key(Editor& editor, const std::string& name) {
   change_free_clip(editor, is_keyed ? "Delete weight key" : "Key weight", [&](Clip& clip) {
     if (is_keyed) delete_weight_key(clip.keys, name, frame);
     else insert_weight_key(clip.keys, name, frame, weight);
-    // The weight without keys is what the last key had.
+    // If the last weight key was deleted, the constraint keeps that key's weight.
     if (!clip.keys.weights.contains(name))
       change_list(clip, [&](Constraints& constraints) { named(constraints, name).weight = weight; });
   });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Edits of the shown clip's constraints (core/motion/constraint.h). The changed constraints hold at once in the
-// document's pose, and what the user has changed in it by hand stays. A pose that no clip makes, because the rig was
-// only posed by hand, is keyed when the first constraint is added: else it would be lost.
+// Edits of the shown clip's constraints (core/motion/constraint.h). The document's pose fulfils the changed
+// constraints at once and keeps what the user has changed by hand. If the user has posed the rig without a clip, the
+// pose is keyed when the first constraint is added, because it would be lost otherwise.
 #pragma once
 
 #include <functional>
@@ -15,34 +15,40 @@ namespace limber::editor {
 
 // Returns the constraints of the shown clip; an empty list if it has none.
 const Constraints& constraints_of(const Document& document);
-// Returns the indices of a bone's constraints in that list.
+// Returns the indices of a bone's constraints in the list constraints_of().
 std::vector<std::size_t> constraints_of_bone(const Document& document, int bone);
-// Returns the indices of those whose bone the rig no longer has.
+// Returns the indices of the constraints whose bone the rig no longer has.
 std::vector<std::size_t> constraints_of_no_bone(const Document& document);
-// Returns the constraint that operators change: the one of the active bone that is unfolded, or its first one; nullptr
-// if the bone has none.
+// Returns the constraint that operators change: the constraint of the active bone that is unfolded in the panel, or
+// else the bone's first constraint; nullptr if the bone has none.
 const Constraint* active_constraint(const Editor& editor);
 const Constraint* find_constraint(const Document& document, const std::string& name);
 
-// Adds a constraint to the active bone. If one other bone is selected, it is the target, else the target is a place of
-// the world: a hand stays where it is. Throws Error with one line if it cannot be.
+// Adds a constraint to the active bone. If exactly one other bone is selected, that bone is the target. Otherwise the
+// target is a fixed position in the world, where the bone is now. Throws Error if the constraint cannot be added.
 void add_constraint(Editor& editor, ConstraintKind kind);
 void remove_constraint(Editor& editor, const std::string& name);
-// Returns the nearest earlier or later constraint past which a move of the named one changes the order in which those
-// are applied that turn the same bones: of two such, the later one has the last word, unless the first must wait for it
-// (core/motion/constraint_stack.h). Of constraints that are switched off, what holds once they are on. nullptr: none.
+// Returns the nearest earlier or later constraint that turns some of the same bones and that the named constraint can
+// be moved past. If two constraints turn the same bone, the constraint that is applied later decides the bone's final
+// rotation. They are applied in the order of the list, unless one constraint depends on the other
+// (core/motion/constraint_stack.h). Disabled constraints are treated as if they were enabled. nullptr: no such
+// constraint.
 enum class InOrder { Earlier, Later };
 const Constraint* order_neighbour(const Editor& editor, const std::string& name, InOrder where);
-// Moves a constraint in the list, before its earlier neighbour or after its later one. Does nothing without one.
+// Moves a constraint in the list: before the constraint that order_neighbour() returns for Earlier, or after the one
+// for Later. Does nothing if there is no such constraint.
 void move_constraint(Editor& editor, const std::string& name, InOrder where);
-// Throws Error if the changed constraint could not be applied, such as for a circle of targets.
+// Changes a constraint as one edit. Throws Error if the changed constraint cannot be applied, for example because
+// constraints would target each other in a circle.
 void change_constraint(Editor& editor, const std::string& name, const std::string& label,
                        const std::function<void(Constraint&)>& change);
-// Shows the pose with the changed constraint, without an edit.
+// Shows the pose with the changed constraint, without changing the document.
 void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change);
-// Makes a bone the target, or with "" a place of the world. What is planted stays where it is now.
+// Makes a bone the target of a constraint; with the name "", a fixed position in the world. A planted hand or foot
+// stays where it is now.
 void set_target(Editor& editor, const std::string& name, const std::string& bone);
-// Chooses the point of a planted hand or foot that stays, or whether its direction does. Both are then as they are now.
+// Sets which point of a hand or foot the constraint plants, and whether its direction is fixed too. The target becomes
+// the current position and direction of that point.
 void set_planted_point(Editor& editor, const std::string& name, PlantPoint point);
 void keep_direction(Editor& editor, const std::string& name, bool keeps);
 void aim_at_cross_hair(Editor& editor, const std::string& name);
@@ -51,16 +57,16 @@ void aim_at_cross_hair(Editor& editor, const std::string& name);
 bool has_weight_key(const Editor& editor, const Constraint& constraint, int frame);
 // Returns the weight at the shown frame.
 double shown_weight(const Editor& editor, const Constraint& constraint);
-// Sets the weight: where it has keys, that of the shown frame.
+// Sets a constraint's weight. If the weight has keys, sets a key at the shown frame.
 void set_weight(Editor& editor, const std::string& name, double weight);
 void preview_weight(Editor& editor, const std::string& name, double weight);
 void toggle_weight_key(Editor& editor, const std::string& name);
-// Keys the weight as it is at the shown frame, and the opposite one a third of a second later: 0 after more than a
-// half, else 1. Keys between these two go.
+// Keys the current weight at the shown frame, and the opposite weight a third of a second later: 0 if the current
+// weight is above 0.5, otherwise 1. Deletes the weight keys between these two.
 void switch_weight(Editor& editor, const std::string& name);
 void set_weight_steps(Editor& editor, const std::string& name, Interpolation next);
 
-// Bakes all constraints of the clip into keys, in the background.
+// Bakes all constraints of the clip into keys in a background task.
 void apply_constraints(Editor& editor);
 
 }  // namespace limber::editor

@@ -30,7 +30,7 @@ std::string needs_any_constraint(const Editor& editor) {
   return constraints_of(editor.document()).list.empty() ? "The clip has no constraints" : "";
 }
 
-// Returns the label of the operator that adds a kind: "Add copy rotation".
+// Returns the label of the operator that adds a constraint of a kind: "Add copy rotation".
 std::string adding(const ConstraintRule& rule) {
   std::string name = rule.name;
   if (name[0] >= 'A' && name[0] <= 'Z') name[0] = static_cast<char>(name[0] - 'A' + 'a');
@@ -46,7 +46,7 @@ std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
   };
 }
 
-// Runs an edit of the active bone's constraint.
+// Returns an operator's function that applies `edit` to the active bone's constraint.
 template <class Edit>
 std::function<void(Editor&)> of_active(Edit edit) {
   return [edit](Editor& editor) {

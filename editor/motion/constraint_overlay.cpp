@@ -10,13 +10,13 @@ namespace limber::editor {
 
 namespace {
 
-// Colours of the lines, in ABGR: 8FBEFF, the accent over views, at 45 % for bones that are not selected.
+// Colour of a constraint's line, ABGR (RGB: 8FBEFF). The alpha of 45 % is for bones that are not selected.
 constexpr Colour kQuiet = 0x73FFBE8F;
 constexpr float kWidth = 1, kMark = 7;
 
 glm::dvec3 middle_of(const PosedRig& rig, int bone) { return 0.5 * (rig.head(bone) + rig.tail(bone)); }
 
-// Returns the point of a bone from which its line goes.
+// Returns the point of the constrained bone at which the dashed line begins.
 glm::dvec3 begin_of(const ConstraintOnRig& found, const PosedRig& rig) {
   switch (found.constraint.kind) {
     case ConstraintKind::Aim: return rig.head(found.bone);

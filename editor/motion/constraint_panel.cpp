@@ -18,11 +18,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;          // farthest place that can be typed, mm
-constexpr double kWidestLimit = 180;  // degrees
+constexpr double kFar = 1e5;          // largest coordinate of a position that can be typed, mm
+constexpr double kWidestLimit = 180;  // largest absolute angle of a rotation limit, degrees
 constexpr int kLongestChain = 64;
 
-// A number of a constraint that the panel shows and changes.
+// A number field of the panel that shows and changes one number of a constraint.
 struct Number {
   std::string name;  // unique among the number fields of the window
   double shown = 0, low = 0, high = 1;
@@ -48,7 +48,7 @@ void draw_number(Editor& editor, const Rect& rect, const Number& number) {
   attempt(editor, "Constraint", [&](Editor& e) { number.commit(e, wanted); });
 }
 
-// Returns a number of a constraint itself, such as a component of its place.
+// Returns the number field for a setting of the constraint, such as a coordinate of its target position.
 Number number_of(const Constraint& constraint, const std::string& name, const std::string& label, double shown,
                  const std::function<void(Constraint&, double)>& set) {
   Number number{.name = constraint.name + " " + name, .shown = shown};
@@ -82,10 +82,11 @@ bool draw_small_icon(Editor& editor, const Rect& rect, const std::string& name, 
   return pressed.clicked;
 }
 
-// The constraints beside which the place of one in the list matters: an earlier and a later one; null: none.
+// The nearest constraints before [0] and after [1] the constraint in the list that turn some of the same bones; null:
+// none.
 using OrderNeighbours = std::array<const Constraint*, 2>;
 
-// Draws the buttons that move a constraint in the list. Returns whether they did.
+// Draws the up and down buttons that move a constraint in the list. Returns true if one was clicked.
 bool draw_order(Editor& editor, const Rect& rect, const Constraint& constraint, const OrderNeighbours& others) {
   const Look& look = editor.look;
   const std::string name = constraint.name;
@@ -108,7 +109,7 @@ bool draw_order(Editor& editor, const Rect& rect, const Constraint& constraint, 
   return false;
 }
 
-// Draws the head of a constraint. Returns false when its deeds have replaced the document.
+// Draws the header row of a constraint. Returns false if one of its buttons has changed the document.
 bool draw_head(Editor& editor, Column& column, const Constraint& constraint, bool is_open, bool has_problem) {
   const Look& look = editor.look;
   const Rect row = column.row(26);
@@ -231,7 +232,7 @@ void draw_limits(Editor& editor, Column& column, const Constraint& constraint) {
       number = number_of(constraint, (is_maximum ? "maximum " : "minimum ") + std::string(1, "XYZ"[axis]), "Set limits",
                          shown, [=](Constraint& changed, double degrees) {
                            const double angle = glm::radians(degrees);
-                           // The other end of the range gives way.
+                           // The minimum must not exceed the maximum, so the other limit moves with the changed one.
                            if (is_maximum) changed.minimum[axis] = std::min(changed.minimum[axis], angle);
                            else changed.maximum[axis] = std::max(changed.maximum[axis], angle);
                            (is_maximum ? changed.maximum : changed.minimum)[axis] = angle;
@@ -250,7 +251,8 @@ void draw_aim(Editor& editor, Column& column, const Constraint& constraint) {
            [chosen](Constraint& changed) { changed.aim = static_cast<BoneAxis>(chosen); });
 }
 
-// A forearm or shank without a hand or foot has no other point and no direction of its own.
+// Returns true if the planted limb ends in a hand or foot. Otherwise the panel does not offer the planted point and
+// the direction: a forearm or shank alone can be planted only at its tail.
 bool ends_in_hand_or_foot(Editor& editor, const Constraint& constraint) {
   const ClipOnRig* clip = clip_on_rig(editor);
   const ConstraintStack* stack = clip ? clip->constraints() : nullptr;
@@ -333,7 +335,8 @@ void draw_constraints(Editor& editor, Column& column) {
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   const auto bone = editor.selection.bone;
   const bool has_bone = rig && bone && *bone < std::ssize(rig->bones);
-  // Those whose bone is gone are shown with every bone, and without one: nothing else could select them.
+  // Constraints whose bone the rig no longer has are listed for every active bone, and without an active bone.
+  // Otherwise the user could not select them.
   std::vector<std::size_t> indices = constraints_of_no_bone(editor.document());
   if (!has_bone && indices.empty()) return;
   const Look& look = editor.look;
@@ -343,7 +346,7 @@ void draw_constraints(Editor& editor, Column& column) {
   }
   if (column.begin_section("Constraints", indices.empty() ? "" : std::to_string(indices.size()))) {
     column.space(4);
-    // Copied, because an edit replaces the document.
+    // A copy, because an edit replaces the document.
     const Constraints constraints = constraints_of(editor.document());
     for (const std::size_t index : indices) {
       const ClipOnRig* clip = clip_on_rig(editor);

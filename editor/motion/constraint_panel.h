@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Section of the Pose workspace that lists the active bone's constraints: each folds, has its weight with a key, and
-// its target and settings.
+// Section of the Pose workspace's sidebar that lists the active bone's constraints. Each constraint can be unfolded
+// and has a weight with a key button, a target and settings.
 #pragma once
 
 #include "editor/context/editor.h"

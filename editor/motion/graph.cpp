@@ -13,11 +13,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kMostBones = 12;         // bones whose curves are shown at once
-constexpr int kMostFrames = 20'000;            // of longer clips the first frames are shown
-constexpr std::chrono::milliseconds kTime{6};  // time limit for new poses of the motion in one drawn frame
+constexpr std::size_t kMostBones = 12;         // largest number of bones whose curves are shown
+constexpr int kMostFrames = 20'000;            // largest number of frames shown; a longer clip shows its first frames
+constexpr std::chrono::milliseconds kTime{6};  // time limit per drawn frame for sampling the motion's poses
 constexpr float kHeight = 300;                 // height of the bottom area for curves, pixels at scale 1
-constexpr double kRoom = 0.12;                 // room above and below the curves, as a share of their height
+constexpr double kRoom = 0.12;                 // margin above and below the curves, as a fraction of their height
 
 glm::dquat motion_rotation(const GraphCurves& curves, int bone, double frame) {
   if (!curves.has_motion || curves.motion->empty()) return {1, 0, 0, 0};
@@ -47,7 +47,8 @@ const Value* key_at(const std::map<int, Value>& keys, double frame) {
   return found != keys.end() && found->first == frame ? &found->second : nullptr;
 }
 
-// At a key's frame these are the key's own values, which hold where the motion is not sampled too.
+// Returns the values of the curve at a frame, as angles near `near` if the track is a rotation. At a key's frame it
+// returns the key's own values, which are known even where the motion is not sampled.
 glm::dvec3 values_near(const GraphCurves& curves, const GraphTrack& track, const GraphCurve& curve, double frame,
                        const glm::dvec3& near) {
   if (track.is_shift) {
@@ -60,7 +61,7 @@ glm::dvec3 values_near(const GraphCurves& curves, const GraphTrack& track, const
   return angles_near(curve.turns.empty() ? base : value_at(curve.turns, curve.shapes, frame) * base, near);
 }
 
-// Adds the values of frames whose motion is known.
+// Adds the curve's values at the frames for which the motion has been sampled since the last call.
 void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curve) {
   const auto known = static_cast<std::size_t>(curves.has_motion ? std::ssize(*curves.motion)
                                                                 : curves.range.high - curves.range.low + 1);
@@ -77,8 +78,8 @@ void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curv
   }
 }
 
-// Returns the smallest range that contains the clip's frames, as all_frames() does, with other keys. It is asked for in
-// every drawn frame, so of each track only the first and last key are looked at.
+// Returns the smallest range that contains the clip's frames and the given keys instead of the clip's own keys, as
+// all_frames() does. It runs in every drawn frame, so it reads only the first and last key of each track.
 FrameRange range_of(const Clip& clip, const Keys& keys) {
   Clip without = {.motion = clip.motion, .start = clip.start, .first = clip.first, .last = clip.last};
   without.range_start = clip.range_start;
@@ -100,7 +101,7 @@ bool same_motion(const Clip& a, const Clip& b) {
          a.retarget == b.retarget;
 }
 
-// Selects the keys again that were selected in a clip which undo or redo shows.
+// When undo or redo shows another clip, selects the keys again that were selected in that clip.
 void meet_clip(Graph& graph, const std::shared_ptr<const Clip>& clip) {
   if (graph.met_clip.lock() == clip) return;
   graph.met_clip = clip;
@@ -108,7 +109,8 @@ void meet_clip(Graph& graph, const std::shared_ptr<const Clip>& clip) {
     if (known.lock() == clip) graph.chosen = chosen;
 }
 
-// Returns the poses of `range` that are known: all of them if the range only grew at its end, or shrank.
+// Returns the sampled poses of `curves` that lie in `range`. Only poses without a gap from the start of `range` count,
+// so the list is empty if `range` begins earlier than the sampled range.
 std::shared_ptr<std::vector<Pose>> known_motion(const GraphCurves& curves, const FrameRange& range) {
   if (range.low < curves.range.low) return std::make_shared<std::vector<Pose>>();
   const auto wanted = static_cast<std::size_t>(range.high - range.low + 1);
@@ -120,11 +122,13 @@ std::shared_ptr<std::vector<Pose>> known_motion(const GraphCurves& curves, const
   return std::make_shared<std::vector<Pose>>(first, first + count);
 }
 
-// Begins anew if the clip's motion, the rig or the range of frames has changed.
+// Discards the curves if the clip's motion, the rig or the range of frames has changed. Keeps the sampled poses that
+// are still valid.
 void meet_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
   FrameRange range = range_of(*on_rig.clip(), graph_keys(editor));
   const bool same = curves.clip && curves.rig == on_rig.armature() && same_motion(*curves.clip, *on_rig.clip());
-  // While keys are dragged the range does not shrink, nor begin elsewhere, or each step would sample the motion again.
+  // While keys are dragged, the range only grows at its end. Otherwise each step of the drag could sample the motion
+  // again.
   if (same && graph_of(editor).preview) range = {curves.range.low, std::max(range.high, curves.range.high)};
   range.high = std::min(range.high, range.low + kMostFrames - 1);
   if (same && curves.range.low == range.low && curves.range.high == range.high) return;
@@ -139,14 +143,14 @@ void sample_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig)
   if (!curves.complete()) editor.touch();
 }
 
-// Returns the motion's pose at a frame. A sampled pose is taken, as to retarget one takes long.
+// Returns the motion's pose at a frame. Uses the sampled pose if there is one, because retargeting a frame takes long.
 Pose motion_pose(const GraphCurves& curves, const ClipOnRig& on_rig, int frame) {
   const std::int64_t place = std::int64_t{frame} - curves.range.low;
   return place >= 0 && place < std::ssize(*curves.motion) ? (*curves.motion)[static_cast<std::size_t>(place)]
                                                           : on_rig.base_at(frame);
 }
 
-// Returns the track's keys as corrections of the motion.
+// Returns the track's curve with its keys stored as corrections of the motion.
 GraphCurve keyed(const GraphCurves& curves, const ClipOnRig& on_rig, const Keys& keys, const GraphTrack& track) {
   GraphCurve curve;
   curve.bone = on_rig.armature()->find(track.bone).value_or(-1);
@@ -234,7 +238,7 @@ GraphTracks graph_tracks(const Editor& editor) {
       continue;
     }
     found.tracks.push_back({b.name, false});
-    // The body has one shift, however many root bones there are.
+    // The whole body has a single shift, even if the rig has several root bones. Only the first root bone lists it.
     if (b.parent < 0 && !std::exchange(shift_listed, true)) found.tracks.push_back({b.name, true});
   }
   return found;
@@ -270,7 +274,8 @@ void update_curves(Editor& editor) {
   const Keys& keys = graph_keys(editor);
   std::map<GraphTrack, GraphCurve> tracks;
   for (const GraphTrack& track : graph_tracks(editor).tracks) {
-    // A walk of metres would flatten the angles beside it, so a shift is hidden until the user shows it.
+    // A walk of several metres would make the curves of angles look flat. So the shift's curves are hidden until the
+    // user shows them.
     if (track.is_shift && graph_of(editor).met_shifts.insert(track).second)
       for (int axis = 0; axis < 3; ++axis) graph_of(editor).hidden.insert({track, axis});
     const auto before = curves.tracks.find(track);
@@ -325,7 +330,7 @@ void show_graph(Editor& editor, bool on) {
     Arrangement& arrangement = editor.arrangement();
     arrangement.timeline = true;
     arrangement.console = false;
-    editor.timeline->chosen.clear();  // keys in rows that are not seen must not be changed
+    editor.timeline->chosen.clear();  // the graph hides the rows of keys, and hidden keys must not be changed
     graph.fitted.clear();
     if (arrangement.bottom_height < kHeight)
       graph.heights_before[static_cast<std::size_t>(editor.workspace)] =
@@ -334,7 +339,8 @@ void show_graph(Editor& editor, bool on) {
     for (std::size_t i = 0; i < editor.arrangements.size(); ++i) {
       const float before = std::exchange(graph.heights_before[i], 0.0f);
       float& height = editor.arrangements[i].bottom_height;
-      if (before > 0 && height == kHeight) height = before;  // the user has not dragged it since
+      // restores the height if the user has not dragged the splitter since
+      if (before > 0 && height == kHeight) height = before;
     }
   }
   editor.touch();
@@ -353,7 +359,7 @@ void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys) {
           for (const auto* values : {&curve.values, &curve.motion})
             for (const glm::dvec3& value : *values) take(value[axis]);
   if (low > high) low = high = 0;
-  // The last bound keeps the edges apart where doubles are coarse.
+  // For very large values, 1 is below the precision of doubles. The last term keeps `low` and `high` distinct.
   const double room = std::max({1.0, kRoom * (high - low), 1e-6 * std::max(std::abs(low), std::abs(high))});
   graph.low = low - room;
   graph.high = high + room;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The graph editor: the timeline's second face, which shows the shown clip as curves. A track is a selected bone's
-// rotation, or the body's shift; where no bone is selected, the bones with keys are shown. A track has three channels:
-// the angles about X, Y and Z in degrees (core/motion/euler_channels.h), or the shift along them in mm. A key of a
-// bone is one rotation, so its three channels have keys at the same frames.
+// The graph editor: shows the shown clip as curves, in place of the timeline's rows. A track is a selected bone's
+// rotation, or the body's shift. If no bone is selected, all bones with keys have tracks. A track has three channels:
+// the angles about X, Y and Z in degrees (core/motion/euler_channels.h), or the shift along X, Y and Z in mm. A key of
+// a bone is one rotation, so its three channels have keys at the same frames.
 //
-// The time axis is the timeline's. Curves are sampled at whole frames, once for each change of the clip or its keys;
-// the motion's own poses are sampled a few milliseconds' worth per drawn frame, until all are known.
+// The time axis is the same as in the timeline. Curves are sampled at whole frames, once for each change of the clip
+// or its keys. The poses of the recorded motion are sampled for a few milliseconds in each drawn frame, until all are
+// known.
 #pragma once
 
 #include <array>
@@ -33,27 +34,29 @@ struct GraphKey {
 
   auto operator<=>(const GraphKey&) const = default;
 };
-enum class KeySide { In, Out };  // before or after a key
+enum class KeySide { In, Out };  // the side of a key in time: In is before the key, Out after it
 
 // The curves of one track.
 struct GraphCurve {
   int bone = -1;
-  std::map<int, glm::dquat> rotations;  // the keys, of a bone
-  std::map<int, glm::dvec3> places;     // or of the shift
-  // The corrections of the motion at the keys, which the keys' curve interpolates; without a motion the keys
-  // themselves.
+  std::map<int, glm::dquat> rotations;  // keys of a bone's rotation, by frame; empty if the track is the shift
+  std::map<int, glm::dvec3> places;     // keys of the shift, by frame, mm; empty if the track is a rotation
+  // The keys' corrections of the motion, by frame: rotations (`turns`) or shifts in mm (`shifts`). The curve
+  // interpolates the corrections. Without a motion, they equal the keys.
   std::map<int, glm::dquat> turns;
   std::map<int, glm::dvec3> shifts;
   KeyShapes shapes;
-  std::vector<glm::dvec3> values, motion;  // one per frame, degrees or mm; `motion` without the keys, empty: none
+  // by frame, degrees or mm: the curve with its keys; the motion alone (empty: there is no motion)
+  std::vector<glm::dvec3> values, motion;
 };
 
 struct GraphCurves {
-  std::shared_ptr<const Clip> clip;     // whose motion is sampled
+  std::shared_ptr<const Clip> clip;     // the clip whose motion is sampled
   std::shared_ptr<const Armature> rig;  // null: nothing is sampled
   bool has_motion = false;
   FrameRange range{0, -1};
-  // The motion's poses at the range's frames, as far as they are sampled. Copies of the curves share them.
+  // The poses of the motion that are sampled so far, from the first frame of `range`. Copies of GraphCurves share
+  // them.
   std::shared_ptr<std::vector<Pose>> motion = std::make_shared<std::vector<Pose>>();
   std::map<GraphTrack, GraphCurve> tracks;
 
@@ -62,25 +65,26 @@ struct GraphCurves {
 
 struct Graph {
   std::set<GraphChannel> hidden;
-  std::set<GraphTrack> met_shifts;  // shifts that were listed before
+  std::set<GraphTrack> met_shifts;  // shift tracks that have been listed before; a new one is hidden at first
   std::set<GraphKey> chosen;
-  double low = -10, high = 10;            // the values at the plot's lower and upper edge
-  std::string fitted;                     // names what the values were fitted to
+  double low = -10, high = 10;  // the values at the plot's lower and upper edge
+  // text that identifies the clip and tracks to which `low` and `high` were fitted
+  std::string fitted;
   std::optional<Keys> preview;            // the keys while they are dragged
   std::shared_ptr<const Clip> previewed;  // the clip whose keys `preview` replaces
-  // The keys that were selected when a change of a clip began, and when it ended, so that undo and redo select them
-  // again; and the clip whose selection is shown.
+  // chosen_of_clips: the keys that were selected in each clip before and after an edit, so that undo and redo can
+  // select them again. met_clip: the clip whose selection `chosen` holds.
   std::vector<std::pair<std::weak_ptr<const Clip>, std::set<GraphKey>>> chosen_of_clips;
   std::weak_ptr<const Clip> met_clip;
   std::optional<Rect> box;  // the rectangle that the user draws around keys
-  // For each workspace, the height of the bottom area before it was made higher for the graph; 0: it was not.
+  // For each workspace, the height of the bottom area before the graph editor enlarged it; 0: not enlarged.
   std::array<float, std::tuple_size_v<Arrangements>> heights_before{};
-  Rect plot;  // where curves are drawn
+  Rect plot;  // the area in which the curves are drawn, pixels
   GraphCurves curves;
 };
 
 Graph& graph_of(Editor& editor);               // creates the state if there is none
-const Keys& graph_keys(const Editor& editor);  // the keys as they are shown; the clip exists
+const Keys& graph_keys(const Editor& editor);  // the clip's keys, or their preview during a drag; needs a shown clip
 bool graph_is_shown(const Editor& editor);
 std::shared_ptr<const Clip> graph_clip(const Editor& editor);  // the shown clip; null: none
 // Stores which keys are selected in a clip, for undo.
@@ -89,31 +93,34 @@ void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, cons
 // ---- Tracks and curves
 struct GraphTracks {
   std::vector<GraphTrack> tracks;
-  int left_out = 0;  // bones beyond the most that are shown
+  int left_out = 0;  // number of bones that are left out because too many are selected
 };
 GraphTracks graph_tracks(const Editor& editor);
 std::set<int> key_frames_of(const Keys& keys, const GraphTrack& track);
 bool is_shown(const Graph& graph, const GraphChannel& channel);
-bool exists(const Graph& graph, const Keys& keys, const GraphKey& key);  // whether it is a key of a shown channel
+// returns true if the key exists and its channel is shown
+bool exists(const Graph& graph, const Keys& keys, const GraphKey& key);
 
-// Samples what has changed since the last call. Needs a shown clip and a rig.
+// Updates the curves for changes of the clip, its keys or the rig. Needs a shown clip and a rig.
 void update_curves(Editor& editor);
-// Returns the three values at a frame, which may lie between whole frames, near those of the whole frame before it.
+// Returns the values of the three channels at a frame, which may be fractional. Angles are chosen near those of the
+// whole frame before it.
 glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, double frame);
 
-// Returns the speeds of the three values at a key, per frame, before or after it. Over a motion these are the speeds of
-// the correction, so that level handles keep the motion's own course, however it trembles. Returns nothing where no
-// Bezier span is on that side.
+// Returns the slopes of the three channels at a key, before or after it, in degrees or mm per frame. Over a motion,
+// these are the slopes of the correction. So a horizontal handle leaves the motion's own curve unchanged, even if that
+// curve is noisy. Returns nothing if there is no Bezier span on that side.
 std::optional<glm::dvec3> graph_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
-// Returns the tangent of a key's shape that gives the values these speeds.
+// Returns the tangent of a key that gives the channels these slopes.
 glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, const glm::dvec3& speeds);
-// Returns the number of frames from a key to the end of its handle, a third of the span; nothing where no Bezier span
-// is on that side.
+// Returns the number of frames from a key to the end of its handle, which is a third of the span. Returns nothing if
+// there is no Bezier span on that side.
 std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 
 // ---- The view
 void show_graph(Editor& editor, bool on);
-void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys = nullptr);  // nullptr: to all shown curves
+// fits the value axis to the keys; nullptr: to all shown curves
+void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys = nullptr);
 float graph_y(const Graph& graph, double value);
 double graph_value_at(const Graph& graph, float y);
 // Returns the selected keys that exist and are shown.

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kFurthest = 1e7;  // largest absolute value of a frame number
 
-using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;  // and which channels of each frame's key
+// for each track, the frames of its keys and the channels that are selected at each
+using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;
 
 FramesOfTracks by_track(const std::set<GraphKey>& keys) {
   FramesOfTracks tracks;
@@ -41,16 +42,16 @@ Tangents tangents_of(const GraphCurves& curves, const GraphTrack& track, int fra
                         : tangents_at(curve.turns, curve.shapes, frame);
 }
 
-// Returns the shape with free handles that begin with the key's tangents.
+// Returns the key's shape with free handles. The handles keep the key's current tangents.
 KeyShape freed(const GraphCurves& curves, const GraphTrack& track, int frame, KeyShape shape) {
   if (shape.handles == HandleKind::Free) return shape;
   const Tangents tangents = tangents_of(curves, track, frame);
   return {shape.next, HandleKind::Free, tangents.in, tangents.out};
 }
 
-// Returns the tangent at other angles that gives the angles the old speeds, times a factor for each. What no speeds
-// give in gimbal lock stays.
-//   before, after  degrees
+// Returns the tangent of a rotation key after its angles have changed from `before` to `after` (degrees). The new
+// tangent gives each channel its old slope times its factor. In gimbal lock, a part of the tangent belongs to no
+// channel; this part does not change.
 glm::dvec3 tangent_at_angles(const glm::dvec3& tangent, const glm::dvec3& before, const glm::dvec3& after,
                              const glm::dvec3& factors) {
   const glm::dvec3 speeds = channel_speeds(glm::radians(before), tangent);
@@ -58,7 +59,7 @@ glm::dvec3 tangent_at_angles(const glm::dvec3& tangent, const glm::dvec3& before
   return velocity_of_channels(glm::radians(after), factors * speeds) + left;
 }
 
-// Changes the value of some channels of a key. Tangents that are set by hand are scaled with the values.
+// Changes the value of some channels of a key. Tangents that the user has set are scaled with the values.
 void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track, int frame, const glm::bvec3& channels,
                   const GraphMap& value) {
   const glm::dvec3 before = graph_values(curves, track, frame);
@@ -82,7 +83,8 @@ void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track
   if (shape.handles == HandleKind::Aligned || shape.handles == HandleKind::Free) put_shape(keys, track, frame, shape);
 }
 
-// Returns the straight way from a key to the next one, and its number of frames. Returns nothing for the last key.
+// Returns the straight difference `way(key, next key)` from a key to the next one, and the number of frames between
+// them. Returns nothing for the last key.
 template <class Value, class Way>
 std::optional<std::pair<glm::dvec3, int>> way_on(const std::map<int, Value>& keys, int frame, const Way& way) {
   const auto key = keys.find(frame);

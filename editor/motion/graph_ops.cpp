@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators of the graph editor: its view, the selection of keys, and what is between keys.
+// Operators of the graph editor: its view, the selection of keys, and the interpolation between keys.
 #include <algorithm>
 
 #include "editor/context/operator.h"
@@ -41,7 +41,7 @@ void fit_to_chosen(Editor& editor) {
   window.low = (low + high) / 2.0 - window.count / 2;
 }
 
-// Changes the keys of the shown clip by the curves that are shown.
+// Applies `edit` to the selected keys of the shown clip and commits the result as one edit.
 void change(Editor& editor, const std::string& label,
             const std::function<Keys(const GraphCurves&, const Keys&, const std::set<GraphKey>&)>& edit) {
   stop_playing(editor);

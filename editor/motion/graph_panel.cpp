@@ -14,10 +14,12 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kList = 176, kValues = 62, kButton = 20;  // widths: list, values beside the plot, a channel's button
+// widths, pixels at scale 1: the list of tracks, the numbers beside the plot, a channel's button
+constexpr float kList = 176, kValues = 62, kButton = 20;
 constexpr float kLeastValues = 26;  // smallest distance between two values beside the plot, pixels at scale 1
 constexpr int kMostTicks = 1000;
-constexpr float kFine = 5;  // with more pixels from frame to frame, curves are drawn between frames too
+// if frames are farther apart than this, curves are also drawn between frames; pixels at scale 1
+constexpr float kFine = 5;
 constexpr float kKeyRadius = 4, kHandleRadius = 3.5f;
 constexpr const char* kAxes[] = {"X", "Y", "Z"};
 
@@ -94,7 +96,8 @@ void draw_values(Editor& editor) {
   const double per_pixel = (graph.high - graph.low) / std::max(1.0f, graph.plot.height());
   const double step = round_step(look.px(kLeastValues) * per_pixel);
   const char* unit = unit_of(graph);
-  // Counted by doubles, which do not overflow, and up to a limit, because where doubles are coarse steps may not count.
+  // The tick numbers are doubles, because an integer could overflow. The number of ticks is limited, because at very
+  // large values adding a step may not change a double.
   const double first = std::ceil(graph.low / step);
   for (int i = 0; i < kMostTicks && (first + i) * step <= graph.high; ++i) {
     const double value = (first + i) * step;
@@ -111,8 +114,8 @@ void draw_values(Editor& editor) {
   }
 }
 
-// Draws a line through the values of whole frames, and between them where frames are far apart and `fine` gives the
-// values there.
+// Draws a line through the values at whole frames. If frames are far apart, the line also passes through the values
+// that `fine` returns between frames; `fine` may be empty.
 void draw_line(Editor& editor, const std::vector<glm::dvec3>& values, int axis, Colour colour, float width,
                const std::function<glm::dvec3(double)>& fine) {
   const Timeline& timeline = *editor.timeline;
@@ -123,7 +126,7 @@ void draw_line(Editor& editor, const std::vector<glm::dvec3>& values, int axis, 
   const int high =
       static_cast<int>(std::clamp(std::ceil(timeline.window.low + timeline.window.count), double(first), double(last)));
   const int parts = fine ? std::clamp(static_cast<int>(per_frame / editor.look.px(kFine)), 1, 16) : 1;
-  // Where several frames fall into half a pixel, only some of them are drawn.
+  // If several frames fall into half a pixel, only some of them are drawn.
   const int stride = std::max(1, static_cast<int>(std::floor(0.5 / std::max(per_frame, 1e-9))));
   ImDrawList& list = *ImGui::GetWindowDrawList();
   for (int frame = low; frame <= high; frame += stride) {
@@ -160,7 +163,8 @@ void draw_curves(Editor& editor) {
     }
 }
 
-// Draws the keys of one track. Of keys that lie on one another, only the first is drawn, and those that are selected.
+// Draws the keys of one track. Of keys that are drawn at the same point, only the first key and the selected keys are
+// drawn.
 void draw_keys_of(Editor& editor, const GraphTrack& track) {
   const Look& look = editor.look;
   const Graph& graph = graph_of(editor);
@@ -201,7 +205,7 @@ void draw_keys_and_handles(Editor& editor) {
   outline(box, look.theme.select, 0, look.line());
 }
 
-// Returns a name of what is shown, so that the values are fitted again when it changes.
+// Returns a text that identifies the shown clip and tracks. When this text changes, the value axis is fitted again.
 std::string shown_name(const Editor& editor, const GraphTracks& found) {
   std::string name = shown_clip(editor)->name;
   for (const GraphTrack& track : found.tracks) name += "/" + name_of(track);

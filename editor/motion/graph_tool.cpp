@@ -20,9 +20,9 @@ constexpr float kStart = 3;       // the pointer moves this far before a press o
 constexpr float kLeastThird = 2;  // least width of a handle that is drawn, pixels at scale 1
 constexpr double kStep = 1.25, kMostFrames = 1e7;         // zoom factor per wheel step; largest number of frames shown
 constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // smallest and largest range of values shown
-constexpr double kFurthestMove = 1e7;                     // of keys, in frames or in values
+constexpr double kFurthestMove = 1e7;                     // largest change of a key by a move, in frames or in values
 
-// Shows the keys in place of the clip's, in the graph and by the body's pose.
+// Shows these keys instead of the clip's keys, in the graph and in the body's pose.
 void preview(Editor& editor, Keys keys) {
   Graph& graph = graph_of(editor);
   const ClipOnRig* on_rig = clip_on_rig(editor);
@@ -46,8 +46,8 @@ void drop_preview(Editor& editor) {
   editor.touch();
 }
 
-// A change of selected keys by the pointer, as the keys and curves were when it began. A job that ends in the meantime
-// may show another clip, or none; then the change is dropped.
+// A drag of selected keys, with the keys and curves from the moment when it began. If a job has meanwhile replaced the
+// shown clip, the drag changes nothing.
 struct Moving {
   std::shared_ptr<const Clip> clip;
   Keys keys;
@@ -153,7 +153,8 @@ class ChangingGraphKeys final : public Modal {
                                           : std::string(time) + ", " + value);
   }
 
-  // Returns the maps that scale about the play head and the middle of the keys' values.
+  // Computes the maps that scale the keys, in time about the play head and in value about the middle of the keys'
+  // values.
   void scale() {
     const auto ratio = [](float reach, float way) { return std::abs(reach) < 1 ? 1.0 : (reach + way) / double{reach}; };
     const float far = glm::length(reach_);
@@ -169,7 +170,7 @@ class ChangingGraphKeys final : public Modal {
     double frames = frames_of_pixels(*editor.timeline, way_.x);
     double value = value_of_pixels(*editor.timeline->graph, way_.y);
     if (number_.typed()) {
-      // A number without a lock is a number of frames, as in the timeline.
+      // If no axis is locked, a typed number is a number of frames, as in the timeline.
       frames = number_.value();
       value = lock_ == Lock::Value ? number_.value() : 0;
     }
@@ -197,7 +198,8 @@ class ChangingGraphKeys final : public Modal {
   bool scales_;
   int pivot_frame_;
   double pivot_value_ = 0;
-  glm::vec2 reach_{0}, way_{0};  // from the pivot to the pointer at the beginning; the pointer's way since, pixels
+  // pixels: from the pivot to the pointer when the drag began; the pointer's motion since then
+  glm::vec2 reach_{0}, way_{0};
   Lock lock_ = Lock::None;
   GraphMap time_, value_;
   TypedNumber number_;
@@ -213,7 +215,7 @@ std::optional<GraphKey> key_under_pointer(Editor& editor) {
       for (int axis = 0; axis < 3; ++axis) {
         const GraphKey key{{track, axis}, frame};
         if (!is_shown(graph, key.channel)) continue;
-        // Of keys that lie together, the selected one is meant.
+        // Of several keys at the same point, a selected key is preferred.
         const float far =
             glm::distance(graph_point(editor, key), editor.input.pointer) - (graph.chosen.contains(key) ? 0.5f : 0.0f);
         if (far > least) continue;
@@ -229,7 +231,8 @@ void drag_handle(Editor& editor, const GraphHandle& handle) {
     const Graph& graph = graph_of(e);
     const double whole = *handle_frames(begun->curves, handle.key.channel.track, handle.key.frame, handle.side);
     const double side = handle.side == KeySide::In ? -1 : 1;
-    // Over the key or beyond it, the handle is as steep as the pointer's height makes it.
+    // The handle must stay on its side of the key. If the pointer crosses the key, the slope uses a tenth of the
+    // handle's length.
     const double frames =
         std::max(0.1 * whole, side * frames_of_pixels(*e.timeline, e.input.pointer.x - handle.key_point.x));
     const double value = value_of_pixels(graph, e.input.pointer.y - handle.key_point.y);
@@ -310,7 +313,7 @@ std::vector<GraphHandle> graph_handles(const Editor& editor) {
       const glm::vec2 end(x_of(*editor.timeline, key.frame + frames),
                           graph_y(graph, value + frames * (*speeds)[key.channel.axis]));
       const GraphHandle handle{key, side, graph_point(editor, key), end};
-      // A handle that would lie over its key can be neither told from it nor pressed.
+      // A handle that is so close to its key could not be told from the key or pressed, so it is left out.
       if (glm::distance(handle.point, handle.key_point) > editor.look.px(kReach)) handles.push_back(handle);
     }
   }
@@ -334,7 +337,7 @@ void press_graph(Editor& editor) {
 void begin_changing_graph_keys(Editor& editor, GraphChange change) {
   stop_playing(editor);
   settle_frame(editor);
-  update_curves(editor);  // they may be older than the keys, if the graph was not drawn since
+  update_curves(editor);  // the curves may be outdated if the graph was not drawn since the keys changed
   editor.modal = std::make_shared<ChangingGraphKeys>(editor, change);
   editor.modal_wrap = {};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators that clean the shown clip: they filter out tremble, keep feet in place while they stand, hold a hand or
-// foot at a place, and replace bad frames. The cleaned motion is recorded on the rig, with the clip's keys, for the
-// frames that play.
+// Operators that clean the shown clip: filter out jitter, keep feet in place while they stand, hold a hand or foot at
+// a position, and replace bad frames. The result is a recorded motion of the playing range, which includes the clip's
+// keys.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -20,24 +20,26 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kOff = 3;                 // mm: a limb that stays further off its place does not reach it
+// mm; a limb that stays farther from its position than this counts as not reaching it
+constexpr double kOff = 3;
 constexpr double kFarthest = 1e6;          // mm: upper limit on each of the typed x, y and z
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are cleaned at once
 
 enum class Becomes { NewClip, SameClip };
 
-// How the shown clip is cleaned. Frames of a hold are counted from the first frame that plays.
+// Settings that say how the shown clip is cleaned. Frames of `hold` and `gap` are counted from the first frame of the
+// playing range.
 struct Cleaning {
-  std::string label, made;  // the name of the edit, and what the new clip's name ends with
-  double smooth = 0;        // Hz; 0: not filtered
+  std::string label, made;  // name of the edit; suffix of the new clip's name
+  double smooth = 0;        // cutoff frequency of the smoothing filter, Hz; 0: not filtered
   bool plants_feet = false;
   std::optional<Plant> hold;
-  bool stays_where_it_is = false;  // the hold's place is where the limb is in the hold's first frame
-  double ease = 0.15;              // s
+  bool stays_where_it_is = false;  // true: the limb is held at its position in the first frame of the hold
+  double ease = 0.15;              // time in which a limb moves to the held position and back, s
   struct Gap {
     int first = 0, last = 0;
   };
-  std::optional<Gap> gap;  // frames that are replaced, counted as a hold's
+  std::optional<Gap> gap;  // frames that are replaced
   Becomes becomes = Becomes::NewClip;
 };
 
@@ -67,8 +69,8 @@ std::string frames_text(int first, int last) {
 
 struct Result {
   std::vector<Pose> poses;
-  std::string line, detail;  // what is told to the user
-  bool is_short = false;     // a limb does not reach its place
+  std::string line, detail;  // message about the result for the user
+  bool is_short = false;     // true: a limb does not reach the position at which it should stay
 };
 
 std::string mm_text(double mm) {
@@ -77,7 +79,7 @@ std::string mm_text(double mm) {
   return text;
 }
 
-// The plant whose point is furthest off its place.
+// The planted limb that is farthest from its position, and that distance in mm.
 struct WorstPlant {
   const Plant* plant = nullptr;
   double off = 0;
@@ -91,9 +93,9 @@ WorstPlant worst_of(const Armature& rig, const std::vector<PlantedLimb>& limbs, 
   return worst;
 }
 
-// Says which limb does not reach the place where it stands, rests or is held.
-//   plants  all that had to stay in place
-//   told    the limb that the result's detail speaks of; -1: none
+// If a limb does not reach the position at which it should stay, adds this to the result's message.
+//   plants  all limbs that should stay in place
+//   told    index of the limb that the result's detail already describes; -1: none
 void tell_of_short(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Plant>& plants,
                    int told, Result& result) {
   const WorstPlant worst = worst_of(rig, limbs, plants, result.poses);
@@ -125,9 +127,9 @@ void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, co
   }
 }
 
-// Returns what has to stay in place because it rests there in the recorded poses: a hand that was held before, when the
-// body is moved with its feet or what moves fast is filtered out, and likewise feet when one limb is held. Hands that
-// hang idle go with the body.
+// Returns the limbs that must stay in place because they rest on something in the recorded poses, such as a hand on a
+// rail. Feet are left out if the cleaning plants them anyway, and so is the held limb. Hands that hang freely move
+// with the body.
 std::vector<Plant> rests_to_keep(const Cleaning& cleaning, const Armature& rig, const std::vector<PlantedLimb>& limbs,
                                  const std::vector<Pose>& recorded, double rate, Progress& progress) {
   std::vector<Plant> rests =
@@ -184,7 +186,7 @@ void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, int firs
   else editor.messages.ok(result.line, result.detail);
 }
 
-// Cleans the frames of the shown clip that play, in the background.
+// Cleans the playing range of the shown clip in a background task.
 void start_cleaning(Editor& editor, const Cleaning& cleaning) {
   stop_playing(editor);
   const auto [first, last] = playing_range(editor);
@@ -202,7 +204,7 @@ bool has_legs(const std::vector<PlantedLimb>& limbs) {
   return std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
 }
 
-// Throws Error if there is no clip any more, or if too many frames play.
+// Throws Error if no clip or rig is left, or if the playing range has too many frames.
 void require_frames(const Editor& editor) {
   if (!shown_clip(editor) || !editor.document().armature)
     throw Error("there is no clip any more", "clean", "open this again");
@@ -275,7 +277,7 @@ glm::dvec3 hold_position(const Editor& editor, const std::vector<FormField>& fie
                                                                               : editor.views->cross_hair;
 }
 
-// Returns where the chosen limb is in the first frame in which it is to be held; nothing if the clip does not play yet.
+// Returns the selected limb's position in the first frame of the hold; nothing if no pose of that frame is known.
 std::optional<glm::dvec3> place_before_hold(const Editor& editor, const std::vector<FormField>& fields) {
   const ClipOnRig* clip = editor.timeline->prepared.get();
   if (!clip || clip->clip().get() != shown_clip(editor) || !clip->problem().empty()) return {};

@@ -27,9 +27,9 @@ RetargetMap map_in_use(const ClipOnRig& clip);
 // does. Otherwise the body stays at its rest position.
 Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
 
-// Takes in a clip that was computed from another clip of the document, in the background: as a new clip, or in place of
-// that clip. Goes to the frame, or where none is given stays, or goes to the nearest frame that plays. Throws Error if
-// the document no longer has the source, or has another rig than that for which the clip was computed.
+// Adds a clip that a background task has computed from another clip of the document, or replaces that other clip. Then
+// goes to `frame`, or without `frame` stays at the current frame; both are clamped to the playing range. Throws Error
+// if the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
 void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
                   const std::string& label, Clip clip, bool is_new, std::optional<double> frame = {});
 

@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kMeasured = 60;         // approximate number of frames from which the size of the figure is measured
+constexpr int kMeasured = 60;         // approximate number of frames that are sampled to measure the figure's size
 constexpr double kSide = 0.6;         // angle by which the camera is turned from the front to the side, radians
 constexpr double kAbove = 0.2;        // angle by which the camera looks down, radians
 constexpr double kFinest = 1.0 / 60;  // shortest time between two drawn frames, s

@@ -32,7 +32,7 @@ class MotionPicture {
   std::shared_ptr<const Motion> motion_;
   std::vector<std::pair<int, int>> sticks_;  // the figure's lines, each as two indices into places()
   int frame_ = 0;
-  double began_ = -1, began_at_ = 0;  // time in s and frame at which playing began; began_ -1: not playing
+  double began_ = -1, began_at_ = 0;  // time (s) and frame at which playing began; began_ -1: not playing
   bool stays_ = false;                // true after scrubbing: the motion does not play until the pointer leaves
   int measured_ = -1;                 // value of z_up with which low_, high_ and wide_ were computed; -1: not computed
   double low_ = 0, high_ = 1, wide_ = 1;

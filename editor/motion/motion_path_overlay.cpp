@@ -11,13 +11,14 @@ namespace limber::editor {
 
 namespace {
 
-// Colours of the path before and after the shown frame, those of the onion skin's ghosts; in ABGR (in RGB: 4B8EF5,
-// 5AD19A). The keys' diamonds have the colour of the timeline's (in RGB: F5A623).
+// Colours of the path before and after the shown frame, the same as those of the onion skin's ghosts, and of the keys'
+// diamonds, the same as in the timeline. ABGR (RGB: 4B8EF5, 5AD19A, F5A623).
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A, kKey = 0xFF23A6F5;
-constexpr int kMostFrames = 100'000;           // longer playing ranges have paths only for their first frames
-constexpr std::size_t kMostBones = 8;          // where more bones are selected, only the active one has a path
-constexpr float kRoom = 5;                     // least distance between two frames' dots, pixels at scale 1
-constexpr std::chrono::milliseconds kTime{8};  // time limit for new points in one drawn frame
+// longest path, in frames; a longer playing range shows only its first frames
+constexpr int kMostFrames = 100'000;
+constexpr std::size_t kMostBones = 8;          // if more bones are selected, only the active bone has a path
+constexpr float kRoom = 5;                     // smallest distance between the dots of two frames, pixels at scale 1
+constexpr std::chrono::milliseconds kTime{8};  // time limit per drawn frame for computing new points
 
 void add_points(const ClipOnRig& clip, MotionPaths& paths) {
   const auto began = std::chrono::steady_clock::now();

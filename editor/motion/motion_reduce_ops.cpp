@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The operator that makes few keys of the frames that play, so that a recorded motion can be edited by its curves.
+// The operator that replaces the poses of the playing range by a few keys, so that the user can edit a recorded motion
+// by its curves.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -24,14 +25,14 @@ std::string needs_clip_and_rig(const Editor& editor) {
 
 struct Wanted {
   ReduceSettings settings;
-  double plant_mm = 0;  // 0: feet and hands go as their bones do
+  double plant_mm = 0;  // largest error of the position of planted feet and hands, mm; 0: not limited
   bool is_new = true;
 };
 
 struct Reduced {
   PlantedKeys keys;
-  std::size_t plants = 0;  // number of times that a foot stands or a hand rests
-  double plant_mm = 0;     // how far off they may be
+  std::size_t plants = 0;  // number of times that a foot stands or a hand rests in place
+  double plant_mm = 0;     // largest allowed error of their position, mm
 
   bool is_short() const { return plants > 0 && !(keys.most_off <= plant_mm); }
 };
@@ -57,7 +58,7 @@ std::string summary_of(const Reduced& result) {
   return words;
 }
 
-// Returns a clip that has only the keys.
+// Returns a clip with the reduced keys and no recorded motion.
 Clip keyed_clip(const Clip& source, const ReducedKeys& reduced, int first, int last, const std::string& name) {
   Clip clip{.name = name, .rate = source.rate, .start = first, .range_start = first, .range_end = last};
   clip.keys = reduced.keys;

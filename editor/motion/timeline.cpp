@@ -12,8 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kWindowRate =
-    60;  // playing is never reported as slow at this drawing rate or above, frames per second
+constexpr double kWindowRate = 60;  // at this drawing rate or above, playing is not reported as slow, frames per second
 
 std::shared_ptr<const Clip> clip_part(const Document& document) {
   return document.clips.empty() ? nullptr : document.clips[static_cast<std::size_t>(document.clip)];

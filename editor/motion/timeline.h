@@ -59,7 +59,7 @@ struct Timeline {
     bool on = false;
     std::shared_ptr<MotionPaths> kept;  // the computed points; null: none yet
   } paths;
-  bool seconds = false;       // whether the ruler counts seconds instead of frames
+  bool seconds = false;       // true: the ruler counts seconds instead of frames
   std::set<int> chosen;       // frames of the selected keys
   std::map<int, int> moving;  // while keys are dragged: shown frame of each selected key, by its stored frame
   std::optional<Rect> box;    // the selection rectangle that the user draws around keys
@@ -69,8 +69,8 @@ struct Timeline {
     std::vector<glm::vec2> angles;  // one per sample: angle from rest of the bone (x) and of its parent (y), degrees
   } curve;
 
-  bool shows_graph = false;      // whether the graph editor is shown in place of the markers, the clip and the keys
-  std::shared_ptr<Graph> graph;  // its state (editor/motion/graph.h); null until it is shown
+  bool shows_graph = false;      // true: the graph editor is shown in place of the markers, the clip and the keys
+  std::shared_ptr<Graph> graph;  // state of the graph editor (editor/motion/graph.h); null until it is first shown
 
   // The frames that the timeline shows: the frame at the ruler's left end (`low`) and the number of frames (`count`).
   struct {

@@ -432,7 +432,7 @@ void draw_timeline(Editor& editor, const Rect& rect) {
     fit_window(editor);
   }
   follow_head(editor);
-  // Beside the ruler stands the switch between the rows and the curves.
+  // The button beside the ruler switches between the rows and the graph editor.
   const glm::vec2 corner = rows.low + glm::vec2(look.px(12), look.px(1));
   operator_button(editor, "graph.show", {corner, corner + glm::vec2(look.px(30), look.px(kRulerHeight - 2))}, "",
                   timeline.shows_graph ? ButtonStyle::Soft : ButtonStyle::Plain);

@@ -90,7 +90,7 @@ void draw_ruler(Editor& editor) {
     std::snprintf(text, sizeof text, timeline.seconds && step < 1 ? "%.2f" : "%.0f", at);
     const glm::vec2 corner(x + look.px(4), ruler.low.y + look.px(2));
     const Rect place{corner - look.px(3), corner + text_size(look.fonts.small_mono, text) + look.px(3)};
-    // A number that the tab would cover or that would be cut off is not drawn.
+    // A number is not drawn if the play head's tab would cover it or the ruler's end would cut it off.
     if (intersection(place, tab).empty() && place.high.x <= ruler.high.x + look.px(kRulerEnds))
       put_text(editor, look.fonts.small_mono, look.theme.text2, corner, text);
   }

@@ -13,7 +13,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFurthest = 1e7;     // largest absolute value of a frame number
-constexpr double kLeastScale = 0.01;  // smallest absolute value of a factor of time
+constexpr double kLeastScale = 0.01;  // smallest absolute value of the factor by which time is scaled
 
 void show_under_pointer(Editor& editor) {
   const double frame =
@@ -37,8 +37,8 @@ std::optional<int> key_under_pointer(const Editor& editor) {
   return nearest;
 }
 
-// Returns the shapes of a track's keys when time is scaled by a factor: the slopes go with it, and backwards the way to
-// the key before becomes the way to the next one.
+// Returns the shapes of a track's keys after time is scaled by a factor. The tangents are divided by the factor. A
+// negative factor reverses time: the in and out tangents are swapped, and each span keeps its interpolation.
 template <class Track>
 KeyShapes scaled_shapes(const Track& track, const KeyShapes& shapes, const std::map<int, int>& frame_of,
                         double factor) {
@@ -68,7 +68,7 @@ void scale_keys(Keys& keys, const std::map<int, int>& frame_of, double factor) {
   move_keys(keys, frame_of);
 }
 
-//   clip  the shown clip when the change began; if a job shows another one by now, nothing is changed
+// clip  the shown clip when the change began. If a job has meanwhile shown another clip, nothing is changed.
 void commit_change(Editor& editor, const std::shared_ptr<const Clip>& clip, KeyChange change, double factor = 1) {
   const std::map<int, int> frame_of = std::exchange(editor.timeline->moving, {});
   if (clip != graph_clip(editor)) return;
@@ -134,7 +134,8 @@ class ChangingKeys final : public Modal {
       value_ = number_.typed() ? std::round(number_.value()) : std::round(frames);
     }
     value_ = std::clamp(value_, -kFurthest, kFurthest);
-    // Keys that fell on one another would be lost, and their slopes be infinite.
+    // A factor near 0 would move keys onto the same frame, where all but one would be lost, and would make tangents
+    // infinite. So the factor is limited.
     if (change_ == KeyChange::Scale) value_ = std::copysign(std::max(std::abs(value_), kLeastScale), value_);
     auto& moving = editor.timeline->moving;
     moving.clear();
