@@ -40,8 +40,8 @@ void rename(Editor& editor) {
   begin_renaming(editor, "tissues" + std::to_string(tissue->label), tissue->name);
 }
 
-// Moves one step back or forward in the undo history. Afterwards the bones that the step restored are selected; if
-// there are none, the bones with the same names as before are selected.
+// Moves one step back or forward in the undo history. Then selects the bones that the step restored. If there are
+// none, selects the bones that have the names of the bones selected before.
 void step(Editor& editor, bool (History::*go)()) {
   const std::shared_ptr<const Armature> before = editor.document().armature;
   (editor.history.*go)();

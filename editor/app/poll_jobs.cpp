@@ -28,7 +28,7 @@ bool poll_jobs(Editor& editor) {
   if (!changed) return false;
   const auto volume = editor.document().volume;
   if (volume != volume_before) {
-    // An edit of labels changes a body in its place: what is looked at and selected stays.
+    // If the grid stays the same, only labels were edited, so the cameras and the selection do not change.
     if (volume && volume_before && volume->grid == volume_before->grid) {
       keep_present_tissues(editor);
     } else {

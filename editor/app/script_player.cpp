@@ -168,7 +168,7 @@ void Player::wait_for_jobs() {
   const auto start = std::chrono::steady_clock::now();
   do {
     while (editor_.busy()) {
-      frame();  // the script's clock stands still, so the result does not depend on the job's duration
+      frame();  // the script's clock does not advance, so the result does not depend on the job's duration
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob))
         throw Error("the job does not end", "wait-job", "look at what it does");

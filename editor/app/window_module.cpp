@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Loads the module that holds GLFW.
+// Loads the module limber_window.so, which contains GLFW.
 #include "core/base/error.h"
 #include "core/platform/module.h"
 #include "editor/app/glfw_window.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The options of `limber render` that make a figure of its picture.
+// The options of `limber render` that turn its picture into a figure for a page.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,8 @@ struct FigureFlags {
 };
 
 void add_figure_options(CLI::App& command, FigureFlags& flags);
-// Returns the figure that the options ask for; nothing if they ask for none. Throws Error when they are wrong.
+// Returns the figure options that the command line gives; nothing if it asks for no figure. Throws Error for wrong
+// values.
 std::optional<FigureOptions> figure_of(const FigureFlags& flags);
 
 }  // namespace limber::editor

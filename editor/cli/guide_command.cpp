@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Defines the command `limber guide --html FOLDER`, which writes the user guide as pages for a browser. The keys in it
-// are those of the first key map, which a new user has.
+// Defines the command `limber guide --html FOLDER`, which writes the user guide as HTML pages. The keys named in the
+// pages are those of the default key map.
 #include <memory>
 
 #include "core/cmd/command_files.h"

@@ -23,17 +23,17 @@ Colour colour_of(const Look& look, Block::Kind kind, Run::Style style) {
   return strong ? look.theme.text : look.theme.text2;
 }
 
-// A word of a run, placed by the walk below.
+// A word of a run, with the position that for_each_word() gives it.
 struct Word {
   const Run& run;
   std::string_view text;
-  glm::vec2 where;  // its upper left corner
+  glm::vec2 where;  // upper left corner of the word, window pixels
   float width;
-  int index;   // counts the words of the block
-  float left;  // where lines begin
+  int index;   // number of the word in its block, from 0
+  float left;  // x coordinate where lines begin, window pixels
 };
 
-// Returns how many bytes of the word, at least one character, are no wider than `width`.
+// Returns the number of bytes of the word that fit into `width` pixels, in whole characters, at least one.
 std::size_t bytes_within(ImFont* font, std::string_view word, float width) {
   std::size_t fitting = 0;
   for (std::size_t end = 1; end <= word.size(); ++end) {
@@ -44,8 +44,8 @@ std::size_t bytes_within(ImFont* font, std::string_view word, float width) {
   return fitting;
 }
 
-// Places the words of a block, and calls `draw` for each. A word that is wider than a line goes on in the next one.
-// Returns the y coordinate of the lower end.
+// Lays out the words of a block in lines, and calls `draw` for each word. Splits a word that is wider than a line.
+// Returns the y coordinate of the block's lower end.
 float for_each_word(const Look& look, const Block& block, float left, float right, float y, float line,
                     const std::function<void(const Word&)>& draw) {
   float x = left;
@@ -86,7 +86,8 @@ void draw_word(Editor& editor, const Block& block, BlockPlace& place, const Word
       font, font->FontSize, im(glm::round(glm::vec2(word.where.x, word.where.y + (line - font->FontSize) / 2))), colour,
       word.text.data(), word.text.data() + word.text.size());
   if (word.run.style != Run::Style::Link) return;
-  // A word of the same link before it on the line: the blank between them belongs to the link, too.
+  // If the line has another word of the same link before this one, the space between the words belongs to the link
+  // too.
   const bool goes_on = word.text.data() != word.run.text.data() && word.where.x > word.left;
   const float blank = goes_on ? text_size(font, " ").x : 0;
   const Rect rect{word.where - glm::vec2(blank, 0), word.where + glm::vec2(word.width, line)};

@@ -10,7 +10,7 @@
 
 namespace limber::editor {
 
-// A picture of a document as a texture. The texture is 0 where the picture cannot be shown.
+// A picture of a document as an OpenGL texture. The texture is 0 if the picture cannot be shown.
 struct DocumentPicture {
   unsigned texture = 0;
   glm::vec2 size{0};  // pixels
@@ -18,15 +18,15 @@ struct DocumentPicture {
 
 struct BlockPlace {
   float left = 0, right = 0;  // x coordinates between which lines are wrapped
-  std::string name;           // begins the names of the block's widgets; unlike those of other blocks
+  std::string name;           // prefix of the names of the block's widgets; differs for each block
   std::function<DocumentPicture(const std::string& file)> picture = {};
   std::string clicked = {};  // set by draw_block(): the target of the link that was clicked in this frame
-  bool marked = false;       // draws a background that shows where a search has led
+  bool marked = false;       // true: the block gets a highlighted background, because a search has led to it
 };
 
-// Draws a block, whose upper end has the y coordinate `y`. Returns the y coordinate of its lower end.
+// Draws a block with its upper end at the y coordinate `y`. Returns the y coordinate of its lower end.
 float draw_block(Editor& editor, const Block& block, BlockPlace& place, float y);
-// The distance to the next block, in pixels at scale 1.
+// Returns the distance from this block to the next one, pixels at scale 1.
 float gap_below(const Block& block);
 
 }  // namespace limber::editor

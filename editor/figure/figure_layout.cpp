@@ -12,18 +12,19 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kPoint = 25.4 / 72;  // mm
+constexpr double kPoint = 25.4 / 72;  // one typographic point, mm
 constexpr double kLetterSize = 10 * kPoint, kTitleSize = 8 * kPoint, kTextSize = 7 * kPoint;
-constexpr double kLine = 1.3;   // distance of base lines, in units of the font's size
-constexpr double kRise = 0.75;  // height of capitals above the base line, with a little air, in the same units
+constexpr double kLine = 1.3;   // distance between the baselines of two lines, in units of the font size
+constexpr double kRise = 0.75;  // height of capitals above the baseline plus a small margin, in units of the font size
 constexpr double kMargin = 1.5, kGap = 1.5, kColumnGap = 3;
 constexpr double kSwatch = 0.8 * kTextSize, kSwatchGap = 1;
 constexpr double kBarHeight = 0.5, kTickHeight = 1.4;
-constexpr double kLongestBar = 0.3;        // share of the picture's width
-constexpr double kSmallestPicture = 0.35;  // share of the figure's height
-constexpr int kMostRounds = 4;             // of a layout whose legend changes which tissues the picture shows
+constexpr double kLongestBar = 0.3;        // largest length of the scale bar, as a fraction of the picture's width
+constexpr double kSmallestPicture = 0.35;  // smallest height of the picture, as a fraction of the figure's height
+// largest number of layout rounds, in case each new legend changes which tissues the picture shows
+constexpr int kMostRounds = 4;
 
-// Returns the longest of 1, 2 and 5 times a power of ten that is not longer than `most`.
+// Returns the largest number that is 1, 2 or 5 times a power of ten and not larger than `most`.
 double round_length(double most) {
   const double ten = std::pow(10, std::floor(std::log10(most)));
   return most >= 5 * ten ? 5 * ten : most >= 2 * ten ? 2 * ten : ten;
@@ -50,7 +51,7 @@ class Composer {
     add_heading();
   }
 
-  // Returns the figure with the legend, without the scale bar's length.
+  // Returns the layout with the legend. Room for the scale bar is reserved, but its length is not set yet.
   FigureLayout with_legend(const std::vector<LegendEntry>& legend) {
     if (!legend.empty()) add_legend(legend);
     if (result_.options.scale_bar) {
@@ -69,12 +70,12 @@ class Composer {
     return result_;
   }
 
-  // Returns the figure with a scale bar for a picture with this scale.
+  // Returns the layout with the scale bar for a picture with this scale.
   FigureLayout with_bar(FigureLayout figure, double millimetres_per_pixel, bool at_focus) const {
     if (!figure.options.scale_bar) return figure;
     const double pixel = 25.4 / figure.options.dots_per_inch;
     figure.bar_millimetres = round_length(kLongestBar * figure.picture_pixels.x * millimetres_per_pixel);
-    // The bar ends at the end of a pixel, so that its drawn length is off by half a pixel at most.
+    // The bar ends at a pixel's edge, so rounding changes its drawn length by half a pixel at most.
     const double right = (figure.picture_low.x + figure.picture_pixels.x) * pixel,
                  left = right - figure.bar_millimetres / millimetres_per_pixel * pixel,
                  middle = bar_base_ - kTickHeight / 2;
@@ -83,7 +84,8 @@ class Composer {
       figure.boxes.push_back({{x, bar_base_ - kTickHeight}, {x + kBarHeight, bar_base_}, glm::vec3(ink_)});
     const std::string text = text_of_length(figure.bar_millimetres) + (at_focus ? " at the focus" : "");
     const double width = lettering_.width(text, false) * kTextSize;
-    // Beside the bar; the base line lies so that digits have their middle at the bar's.
+    // The bar's text is to the left of the bar. Its baseline is chosen so that digits are vertically centred on the
+    // bar.
     figure.texts.push_back({{left - kSwatchGap - width, middle + 0.36 * kTextSize}, kTextSize, false, text, width});
     if (left - kSwatchGap - width < 0)
       throw Error("the figure is too narrow for its scale bar", "figure", "make it wider, or leave out the scale bar");
@@ -112,7 +114,8 @@ class Composer {
     top_ = base + kLine * kTitleSize * std::max(0.0, static_cast<double>(lines.size()) - 1) + 0.25 * kTitleSize + kGap;
   }
 
-  // Adds the legend at the bottom, in as many columns as its longest name allows, each filled from top to bottom.
+  // Adds the legend at the bottom, in as many columns as the longest name allows. Each column is filled from top to
+  // bottom.
   void add_legend(const std::vector<LegendEntry>& legend) {
     const double room = result_.options.size.x - 2 * kMargin, before = kSwatch + kSwatchGap;
     double widest = 0;
@@ -149,7 +152,7 @@ class Composer {
 
   const Lettering& lettering_;
   FigureLayout result_;
-  float ink_;  // grey of texts and of the scale bar
+  float ink_;  // grey value of the texts and the scale bar, [0, 1]
   double top_, bottom_, bar_base_ = 0;
 };
 
@@ -174,7 +177,8 @@ FigureLayout figure_layout(const FigureOptions& options, const FigureSource& sou
   std::vector<LegendEntry> legend;
   auto composer = std::make_unique<Composer>(options, lettering);
   FigureLayout figure = composer->with_legend(legend);
-  // The legend takes room from the picture, and a smaller picture can show other tissues.
+  // The legend reduces the size of the picture, and a smaller picture may show fewer tissues. So legend and picture
+  // are laid out again until they agree.
   for (int round = 0; options.legend && round < kMostRounds; ++round) {
     std::vector<LegendEntry> shown = source.legend(figure.picture_pixels);
     if (shown == legend) break;

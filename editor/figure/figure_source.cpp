@@ -11,15 +11,16 @@ namespace limber::editor {
 
 namespace {
 
-// Line widths are made for pictures of this height and resolution. Lines of one dot at kFinestLines dots per inch (a
-// quarter of a point) are the finest that print well.
+// Height in pixels and resolution in dots per inch for which the renderer's line widths are designed. Lines on the
+// page are at least one dot wide at kFinestLines dots per inch (a quarter of a point), the thinnest that print well.
 constexpr double kScreenHeight = 700, kScreenResolution = 96, kFinestLines = 288;
-// A tissue is in the legend if it covers more than this share of the picture: less cannot be recognized.
+// A tissue is listed in the legend if it covers at least this fraction of the picture. A smaller area cannot be
+// recognized.
 constexpr double kSmallestShare = 1.0 / 20000;
-constexpr double kLegendPixels = 1e6;  // most pixels of the picture in which tissues are counted for the legend
-constexpr int kRows = 16;              // of a slice that one thread looks up together
+constexpr double kLegendPixels = 1e6;  // largest size of the picture in which the legend's tissues are counted, pixels
+constexpr int kRows = 16;              // number of a slice's rows that one parallel work block looks up
 
-// Returns the size of the picture in which the tissues of a picture of this size are counted.
+// Returns the size of the smaller picture in which the legend's tissues are counted, for a picture of the given size.
 glm::ivec2 legend_size(const glm::ivec2& size) {
   const double shrink = std::min(1.0, std::sqrt(kLegendPixels / (double(size.x) * size.y)));
   return glm::max(glm::ivec2(glm::dvec2(size) * shrink), glm::ivec2(1));
@@ -74,7 +75,8 @@ FigureSource body_source(render::Renderer& renderer, const render::Scene& scene,
 FigureSource slice_source(const render::Scene& scene, const SliceCameraAt& camera, render::SliceDisplay display,
                           const std::shared_ptr<const TissueTable>& tissues) {
   FigureSource source;
-  // Over an image that nothing covers, tissues show at most by their outlines.
+  // If a grey image is shown without tissue colours over it, tissues are visible only as outlines. Without outlines,
+  // the legend is empty.
   const bool hidden =
       scene.grey && scene.grey->image && scene.grey->tissues == 0 && display != render::SliceDisplay::Outline;
   source.legend = [scene, camera, tissues, hidden](const glm::ivec2& whole) {

@@ -15,7 +15,7 @@ namespace limber::editor {
 
 namespace {
 
-// Returns the characters of a text in UTF-8. Bytes that are no UTF-8 become the replacement character.
+// Returns the characters of a UTF-8 text. Invalid bytes become the replacement character U+FFFD.
 std::vector<char32_t> characters_of(const std::string& text) {
   std::vector<char32_t> result;
   for (std::size_t i = 0; i < text.size();) {
@@ -44,7 +44,8 @@ std::size_t after_character(const std::string& text, std::size_t at) {
 }  // namespace
 
 void draw_over(std::uint8_t* rgba, const glm::ivec3& colour, int alpha) {
-  const int under = rgba[3] * (255 - alpha), sum = alpha * 255 + under;  // both times 255
+  // opacities of the old and of the resulting pixel, scaled by 255
+  const int under = rgba[3] * (255 - alpha), sum = alpha * 255 + under;
   if (sum == 0) return;
   for (int c = 0; c < 3; ++c)
     rgba[c] = static_cast<std::uint8_t>((colour[c] * alpha * 255 + rgba[c] * under + sum / 2) / sum);

@@ -18,15 +18,15 @@ class Lettering {
   Lettering(const Lettering&) = delete;
   Lettering& operator=(const Lettering&) = delete;
 
-  // Returns the width of a text in UTF-8, in units of the font's size.
+  // Returns the width of a UTF-8 text, in units of the font size.
   double width(const std::string& text, bool bold) const;
-  // Breaks a text into lines no wider than `most`, in units of the font's size: between words, or within a word that is
-  // wider than a line.
+  // Breaks a text into lines that are no wider than `most`, in units of the font size. Lines break between words; a
+  // word that is wider than a line is split.
   std::vector<std::string> lines(const std::string& text, bool bold, double most) const;
   // Draws a text over a picture.
-  //   left, base  where the text begins, on its base line, pixels
-  //   size        of the font, pixels
-  //   grey        0 to 255
+  //   left_base  start of the text on its baseline, pixels
+  //   size       font size, pixels
+  //   grey       grey value of the text, 0 to 255
   void draw(render::Image& image, const std::string& text, bool bold, const glm::dvec2& left_base, double size,
             int grey) const;
 
@@ -35,7 +35,7 @@ class Lettering {
   std::unique_ptr<Faces> faces_;
 };
 
-// Draws a colour over a pixel of a picture that may be transparent.
+// Blends a colour over a pixel of a picture, which may be transparent. `alpha` is 0 to 255.
 void draw_over(std::uint8_t* rgba, const glm::ivec3& colour, int alpha);
 
 }  // namespace limber::editor

@@ -16,12 +16,12 @@ namespace limber::editor {
 namespace {
 
 constexpr int kPollMilliseconds = 50;
-constexpr std::size_t kMostComplaint = 4000;  // bytes of ffmpeg's messages that are kept
+constexpr std::size_t kMostComplaint = 4000;  // largest number of bytes of ffmpeg's error messages that are kept
 
 std::string ending_of_video(const Path& path) { return lower_case(path.extension().string()); }
 
-// Returns the arguments of ffmpeg for raw pictures from its standard input. Sides are padded to even numbers of pixels,
-// which the colours of both formats (4:2:0) need.
+// Returns the command line of ffmpeg, which reads raw pictures from its standard input. Width and height are padded to
+// even numbers, because the 4:2:0 colours of both video formats need them.
 std::vector<std::string> words_for(const Path& made, const glm::ivec2& size) {
   std::vector<std::string> words = {"ffmpeg",
                                     "-nostdin",
@@ -102,7 +102,7 @@ struct Video::Encoder {
       complaint.append(bytes, std::min(static_cast<std::size_t>(count),
                                        kMostComplaint - std::min(kMostComplaint, complaint.size())));
   }
-  // Returns the Error that tells ffmpeg's first line of complaint.
+  // Returns an Error with the first line of ffmpeg's error messages.
   Error failure() {
     listen();
     const std::string line = complaint.substr(0, complaint.find('\n'));
@@ -131,7 +131,7 @@ void Video::add(const render::Image& picture) {
 
 void Video::finish() {
   Encoder& my = *encoder_;
-  my.pictures.ours.close();  // the end of the pictures
+  my.pictures.ours.close();  // closing the pipe tells ffmpeg that there are no more pictures
   while (!my.program->has_ended()) {
     if (my.progress.cancelled()) throw Cancelled();
     wait_to_read({&my.errors.read_end}, kPollMilliseconds);

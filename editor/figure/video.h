@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes pictures as a video, .mp4 (H.264) or .webm (VP9), through the program ffmpeg where it is installed. The
-// pictures go to its standard input as they are drawn; no shell is involved.
+// Writes pictures as a video, .mp4 (H.264) or .webm (VP9), by the program ffmpeg if it is installed. Pictures are
+// written to ffmpeg's standard input as soon as they are drawn. ffmpeg is started without a shell.
 #pragma once
 
 #include <memory>
@@ -13,20 +13,20 @@ namespace limber::editor {
 
 inline constexpr int kPicturesPerSecond = 24;
 
-bool is_video(const Path& path);  // by the name's ending
+bool is_video(const Path& path);  // returns true if the file name ends in .mp4 or .webm
 // Throws Error when ffmpeg is not installed.
 void require_ffmpeg(const Path& path);
 
 class Video {
  public:
-  // Starts ffmpeg. The video appears at `path` only when finish() is called; until then it grows in a folder of its own
-  // below `scratch` ("": the system's folder for temporary files). Throws Error when ffmpeg is not installed or fails.
+  // Starts ffmpeg. The video is written to a temporary folder below `scratch` ("": the system's folder for temporary
+  // files), and finish() moves it to `path`. Throws Error if ffmpeg is not installed or fails.
   Video(const Path& path, const glm::ivec2& size, const std::string& scratch, Progress& progress);
   ~Video();  // ends ffmpeg; without finish(), no file is left
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 
-  void add(const render::Image& picture);  // of the size given before
+  void add(const render::Image& picture);  // the picture must have the size given to the constructor
   void finish();
 
  private:

@@ -90,7 +90,8 @@ std::string figure_svg(const FigureLayout& layout, const render::Image& picture)
          base64(render::png_of(picture, options.dots_per_inch)) + "\"/>\n";
   if (layout.bar_millimetres > 0) svg += svg_box(layout.bar.low, layout.bar.high, layout.bar.colour);
   for (const FigureBox& box : layout.boxes) svg += svg_box(box.low, box.high, box.colour);
-  // Programs without the font fit another one into the same width, so that nothing is cut off.
+  // The attribute textLength gives the width of each text. A program without the font fits another font into this
+  // width, so that nothing is cut off.
   for (const FigureText& line : layout.texts) {
     std::snprintf(text, sizeof text,
                   "<text x=\"%.4f\" y=\"%.4f\" font-size=\"%.4f\" font-weight=\"%d\" textLength=\"%.4f\" "

@@ -48,13 +48,13 @@ void keep_thumbnail(Editor& editor, const Path& path) {
   const auto picture = std::make_shared<render::View3D>(editor.views->renderer);
   const Path file = cached_thumbnail(editor.folders.cache, path);
   render::Scene scene = thumbnail_scene(editor);
-  // These may still belong to the body that was shown before.
+  // Remove these parts of the scene, because they may still belong to the body that was shown before.
   scene.pose.reset();
   scene.posed_from_rest.clear();
   scene.weights.reset();
   scene.mesh.reset();
   scene.grey.reset();
-  // One step of the picture in each frame, after the views have shown their own pictures of this body.
+  // Draws a part of the picture in each frame, after the views have finished their own pictures of this body.
   editor.each_frame.push_back(
       [picture, file, time = 0.0, is_shown = false, scene, camera = editor.views->body.camera](Editor& e) mutable {
         e.touch();

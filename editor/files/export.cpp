@@ -64,7 +64,7 @@ void check_export(ExportKind kind, const Path& path) {
   else check_place(path);
 }
 
-// A video turns once in five seconds.
+// A video of a turntable makes one turn in five seconds.
 constexpr int kPicturesOfVideo = 5 * kPicturesPerSecond;
 
 render::Camera turned_about(const render::Camera& camera, double angle) {

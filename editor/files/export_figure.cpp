@@ -15,7 +15,8 @@ namespace {
 
 using Paper = FigureOptions::Paper;
 
-constexpr double kUploadTime = 1;  // time in which what a slice shows is uploaded between two checks, seconds
+// time limit for uploading the slice's data between two checks whether the user has cancelled, s
+constexpr double kUploadTime = 1;
 
 bool shows_slice(const Editor& editor) {
   return editor.views->active != ViewId::Body && editor.layout.place_of(editor.views->active);
@@ -26,7 +27,8 @@ glm::dvec2 size_of_active(const Editor& editor) {
   return place ? glm::dvec2(place->size()) : glm::dvec2(16, 9);
 }
 
-// Returns the view's camera for a picture of another shape, moved back if that is narrower, so that it shows the same.
+// Returns the view's camera for a picture of another aspect ratio. If the picture is narrower than the view, the
+// camera is moved back, so that the picture shows the same part of the body.
 CameraAt camera_for(const Editor& editor) {
   const glm::dvec2 view = size_of_active(editor);
   return [camera = editor.views->body.camera, view](const glm::ivec2& size) {
@@ -54,7 +56,8 @@ FigureOptions options_of(const std::vector<FormField>& fields) {
   return options;
 }
 
-// Returns the scene with lines as wide as the figure needs them, whatever the scale of the editor's own pictures.
+// Returns the scene with the line width that the figure's size and resolution require, independent of the editor's own
+// scale.
 render::Scene for_page(render::Scene scene, const FigureLayout& layout) {
   scene.line_scale = figure_line_scale(layout);
   return scene;

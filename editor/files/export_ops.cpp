@@ -23,7 +23,8 @@ std::string stem_of(const Editor& editor) {
   return editor.name.empty() ? "Untitled" : Path(editor.name).stem().string();
 }
 
-// Returns the proposed name of what is made of the shown motion: that of its clip, without what file names cannot have.
+// Returns the proposed file name for exports of the shown motion: the clip's name, without characters that file names
+// cannot contain.
 std::string motion_stem(const Editor& editor) {
   const Clip* clip = editor.document().shown_clip();
   std::string name = clip ? clip->name : "";
@@ -177,7 +178,8 @@ std::vector<Operator> export_operators() {
                        "Export the active motion as BVH.",
                        ExportKind::Motion,
                        {{"BVH", {".bvh"}}},
-                       "-motion"}),  // an imported file has the clip's name: no export is proposed over a capture
+                       // the suffix keeps the export from overwriting the imported BVH file, which has the clip's name
+                       "-motion"}),
       export_operator({"file.export_gltf",
                        "glTF...",
                        "Export the surface, skeleton, weights and every clip for other programs.",

@@ -39,7 +39,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The name of a volume's file without ".nii.gz", ".seg.nrrd" or the like.
+// Returns a volume file's name without its extension, which may have two parts (".nii.gz", ".seg.nrrd").
 std::string name_of_file(const Path& path) {
   const Path stem = path.stem();
   const bool has_two = stem.extension() == ".nii" || stem.extension() == ".seg";
@@ -113,13 +113,13 @@ std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
 struct ReadVolume {
   std::optional<VolumeFile> labels;
   std::shared_ptr<const GreyVolume> image;
-  std::shared_ptr<const GreyLevels> levels;  // of the image; null: there is none
+  std::shared_ptr<const GreyLevels> levels;  // grey values of the image; null: there is no image
   std::string doubt;                         // why the file seems to be a grey image; "": it is a label volume
-  bool is_image = false;                     // true: it is one for certain
-  std::shared_ptr<Opened> as_project;        // a project for the image alone; null: there is no image
+  bool is_image = false;                     // true: the file is certainly a grey image
+  std::shared_ptr<Opened> as_project;        // project that shows the image without labels; null: there is no image
 };
 
-// Returns a project for a bare image that was read from `path`. `agreed` and `then` are left to the caller.
+// Returns a project for an image without labels that was read from `path`. The caller sets `agreed` and `then`.
 std::shared_ptr<Opened> project_for_image(const GreyLevels& image, const Path& path) {
   auto opened = std::make_shared<Opened>();
   opened->document = document_for_image(image);
@@ -147,7 +147,7 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
   if (read.doubt.empty()) return read;
   read.image = shared(read_grey_volume(path, progress));
   read.levels = levels_of(*read.image);
-  // Labels are not negative, and a series of DICOM images whose values look grey is what a scanner made.
+  // Labels are not negative. A DICOM series whose values look like grey values is an image from a scanner.
   read.is_image = !read.labels || read.levels->least < 0 || read.image->type.format == "DICOM";
   read.as_project = project_for_image(*read.levels, path);
   return read;

@@ -30,8 +30,8 @@ Path numbered(const Path& path, int number) {
   return path.parent_path() / (path.stem().string() + suffix + path.extension().string());
 }
 
-// The frames of the clip that become pictures. A video has a fixed number of pictures per second, a clip any. Throws
-// Error if there are too many.
+// Returns the frames of the clip that become pictures: every frame, or for a video as many as its fixed number of
+// pictures per second needs. Throws Error if there are too many.
 std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
   const auto [low, high] = playing_range(editor);
   const double step = is_video(path) ? frame_rate(editor) / kPicturesPerSecond : 1;
@@ -47,7 +47,7 @@ std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
   return frames;
 }
 
-// Poses the scene for one frame after the other.
+// Poses the scene for one frame of the clip after another.
 class PosedScenes {
  public:
   PosedScenes(Editor& editor, std::vector<int> frames)
@@ -59,7 +59,7 @@ class PosedScenes {
     if (!clip_.problem().empty()) throw Error("the clip cannot be shown", clip_.clip()->name, clip_.problem());
   }
 
-  // Returns true once the scene shows the frame of this picture.
+  // Poses the scene for a picture. Returns false while the frame's preview map is still being computed.
   bool pose(int picture, render::Scene& scene) {
     const int frame = frames_[static_cast<std::size_t>(picture)];
     const PoseWish wish = wish_for_pose(document_, clip_.at(frame), blend_);
@@ -78,11 +78,13 @@ class PosedScenes {
   const Document document_;
   const Blend blend_;
   const std::vector<int> frames_;
-  const std::shared_ptr<MapMaker> maker_;  // makes maps as fine as those that the 3D view shows at rest
+  // computes preview maps as fine as those that the 3D view shows when the pose does not change
+  const std::shared_ptr<MapMaker> maker_;
 };
 
-// Returns where the body is that the 3D view shows: in the clip's motion, or where the shown frame is outside of the
-// frames that play or its pose was changed by hand, in the pose itself.
+// Returns the body's centre as the 3D view shows it now. If the shown pose is the clip's pose at the shown frame, this
+// is the centre in the clip's motion. Otherwise (frame outside the playing range, or pose changed by hand), it is the
+// centre in the shown pose.
 glm::dvec3 shown_centre(const Document& document, FollowedCentre& centre) {
   const Clip& clip = *document.shown_clip();
   const bool plays = document.frame >= clip.range_start && document.frame <= clip.range_end;
@@ -91,8 +93,8 @@ glm::dvec3 shown_centre(const Document& document, FollowedCentre& centre) {
   return is_clip_s ? centre.at(document.frame) : centre.in_pose(pose_of(document));
 }
 
-// Returns the camera of each picture: the 3D view's own, or one that goes along with the body and has it in the same
-// place as the 3D view shows it now.
+// Returns the function that gives the camera of each picture. The camera stands still at the 3D view's position, or
+// moves with the body and keeps its current position relative to the body.
 std::function<render::Camera(int picture)> camera_of_pictures(const Editor& editor, const std::vector<int>& frames,
                                                               MotionCamera kind) {
   const render::Camera still = editor.views->body.camera;

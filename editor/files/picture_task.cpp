@@ -9,15 +9,15 @@ namespace limber::editor {
 
 namespace {
 
-// Passes pictures from the editor's thread to the task.
+// Passes one picture at a time from the editor's thread, which draws, to the task's thread.
 struct Board {
   std::mutex mutex;
   std::condition_variable changed;
   std::optional<render::Image> picture;
-  std::exception_ptr failure;  // why no further picture could be drawn
+  std::exception_ptr failure;  // the exception that stopped drawing; null: none
 };
 
-// Waits for the next picture. Throws what was thrown while it was drawn.
+// Waits in the task's thread for the next picture. If drawing threw an exception, throws it again.
 render::Image next_picture(Board& board, int number, int count, Progress& progress) {
   for (;;) {
     progress.update("pictures", static_cast<double>(number) / count);
@@ -32,33 +32,33 @@ render::Image next_picture(Board& board, int number, int count, Progress& progre
   }
 }
 
-// The picture that the editor draws, a share in each frame.
+// The picture that is being drawn; each frame of the editor draws a part of it.
 struct Drawing {
   std::unique_ptr<render::View3D> view;
   render::Scene scene;
   int picture = 0;
-  bool prepared = false;  // the scene is the picture's
-  bool drawn = false;     // the picture is complete, and waits until the task has taken the one before
+  bool prepared = false;  // true: the scene is ready for this picture
+  bool drawn = false;     // true: the picture is complete, but the task has not taken the previous picture yet
   double time = 0;
 };
 
-// Draws a share of the task's next picture. Returns true when the picture is complete.
+// Draws a part of the task's next picture. Returns true when the picture is complete.
 bool draw_share(Drawing& drawing, const PictureTask& task) {
   drawing.view->draw(drawing.scene, task.camera(drawing.picture), task.size, drawing.time += 1);
   if (!drawing.view->complete()) return false;
-  if (drawing.view->scale() > 1)  // nothing is averaged at rest, so the picture has stayed coarse
+  if (drawing.view->scale() > 1)  // the view was not refined to full resolution, so draw it once more at scale 1
     drawing.view->draw(drawing.scene, task.camera(drawing.picture), task.size, drawing.time, 1);
   return true;
 }
 
-// Draws a share of a picture, or passes a drawn one to the task. Returns false after the last picture.
+// Draws a part of the next picture, or passes the complete picture to the task. Returns false after the last picture.
 bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board& board) {
   const auto taken = [&] {
     const std::lock_guard lock(board.mutex);
     return !board.picture;
   };
-  if (drawing.drawn && !taken()) return true;  // the task's progress wakes the editor again
-  // While the scene is awaited, nothing has to be drawn, and the task's progress wakes the editor.
+  if (drawing.drawn && !taken()) return true;  // wait: the task's progress update will wake the editor again
+  // While the scene is not ready, draw nothing; the task's progress update wakes the editor again.
   if (task.prepare && !drawing.prepared) drawing.prepared = task.prepare(drawing.picture, drawing.scene);
   if (task.prepare && !drawing.prepared) return true;
   editor.touch();
@@ -85,10 +85,10 @@ void start_picture_task(Editor& editor, PictureTask wanted) {
     return task->finish(progress);
   });
   editor.each_frame.push_back([id, board, task, drawing](Editor& e) {
-    if (!e.tasks.contains(id)) return false;  // the job has ended, perhaps before it began
+    if (!e.tasks.contains(id)) return false;  // the job has ended, possibly before its first picture
     try {
       return draw_next(e, *drawing, *task, *board);
-    } catch (...) {  // becomes the failure of the job, whose thread throws it again
+    } catch (...) {  // passed to the job's thread, which throws it again and so fails
       const std::lock_guard lock(board->mutex);
       board->failure = std::current_exception();
       board->changed.notify_all();

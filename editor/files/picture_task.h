@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws pictures as fine as they are at rest, and hands them to a task that writes them. The editor's thread draws,
-// because it owns the GL context, in small shares of each frame, so that the editor stays responsive. Another thread
-// writes.
+// Draws pictures at full quality and passes them to a task that writes them. The editor's thread draws, because it
+// owns the OpenGL context. It draws a small part in each frame, so that the editor stays responsive. Another thread
+// writes the files.
 #pragma once
 
 #include "editor/context/editor.h"
@@ -9,15 +9,15 @@
 namespace limber::editor {
 
 struct PictureTask {
-  std::string label;    // of the job
+  std::string label;    // label of the job
   render::Scene scene;  // a copy, so that edits do not change the later pictures
   glm::ivec2 size{0};
   int pictures = 1;
   std::function<render::Camera(int picture)> camera;
-  // Changes the scene for a picture, in the editor's thread. Called once per frame until it returns true: what it waits
-  // for is then there. Empty: all pictures show the same scene.
+  // Prepares the scene for a picture. It is called in the editor's thread once per frame until it returns true, which
+  // means that the scene is ready. Empty: all pictures show the same scene.
   std::function<bool(int picture, render::Scene& scene)> prepare;
-  // These functions run in the task's thread: `take` for each picture in order, then `finish`.
+  // `take` and `finish` run in the task's thread: `take` for each picture in order, then `finish` once.
   std::function<void(int picture, const render::Image& image, Progress& progress)> take;
   std::function<Finish(Progress& progress)> finish;
 };

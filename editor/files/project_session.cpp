@@ -132,7 +132,7 @@ void autosave(Editor& editor) {
   save_project(editor);
 }
 
-// What the pointer does began in the project that closes, and must not go on in the next one.
+// Cancels the running modal tool, drag and button press, because they belong to the project that closes.
 void end_gestures(Editor& editor) {
   if (const auto modal = std::exchange(editor.modal, nullptr)) modal->cancel(editor);
   if (const auto drag = std::exchange(editor.drag, std::nullopt); drag && drag->cancelled) drag->cancelled(editor);

@@ -98,7 +98,8 @@ void restore_image(Editor& editor, const Json& json) {
   reopen_image(editor, file, json.contains("level") ? std::optional(shown) : std::nullopt);
 }
 
-// Stores the pose below the constraints where the user made it by hand: the document holds only what they made of it.
+// Stores the free pose (the pose before constraints are applied) if the user made it by hand. The document contains
+// only the pose after the constraints.
 void add_free_pose(Json& json, const Editor& editor) {
   const auto free = free_pose_by_hand(editor);
   if (!free) return;
@@ -157,10 +158,11 @@ std::string editor_state(const Editor& editor) {
                      {"width", views.image->width},
                      {"tissues", views.image->tissues},
                      {"rendering", static_cast<int>(views.image->rendering)}};
-  else if (!views.image_path.empty()) json["image"] = {{"path", views.image_path.string()}};  // not there now
+  // the image's file was not found, but its path is kept
+  else if (!views.image_path.empty()) json["image"] = {{"path", views.image_path.string()}};
   add_free_pose(json, editor);
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
-  // A file's name may hold bytes that are no text; the state is stored all the same.
+  // The path may contain bytes that are not valid UTF-8. They are replaced, so that the state is stored in any case.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

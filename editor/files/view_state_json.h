@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Writes and reads the state of the editor that a project's file stores beside the document: workspace, window
-// arrangement, cameras, display settings. The format is JSON. For a value that cannot be read, the editor keeps its
-// own.
+// Writes and reads the editor's state that a project file stores in addition to the document: workspace, window
+// arrangement, cameras, display settings. The format is JSON. If a value cannot be read, the editor keeps its current
+// value.
 #pragma once
 
 #include <string>

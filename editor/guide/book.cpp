@@ -52,7 +52,7 @@ std::optional<Ranked> rank_page(const Page& page, int index, const std::vector<s
 
   Ranked best{{index, 0, ""}, 4};
   std::size_t most = 0;
-  std::string first;  // the page's first sentence stands beside a title that matches
+  std::string first;  // the page's first sentence, which is shown if only the title matches
   for (int b = 1; b < std::ssize(page.blocks); ++b) {
     const Block& block = page.blocks[b];
     for (const std::string& sentence : sentences_of(plain_text(block))) {
@@ -110,7 +110,7 @@ std::vector<Found> find_in(const Book& book, const std::string& query) {
   const std::vector<std::string> words = words_of(query);
   if (words.empty()) return {};
   std::vector<Ranked> ranked;
-  for (int p = 1; p < std::ssize(book.pages); ++p)  // the cover only lists the titles of the others
+  for (int p = 1; p < std::ssize(book.pages); ++p)  // skips the cover, which only lists the titles of the other pages
     if (const auto one = rank_page(book.pages[p], p, words)) ranked.push_back(*one);
   std::stable_sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });
   std::vector<Found> found;

@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-// The colours are those of the themes.
+// Style sheet of the pages, with the colours of the editor's themes.
 constexpr const char* kStyle =
     R"(:root{color-scheme:light dark;--paper:#fff;--side:#f4f5f7;--line:#d3d7dd;--text:#1b1d21;
 --text2:#4a505a;--link:#1a57b8;--soft:#e3edfc;--code:#edeff2}
@@ -57,7 +57,7 @@ nav #pages{display:none}nav:focus-within #pages{display:block}main{padding:24px 
 @media print{nav,.turn{display:none}body{display:block}main{max-width:none}}
 )";
 
-// `pages` holds, for each page, its file, its title, and its sentences.
+// Script of the search field. `pages` lists, for each page, its file, its title and its sentences.
 constexpr const char* kSearch = R"(const field=document.getElementById("search"),found=document.getElementById("found"),
 pages=document.getElementById("pages");
 function best(page,words){
@@ -190,7 +190,8 @@ std::string page_html(const Book& book, int index) {
          "</main>\n<script src=\"guide.js\"></script>\n</body>\n</html>\n";
 }
 
-// What the search looks through: the cover only lists the other pages' titles.
+// Returns the list of pages for the search script. The cover is left out, because it only lists the other pages'
+// titles.
 std::string search_data(const Book& book) {
   nlohmann::ordered_json pages = nlohmann::ordered_json::array();
   for (std::size_t p = 1; p < book.pages.size(); ++p) {

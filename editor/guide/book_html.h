@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The user guide as pages for a browser: one HTML file a page, with the chapters at the side and a search in plain
-// JavaScript. They need no network, and are light or dark as the reader's system is.
+// Writes the user guide as web pages: one HTML file for each page of the guide, with the chapters at the side and a
+// search in plain JavaScript. The pages need no network, and follow the system's light or dark theme.
 #pragma once
 
 #include <map>
@@ -11,11 +11,11 @@
 
 namespace limber::editor {
 
-// Returns the files of the book without its pictures: their names, such as "index.html", and their contents.
+// Returns the HTML files of the book, without pictures: the contents by file name, such as "index.html".
 std::map<std::string, std::string> html_files(const Book& book);
 
-// Writes the book into the folder, with copies of its pictures. The folder is made where it is absent. Throws Error
-// when a file cannot be written.
+// Writes the book and copies of its pictures into the folder, which is created if it does not exist. Throws Error if a
+// file cannot be written.
 void write_guide_html(const Book& book, const Path& folder);
 
 }  // namespace limber::editor

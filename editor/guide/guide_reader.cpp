@@ -46,7 +46,7 @@ class GuideReader final : public Dialog {
 
   struct Target {
     int page = 0, block = 0;
-    bool seen_before = false;  // the page comes back as it was left
+    bool seen_before = false;  // true: the user goes back to the page, so it is shown without a marked block
   };
 
   Book book_;
@@ -54,22 +54,22 @@ class GuideReader final : public Dialog {
   std::vector<Found> found_;
   int page_ = 0, marked_ = 0;  // marked_: the block that a search has led to; 0: none
   std::optional<Target> target_;
-  std::vector<int> before_, after_;  // the pages that Alt+Left and Alt+Right come to, the next one last
+  std::vector<int> before_, after_;  // stacks of pages for Alt+Left and Alt+Right; the last page is shown next
   bool focus_ = false, scroll_to_mark_ = false, first_found_ = false, show_row_ = false;
   float scroll_by_ = 0;
-  std::map<std::string, glm::vec2> sizes_;  // of the page's pictures
+  std::map<std::string, glm::vec2> sizes_;  // sizes of the page's pictures, pixels, by file
 };
 
 bool GuideReader::key(Editor& editor, const Chord& chord) {
   if (chord.key == Key::F && chord.modifiers.ctrl) return focus_ = true;
-  // Only remember that Return was pressed: the text field has not yet read all typed letters.
+  // Only stores that Return was pressed, because the text field has not read all typed letters yet.
   if ((chord.key == Key::Return || chord.key == Key::NumEnter) && is_typing(editor)) return first_found_ = true;
   if (!chord.modifiers.alt || (chord.key != Key::Left && chord.key != Key::Right)) return false;
   go_along(editor, chord.key == Key::Right ? 1 : -1);
   return true;
 }
 
-// Only remembers where to go: the page's pictures are already part of this frame.
+// Stores the page to show in the next frame. The current frame already draws the pictures of the old page.
 void GuideReader::go_to(Editor& editor, int page, int block) {
   if (page < 0 || page >= std::ssize(book_.pages)) return;
   if (page != next_page()) {
@@ -80,7 +80,8 @@ void GuideReader::go_to(Editor& editor, int page, int block) {
   editor.touch();
 }
 
-// Goes back to the page that was shown before, or forward again. Where there is none, goes by the order of reading.
+// Goes back to the page that was shown before (step -1) or forward again (step 1). If there is no such page, goes to
+// the previous or next page in reading order.
 void GuideReader::go_along(Editor& editor, int step) {
   std::vector<int>&from = step < 0 ? before_ : after_, &to = step < 0 ? after_ : before_;
   if (from.empty()) return go_to(editor, next_page() + step);
@@ -101,7 +102,7 @@ void GuideReader::turn_to_target(Editor& editor) {
   show_row_ = true;
 }
 
-// Whether a paragraph or a picture follows a list.
+// Returns true if this block is not part of a list, but the block before it is.
 bool GuideReader::ends_list(int block) const {
   const auto listed = [&](int b) {
     const Block::Kind kind = book_.pages[page_].blocks[b].kind;
@@ -124,14 +125,14 @@ void GuideReader::take_scroll_keys(Editor& editor, float height) {
     if (ImGui::IsKeyPressed(static_cast<int>(key))) scroll_by_ += by;
 }
 
-// Reads the picture when it is shown first. Its texture is forgotten when another page is shown.
+// Returns a picture of the page, and reads it at the first call. Its texture is deleted when another page is shown.
 DocumentPicture GuideReader::picture(Editor& editor, const std::string& file) {
   const std::string name = "guide " + file;
   render::Image image;
   if (!sizes_.contains(file)) {
     try {
       image = render::read_png(asset("docs/guide/" + file));
-    } catch (const Error& error) {  // the page can be read without it
+    } catch (const Error& error) {  // the page is shown without this picture
       editor.messages.warn(error.what());
     }
     sizes_[file] = image.size;

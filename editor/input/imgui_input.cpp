@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What ImGui is told of the user's input. It stands apart from the queue of events, which the module of the window has,
-// too.
+// Passes the user's input to ImGui. This code is in a file of its own, because the window module contains the event
+// queue but not ImGui.
 #include <cfloat>
 #include <utility>
 

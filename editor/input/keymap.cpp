@@ -12,8 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-// Largest size of a key map file, bytes. The presets have 13 kB. It is limited since finding clashes takes quadratic
-// time.
+// Largest size of a key map file, bytes; the presets have 13 kB. The size is limited because finding clashes takes
+// quadratic time.
 constexpr std::uint64_t kLargestFile = 1 << 20;
 
 Binding binding_of(const nlohmann::json& json, const std::string& context, const Path& path) {

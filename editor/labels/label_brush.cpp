@@ -12,9 +12,10 @@ namespace {
 
 using Surface = render::PassResources::Surface;
 
-// The largest share of the grid's voxels that a change is uploaded for. A larger one takes as long as the whole volume.
+// Largest part of the grid, as a fraction of its voxels, that is uploaded as a change. Uploading a larger part takes
+// as long as uploading the whole volume.
 constexpr double kMostOfGrid = 0.25;
-// The largest volume of which a spare copy is kept, bytes. That of a larger one would take too much memory.
+// Largest volume of which a spare copy is kept, bytes. The copy of a larger volume would need too much memory.
 constexpr std::size_t kMostSpare = std::size_t{512} << 20;
 
 void keep_spare(LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume) {
@@ -36,7 +37,8 @@ void show_label_stroke(Views& views, LabelBrush& brush) {
   if (!brush.running || views.scene.volume != brush.running->stroke->before()) return;
   const LabelStroke& stroke = *brush.running->stroke;
   render::PassResources& resources = views.renderer.resources();
-  resources.relabel(stroke.before(), stroke.volume(), {}, Surface::Waits);  // does nothing after the first frame
+  // the first call uploads the stroke's volume; later calls do nothing
+  resources.relabel(stroke.before(), stroke.volume(), {}, Surface::Waits);
   if (const limber::VoxelBox box = std::exchange(brush.running->unshown, {}); box.size.x > 0)
     resources.relabel(stroke.volume(), stroke.volume(), box, Surface::Waits);
   views.scene.volume = stroke.volume();

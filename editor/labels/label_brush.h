@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The settings of the label brush, which paints the labels of the selected tissue, and its running stroke. They are not
-// part of the document. The brush's radius and place are those of the weight brushes (editor/skin/painting.h).
+// The settings of the label brush, which paints the labels of the selected tissue, and its running stroke. They are
+// not part of the document. The brush's radius and position are shared with the weight brushes
+// (editor/skin/painting.h).
 #pragma once
 
 #include <future>
@@ -17,7 +18,7 @@ namespace limber::editor {
 enum class PaintOver {
   All,
   Air,
-  Tissue,      // all but air
+  Tissue,      // all voxels except air
   Underneath,  // only voxels with the label on which the stroke begins
 };
 
@@ -28,14 +29,14 @@ struct LabelBrush {
   bool flat = false;  // true: in slices, strokes paint only the voxels of the slice
   // If true and an image is shown, strokes change only voxels whose value in the image lies in [low, high].
   bool in_range = false;
-  double low = 150, high = 3000;  // the usual bone of a CT, Hounsfield units
+  double low = 150, high = 3000;  // range of image values, by default those of bone in a CT, Hounsfield units
 
   struct Running {
     std::unique_ptr<LabelStroke> stroke;
     ViewPlace view;
     glm::vec2 pixel{0};        // position of the pointer up to which the stroke has painted
-    std::string label;         // the name of the edit
-    limber::VoxelBox unshown;  // the box of voxels that changed since the views showed them last; size 0: none
+    std::string label;         // name of the edit
+    limber::VoxelBox unshown;  // box of the voxels that have changed since the views were last updated; size 0: none
   };
   std::shared_ptr<Running> running;  // null: no stroke is being painted
 
@@ -48,21 +49,22 @@ struct LabelBrush {
     std::future<std::shared_ptr<LabelVolume>> copy;
   } spare;
 
-  // Returns whether a volume is the one that the running stroke paints.
+  // Returns true if the volume is the one that the running stroke paints.
   bool paints(const std::shared_ptr<const LabelVolume>& volume) const {
     return running && volume == running->stroke->volume();
   }
 };
 
-// Shows the running stroke's labels in this frame's scene. Only what changed is uploaded to the graphics card.
+// Shows the labels of the running stroke in this frame's scene. Uploads only the changed voxels to the GPU.
 void show_label_stroke(Views& views, LabelBrush& brush);
-// Lets the views show the stroke's volume (`painted`) as the document's from now on, or the volume before the stroke.
+// After a stroke, makes the views show the painted volume (show_painted) or again the volume before the stroke,
+// without uploading the whole volume.
 void show_painted(Views& views, const LabelStroke& stroke);
 void show_unpainted(Views& views, const LabelStroke& stroke);
 // Returns the copy of the volume for the next stroke; null if there is none.
 std::shared_ptr<LabelVolume> take_spare(LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume);
-// Call once in every frame with the document's volume. When an edit of labels is undone or redone, uploads only what
-// differs from the volume of the last frame.
+// Call once per frame with the document's volume. When a label edit is undone or redone, uploads only the voxels that
+// differ from the last frame's volume.
 void follow_label_edits(Views& views, LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume);
 
 }  // namespace limber::editor

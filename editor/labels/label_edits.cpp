@@ -98,7 +98,7 @@ Tissue new_tissue_like(const TissueTable& tissues, const Tissue* like) {
     if (label == 65535) throw Error("there is no free label", "the list of tissues", "merge some tissues first");
     ++label;
   }
-  Tissue own;  // its colour follows from its label
+  Tissue own;  // a tissue whose default colour is computed from its label
   own.label = label;
   own.file_value = label;
   apply_kind_defaults(own);

@@ -34,7 +34,8 @@ FormField erased_choice() {
 }
 Erased erased_of(const FormField& field) { return field.chosen == 1 ? Erased::Air : Erased::Surroundings; }
 
-// Opens a form for an edit of the selected tissue. The answer edits that tissue, even if another one is selected then.
+// Opens a form for an edit of the selected tissue. The form edits this tissue even if the user selects another one
+// before confirming.
 void ask(Editor& editor, const std::string& title, const std::string& description, const std::string& action,
          Fields fields, std::function<FoundLabelEdit(const LabelVolume&, Label, const Fields&, Progress&)> find) {
   const Tissue tissue = edited_tissue(editor);

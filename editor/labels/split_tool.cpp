@@ -83,7 +83,7 @@ class SplitTool final : public Modal {
   }
 
   glm::vec2 pointer_, begun_{0};
-  std::string name_;                    // of the tissue that is split
+  std::string name_;                    // name of the tissue that is split
   std::optional<ViewProjection> view_;  // the view in which the line is drawn; none until the button is pressed
 };
 

@@ -15,11 +15,12 @@ namespace limber::editor {
 namespace {
 
 constexpr float kLine = 2, kDot = 4;  // pixels at scale 1
-constexpr float kPad = 6, kRow = 16;  // of a plate
-constexpr double kArcShare = 0.35;    // radius of an angle's arc, as a share of its shorter side
+constexpr float kPad = 6, kRow = 16;  // padding and line height of a measurement's label, pixels at scale 1
+constexpr double kArcShare = 0.35;    // radius of an angle's arc, as a fraction of the angle's shorter side
 constexpr int kArcSteps = 24;
-constexpr double kNearSlice = 5;       // mm from the plane of a slice within which it shows a measurement
-constexpr float kHiddenAlpha = 0.35f;  // opacity of the side of a tape that faces away
+// a slice shows a measurement whose points are all within this distance of its plane, mm
+constexpr double kNearSlice = 5;
+constexpr float kHiddenAlpha = 0.35f;  // opacity of the part of a girth's tape on the far side of the body
 
 glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
   glm::dvec3 sum(0);
@@ -34,7 +35,7 @@ class MeasurePainter {
         view_(view),
         colour_(colour) {}
 
-  // Draws a line with a dark edge, so that it is seen on light and on dark tissue.
+  // Draws a line with a dark border, so that it is visible over light and dark tissue.
   void line(const glm::dvec3& from, const glm::dvec3& to, float alpha = 1) const {
     const auto a = view_.pixel_of(from), b = view_.pixel_of(to);
     if (!a || !b) return;
@@ -78,14 +79,15 @@ class MeasurePainter {
   Colour colour_;
 };
 
-// Returns whether a view shows a measurement: always in the 3D view, in a slice when all its points are near the plane.
+// Returns true if a view shows a measurement. The 3D view always does; a slice does if all points are near its plane.
 bool is_near(const ViewProjection& view, const std::vector<glm::dvec3>& points) {
   return view.place.id == ViewId::Body || std::all_of(points.begin(), points.end(), [&](const glm::dvec3& point) {
            return std::abs(glm::dot(point - view.slice.centre, view.towards_eye)) <= kNearSlice;
          });
 }
 
-// Returns the place for a plate beside a pixel: at the first of a few places where it covers no other plate.
+// Returns the rectangle for a measurement's label near a pixel: the first of a few positions where it covers no other
+// label.
 Rect place_of_plate(const Look& look, const Rect& view, const glm::vec2& at, const glm::vec2& size,
                     const std::vector<Rect>& taken) {
   Rect first;
@@ -112,7 +114,7 @@ void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, 
   glm::dvec3 beside = middle_of(points);
   if (kind == MeasureKind::Girth) {
     painter.tape(points);
-    // The plate is at the tape's right end.
+    // The label of a girth is at the right end of the tape.
     beside = *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
       return glm::dot(a, view.right) < glm::dot(b, view.right);
     });
@@ -142,7 +144,7 @@ void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, 
 }
 
 namespace {
-// Draws the measurements on the body of one scene into a part of the view.
+// Draws the measurements of one scene's body into a part of the view.
 void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& scene, const Rect& part) {
   if (!scene.volume) return;
   const Measurements& all = *editor.document().measurements;
@@ -162,7 +164,7 @@ void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& 
     }
     const std::size_t before = taken.size();
     draw_measure(editor, view, one.kind, placed[i], words, is_chosen, taken);
-    // While a tool works, its clicks go through the plates.
+    // While a modal tool is active, labels ignore clicks, so that the tool gets them.
     if (!editor.modal && taken.size() > before && part.contains(taken.back()) &&
         press_area(editor, "measurement " + one.name, taken.back()).clicked)
       editor.measures->chosen = one.name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the measurements over a view: lines between their points, an arc at an angle, the tape of a girth, and plates
+// Draws the measurements over a view: lines between their points, an arc for an angle, the tape of a girth, and labels
 // with the values.
 #pragma once
 
@@ -11,13 +11,14 @@
 
 namespace limber::editor {
 
-// Draws the document's measurements where the body of the view's scene has them. In a slice, only those near its plane.
+// Draws the document's measurements at their positions on the body that the view shows. A slice shows only
+// measurements near its plane.
 void draw_measurements_over(Editor& editor, const ViewPlace& place);
 
-// Draws one measurement, complete or not.
+// Draws one measurement, which may still lack points.
 //   points  its points on the shown body, world, mm
-//   words   the lines of its plate; the first one is bright; empty: no plate
-//   taken   plates that are drawn already, which the new plate does not cover; gets the new plate
+//   words   the lines of its label; the first line is bright; empty: no label
+//   taken   rectangles of the labels drawn so far, which the new label avoids; the new label's rectangle is appended
 void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, const std::vector<glm::dvec3>& points,
                   const std::vector<std::string>& words, bool is_chosen, std::vector<Rect>& taken);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array<std::array<const char*, 2>, 2> kTools = {
     {{"measure.distance", "measure.angle"}, {"measure.girth", "measure.thickness"}}};
 
-// Draws two operators' buttons beside each other, over the width of a row.
+// Draws the buttons of two operators side by side over the width of a row.
 void draw_buttons(Editor& editor, const Rect& row, const std::array<const char*, 2>& ids,
                   const std::array<const char*, 2>& labels) {
   const float middle = std::round(row.centre().x), gap = editor.look.px(3), side = editor.look.px(10);
@@ -41,7 +41,7 @@ void draw_list(Editor& editor, Column& column, const Measurements& all) {
       tooltip(editor, row, one.name, "At rest " + text_of_measure(one.kind, measure(one.kind, one.points)) + ".");
     if (pressed.clicked) {
       editor.measures->chosen = one.name;
-      // The slices go there.
+      // Move the slices to the middle of the measurement.
       glm::dvec3 sum(0);
       for (const glm::dvec3& point : placed[i]) sum += point;
       editor.views->cross_hair = sum / double(placed[i].size());

@@ -23,12 +23,12 @@ namespace {
 // A point of the body under the pointer.
 struct PointOnBody {
   ViewPlace place;
-  glm::dvec3 at_rest, shown;  // world, mm
-  glm::ivec3 voxel;           // of the volume at rest
+  glm::dvec3 at_rest, shown;  // positions of the point in the rest pose and in the shown pose, world, mm
+  glm::ivec3 voxel;           // voxel of the volume at rest
 };
 
-// Returns the point of the body under the pointer, in any view. In a slice it may also lie in the air, up to two voxels
-// beside tissue.
+// Returns the point of the body under the pointer, in any view; nothing if there is none. In a slice, the point may
+// lie in air, up to two voxels from tissue.
 std::optional<PointOnBody> point_under_pointer(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || !editor.document().volume) return std::nullopt;
@@ -45,13 +45,14 @@ std::optional<PointOnBody> point_under_pointer(Editor& editor) {
   const bool is_result = scene.volume != editor.document().volume;
   const auto at_rest = is_result ? std::nullopt : point_at_rest(scene, *shown);
   if (!at_rest || !is_at_tissue(*editor.document().volume, *at_rest)) return std::nullopt;
-  // A point of the surface lies between the voxels of the body and the air.
+  // In the 3D view, the point lies on the surface between body and air, so the voxel that was hit is used. In a slice,
+  // the nearest voxel is used.
   const glm::ivec3 nearest(glm::floor(voxel_from_world(scene.volume->grid) * *at_rest + 0.5));
   return PointOnBody{*place, *at_rest, *shown, hit ? hit->voxel : nearest};
 }
 
-// Runs the operator that a chord is bound to, if it only changes the view. Returns whether there is one. So the body
-// can be turned and the slices moved from one click to the next.
+// Runs the operator that is bound to a chord, if the operator only changes the view. Returns true if it ran. So the
+// user can turn the body and move slices between two clicks of the tool.
 bool navigate(Editor& editor, const Chord& chord) {
   constexpr const char* kNavigation[] = {"view.orbit", "view.pan",    "view.zoom",  "view.front",    "view.back",
                                          "view.left",  "view.right",  "view.top",   "view.bottom",   "view.opposite",
@@ -65,7 +66,8 @@ bool navigate(Editor& editor, const Chord& chord) {
   return true;
 }
 
-// Returns whether something is open that needs the keyboard or covers the views.
+// Returns true if a dialog, an error message, a text field or a popup is open, which gets the input instead of the
+// tool.
 bool is_busy(const Editor& editor) {
   return editor.dialog || !editor.messages.errors.empty() || is_typing(editor) ||
          ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
@@ -99,8 +101,8 @@ class MeasureTool final : public Modal {
     return true;
   }
   void cancel(Editor& editor) override { end_drag(editor); }
-  // Ends where a menu, a dialog or a text field opens, or another volume comes. At first the menu that began the tool
-  // may still be open.
+  // Ends the tool if a menu, dialog or text field opens, or if the volume changes. The menu from which the tool was
+  // started may be open in the tool's first frames; it does not end the tool.
   bool frame(Editor& editor, double) override {
     if (!is_busy(editor)) was_free_ = true;
     if (!(was_free_ && is_busy(editor)) && editor.document().volume == volume_) return true;
@@ -186,7 +188,7 @@ class MeasureTool final : public Modal {
   std::string title() const override { return "Measure " + std::string(word_of(kind_)); }
 
  private:
-  // Ends the drag of the view.
+  // Ends a running drag that turns or shifts a view.
   static void end_drag(Editor& editor) {
     if (!editor.drag) return;
     const Drag ended = std::move(*editor.drag);
@@ -205,8 +207,9 @@ class MeasureTool final : public Modal {
       if (is_complete(kind_, points_.size())) add_measurement(editor, kind_, std::exchange(points_, {}));
     }
   }
-  // Returns the normal of a tape's plane: of the slice that was clicked, where it shows the body at rest; else along
-  // the nearest bone; without a rig that of the least girth.
+  // Returns the normal of the plane in which a girth is measured. If the user clicked a slice of the body at rest,
+  // this is the slice's normal. Otherwise it is the direction of the nearest bone, or without a rig the normal with
+  // the smallest girth.
   static glm::dvec3 normal_at(const Editor& editor, const PointOnBody& point) {
     const bool is_posed = scene_of(editor, point.place).pose != nullptr;
     if (point.place.id != ViewId::Body && !is_posed) return render::frame_of(axis_of(point.place.id)).normal;
@@ -219,8 +222,8 @@ class MeasureTool final : public Modal {
 
   MeasureKind kind_;
   std::shared_ptr<const LabelVolume> volume_;
-  bool was_free_ = false;           // no menu, dialog or text field was open in an earlier frame
-  std::vector<glm::dvec3> points_;  // set so far, world, mm, at rest
+  bool was_free_ = false;           // true once a frame had no open menu, dialog or text field
+  std::vector<glm::dvec3> points_;  // points set so far, in the rest pose, world, mm
 };
 
 }  // namespace

@@ -18,9 +18,11 @@ namespace limber::editor {
 namespace {
 
 constexpr std::size_t kRemembered = 4;
-constexpr double kBesideMesh = 10;  // largest distance from a solved mesh at which a point moves with it, mm
+// a point farther than this from a FEM result's mesh does not move with the mesh, mm
+constexpr double kBesideMesh = 10;
 
-// Returns points of the body in the pose that a scene previews. Each point moves as the tissue around it.
+// Returns the positions of points of the rest body in the pose that a scene previews. Each point moves with the tissue
+// around it.
 std::vector<glm::dvec3> previewed(Editor& editor, const render::Scene& scene, const std::vector<glm::dvec3>& at_rest) {
   const Document& document = editor.document();
   const SkinWeights& weights = *document.weights;
@@ -44,7 +46,7 @@ std::vector<glm::dvec3> previewed(Editor& editor, const render::Scene& scene, co
   return posed;
 }
 
-// Returns points of the body as a result poses it.
+// Returns the positions of points of the rest body in the posed body of a result.
 std::vector<glm::dvec3> in_result(Editor& editor, const Result& result, const std::vector<glm::dvec3>& at_rest) {
   if (!result.from_volume || !result.from_weights || !result.from_armature || !result.from_pose || !result.from_tissues)
     return at_rest;
@@ -52,7 +54,7 @@ std::vector<glm::dvec3> in_result(Editor& editor, const Result& result, const st
   const Document& document = editor.document();
   const auto tissue = result.from_volume == document.volume ? tissue_voxels(*editor.views, document)
                                                             : std::make_shared<const TissueVoxels>(*result.from_volume);
-  // Parts of a damaged project may not belong to each other.
+  // In a damaged project, the weights may not match the rig or the volume. The points then stay at rest.
   const auto& bones = result.from_weights->bones();
   const bool has_bones = std::all_of(bones.begin(), bones.end(), [&](const std::string& bone) {
     return result.from_armature->find(bone).has_value();
@@ -62,7 +64,7 @@ std::vector<glm::dvec3> in_result(Editor& editor, const Result& result, const st
   std::vector<glm::dvec3> posed = posed_points(*result.from_volume, *tissue, *result.from_tissues, *result.from_weights,
                                                *result.from_armature, *result.from_pose, blend, nullptr, at_rest);
   if (!result.solved) return posed;
-  // Where a solved mesh moves the flesh, the points go with it. Points in bone keep the motion of their bone.
+  // In a FEM result, points in soft tissue move with the solved mesh. Points in bone move with their bone.
   const Grid& grid = result.from_volume->grid;
   const AffineTransform to_voxel = voxel_from_world(grid), to_world = world_from_voxel(grid);
   std::vector<PointToCarry> rest;
@@ -133,7 +135,8 @@ std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const r
   const Measurements& measurements = *editor.document().measurements;
   std::vector<glm::dvec3> at_rest;
   for (const Measurement& one : measurements) at_rest.insert(at_rest.end(), one.points.begin(), one.points.end());
-  // A preview changes with every frame of a drag, and its points are quickly moved. Those of results are kept.
+  // Points of a previewed pose are computed in every frame: this is fast, and a drag changes the pose in every frame.
+  // Points of results are cached.
   std::vector<MeasureView::Placed>& placed = editor.measures->placed;
   std::vector<glm::dvec3> posed;
   if (!result_of(editor.document(), scene)) {

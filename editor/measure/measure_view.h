@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The measurements of the document as the views show them: where their points are on the shown body, which may be at
-// rest, posed live or a result, and what they measure there.
+// The measurements of the document as the views show them: the positions of their points on the shown body, and the
+// values measured there. The shown body may be at rest, in a previewed pose, or a result.
 #pragma once
 
 #include <memory>
@@ -13,33 +13,35 @@
 
 namespace limber::editor {
 
-// What the views remember about measurements. It is not part of the document.
+// The state of the measurements' display. It is not part of the document.
 struct MeasureView {
   bool shown = true;
-  std::string chosen;  // name of the measurement that is chosen in the list; "" for none
+  std::string chosen;  // name of the measurement that is selected in the list; "" for none
 
-  // The points on the body of a result, with what they were computed from.
+  // Cached positions of the measurements' points on the body of a result, with the inputs of the computation.
   struct Placed {
     std::weak_ptr<const LabelVolume> volume;
-    std::vector<glm::dvec3> at_rest, posed;  // of all measurements, world, mm
+    // points of all measurements: in the rest pose, and in the result; world, mm
+    std::vector<glm::dvec3> at_rest, posed;
   };
-  std::vector<Placed> placed;  // of a few results, latest last
+  std::vector<Placed> placed;  // cache for the last few results, the newest last
 };
 
-// Returns the points of each measurement of the document on the body that a scene shows, world, mm.
+// Returns, for each measurement of the document, its points on the body that a scene shows, world, mm.
 std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const render::Scene& scene);
-// Returns where points of the body at rest lie on the body that a scene shows, world, mm. Points that are not at tissue
-// stay where they are.
+// Converts points of the rest body to their positions on the body that a scene shows, world, mm. A point that is not
+// in or near tissue does not move.
 std::vector<glm::dvec3> points_on_scene(Editor& editor, const render::Scene& scene,
                                         const std::vector<glm::dvec3>& at_rest);
-// Returns whether a point of the body at rest lies in tissue or at most two voxels beside it.
+// Returns true if a point of the rest body lies in tissue or at most two voxels from it.
 bool is_at_tissue(const LabelVolume& volume, const glm::dvec3& at_rest);
-// Returns the point of the body at rest that a scene shows at a world point. Nothing where it shows no tissue.
+// Converts a world point on the body that a scene shows to the point of the rest body. Returns nothing if there is no
+// tissue at the point.
 std::optional<glm::dvec3> point_at_rest(const render::Scene& scene, const glm::dvec3& world);
 
-// Adds a measurement to the document, with a name such as "Distance 2", and chooses it.
+// Adds a measurement to the document, with a name such as "Distance 2", and selects it.
 void add_measurement(Editor& editor, MeasureKind kind, std::vector<glm::dvec3> points);
-// Returns the chosen measurement; nothing when none is chosen.
+// Returns the index of the selected measurement; nothing when none is selected.
 std::optional<std::size_t> chosen_measurement(const Editor& editor);
 
 // Returns all measurements as a table of tab-separated columns: name, kind, value at rest, value as shown, unit.

@@ -11,10 +11,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kApart = 64;                // least distance between two numbers, pixels at scale 1
-constexpr float kHeight = 20, kWidth = 34;  // of a ruler
-constexpr float kLong = 8, kShort = 4;      // lengths of ticks
-constexpr int kParts = 5;                   // short ticks from one number to the next, the number's own included
+constexpr float kApart = 64;  // smallest distance between two numbers, pixels at scale 1
+// height of the horizontal ruler, width of the vertical one, pixels at scale 1
+constexpr float kHeight = 20, kWidth = 34;
+constexpr float kLong = 8, kShort = 4;  // lengths of the ticks with and without a number, pixels at scale 1
+constexpr int kParts = 5;               // number of tick intervals between two numbers
 constexpr std::int64_t kMostTicks = 4000;
 
 std::string number_text(double value, double step) {
@@ -23,9 +24,10 @@ std::string number_text(double value, double step) {
   return std::string(text) == "-0" ? "0" : text;
 }
 
-// Draws one ruler.
-//   from, to   its edge at the picture's border, pixels; numbers stand on the inner side
-//   first, per_pixel  the world coordinate at `from`, mm, and its change along the edge, mm per pixel; either sign
+// Draws one ruler along an edge of the picture.
+//   from, to   ends of the edge, pixels; the numbers are on the inner side of the edge
+//   first      world coordinate at `from`, mm
+//   per_pixel  change of the world coordinate along the edge, mm per pixel; may be negative
 void draw_ruler(Editor& editor, const glm::vec2& from, const glm::vec2& to, double first, double per_pixel) {
   const Look& look = editor.look;
   const bool is_level = from.y == to.y;

@@ -8,7 +8,7 @@
 namespace limber::editor {
 
 void draw_rulers(Editor& editor, const ViewPlace& place);
-// Returns the part of a slice that the rulers leave free.
+// Returns the part of a slice's rectangle that the rulers do not cover.
 Rect beside_rulers(const Editor& editor, const Rect& slice);
 
 // Returns the distance between two numbered ticks, mm: 1, 2 or 5 times a power of ten, at least `least` mm.

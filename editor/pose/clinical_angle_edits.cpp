@@ -15,15 +15,16 @@ double within(const Editor& editor, double degrees, const AngleRange& range) {
   return editor.posing.keep_limits ? std::clamp(degrees, range.low, range.high) : degrees;
 }
 
-// Returns the edited pose with X-mirror and the limits of the moved bones. Fingers keep to the ranges of their angles
-// instead: a hinge in the rig's limits would not let them spread.
+// Returns the pose after an edit of clinical angles, with X-mirror and the rig's limits of the moved bones applied.
+// Fingers have no rig limits applied: a hinge limit would not let them spread. Their angles are clamped to the
+// fingers' own ranges instead.
 Pose finished(const Editor& editor, Pose pose, const JointAngles& moved) {
   const BodyFrames& frames = body_frames_of_rig(editor);
   std::vector<int> bones;
   for (const auto& [joint, motions] : moved) {
     if (is_finger(joint.joint)) continue;
     for (const int bone : bones_of_joints(frames, {{joint, motions}})) bones.push_back(bone);
-    // Pronation turns the hand too, and a raised arm its collarbone.
+    // Pronation of the forearm also turns the hand, and raising the arm also turns the collarbone.
     std::optional<int> along;
     if (joint.joint == BodyJoint::Forearm) along = pronating_hand(frames, joint.side);
     if (joint.joint == BodyJoint::Shoulder) along = frames.find(BodyPart::Clavicle, joint.side);

@@ -17,8 +17,10 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFarthest = 360;  // largest angle that can be typed, degrees
-constexpr double kBeside = 0.2;    // share of the range's width that the slider shows beyond each of its ends
-constexpr double kBeyond = 0.05;   // degrees beyond the range that count as beyond; numbers show one decimal
+// length that the slider shows beyond each end of the range, as a fraction of the range
+constexpr double kBeside = 0.2;
+// an angle that exceeds the range by more than this is marked, degrees; numbers show one decimal
+constexpr double kBeyond = 0.05;
 
 std::string capitalized(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
@@ -27,10 +29,10 @@ std::string capitalized(std::string text) {
 
 std::string degrees_text(double degrees) { return std::to_string(std::lround(degrees)) + "\u00b0"; }
 
-// An angle that the panel shows and changes.
+// An angle of a joint that the panel shows and lets the user change.
 struct ShownAngle {
   std::string name;   // unique in the panel: "Left hip flexion"
-  std::string label;  // as in "Flexion"
+  std::string label;  // the name without side and joint: "Flexion"
   std::string help;
   double degrees = 0;
   AngleRange range;
@@ -74,7 +76,8 @@ void draw_slider(Editor& editor, const ShownAngle& angle, const Rect& rect, doub
   const bool released = ImGui::IsItemDeactivated();
   auto& edited = editor.edited_number;
   if (pressed.activated) edited = {angle.name, shown};
-  // A drag may end while the panel is folded or another workspace is shown: then nobody holds the number any more.
+  // If the panel is folded or another workspace is shown during a drag, the drag ends without a release. In this case,
+  // forget the edited number.
   else if (edited.name == angle.name && !pressed.held && !released && !ImGui::IsAnyItemActive()) edited = {};
   if (edited.name == angle.name && pressed.held && editor.input.down(Key::Escape)) {
     edited = {};

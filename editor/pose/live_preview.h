@@ -108,8 +108,9 @@ class LivePose {
   LiveMetrics& metrics() { return metrics_; }
   bool busy() const { return swift_.busy() || thorough_->busy(); }
 
-  // Lends the maker of fine maps, as to an export, while the result is kept: the views then show coarse maps. A maker
-  // of one's own would need the memory of another body, and ending it would wait until its map is computed.
+  // Lends the thread that computes fine preview maps, for example to an export of pictures. It stays lent as long as
+  // the returned pointer exists; meanwhile the views show only coarse maps. A second MapMaker would need memory for
+  // another body, and its destructor would wait until its current map is computed.
   std::shared_ptr<MapMaker> lend();
   bool is_lent() const { return thorough_.use_count() > 1; }
 

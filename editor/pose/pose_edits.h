@@ -28,15 +28,16 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
 // is off.
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 
-// Shows the changed pose without an edit, as commit_pose() would commit it: constraints of the clip hold in it.
-//   set  bones whose rotations are set, as by a typed angle; the others are turned from where they were. Constraints
-//        tell these apart (editor/motion/constrained_pose.h).
+// Shows the changed pose without an edit. The clip's constraints are applied, as in commit_pose().
+//   set  bones whose rotations the user has set to a value, for example by typing an angle. All other changed bones
+//   were turned relative to their old rotation. Constraints treat both cases differently
+//   (editor/motion/constrained_pose.h).
 void preview_pose(Editor& editor, const Pose& pose, const std::vector<int>& set = {});
 // Commits the pose as one edit; does nothing when the document does not change.
 void commit_pose(Editor& editor, const std::string& label, Pose pose, const std::vector<int>& set = {});
 //   next  the document to commit with the pose; it may contain other changes
 void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next, const std::vector<int>& set = {});
-// Returns the bones whose rotations differ.
+// Returns the indices of the bones whose rotations differ between the two poses.
 std::vector<int> changed_bones(const Pose& before, const Pose& after);
 
 // Returns the document's pins and poles; empty when the document has none.

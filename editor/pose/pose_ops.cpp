@@ -76,7 +76,7 @@ void ask_flex(Editor& editor) {
     Pose pose = pose_of(e.document());
     flex(pose, armature, fields[0].chosen, fields[1].value);
     commit_pose(e, "Flex " + name, std::move(pose));
-    // The Rig workspace shows the body at rest, so nothing there tells that the bone has turned.
+    // The Rig workspace shows the body at rest, so the user would not see that the bone has turned.
     if (e.workspace == Workspace::Rig)
       e.messages.ok(name + " is turned", "The Pose workspace shows it", "workspace.pose");
   };

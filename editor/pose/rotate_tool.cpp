@@ -254,7 +254,7 @@ class Turning final : public TransformTool {
 
   std::shared_ptr<const Armature> armature_;
   const Pose before_;
-  std::vector<int> bones_, mirrored_;  // those that the user turns, and those that X-mirror turns too
+  std::vector<int> bones_, mirrored_;  // bones that the user turns; bones that X-mirror turns in addition
   int active_ = 0;
   bool trackball_;
   bool by_ring_, on_hinge_ = false;  // true if a ring is dragged; true if the ring's axis is the hinge's

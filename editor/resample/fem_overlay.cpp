@@ -162,7 +162,8 @@ double place_on(const FemScale& scale, double value) {
 }
 
 glm::vec3 colour_at(FemMeasure measure, double place) {
-  // A smaller gap between skin surfaces gets a brighter colour, so that skin that presses on skin stands out.
+  // The colour scale of contact gaps is reversed: a smaller gap gets a brighter colour, so that skin that presses on
+  // skin stands out.
   return measure == FemMeasure::VolumeRatio
              ? between(kChange, place)
              : between(render::kWeightRamp, measure == FemMeasure::Gap ? 1 - place : place);

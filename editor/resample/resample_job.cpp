@@ -36,7 +36,7 @@ struct Request {
 };
 
 constexpr char kImage[] = "image.nrrd";
-constexpr char kSteps[] = "solve";  // base name of the files that the solver writes at each step
+constexpr char kSteps[] = "solve";  // base name of the files that the solver writes after each of its steps
 
 void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
   const Document& from = request.from;
@@ -134,7 +134,7 @@ std::shared_ptr<const SolvedMesh> read_solved(const Path& name) {
   return std::make_shared<const SolvedMesh>(SolvedMesh{std::move(*mesh), std::move(step->V)});
 }
 
-// Reads the posed grey image and moves its file into a folder of its own, which outlives the job's.
+// Reads the posed grey image. Moves its file into a folder that is not deleted when the job ends.
 PosedImage read_posed_image(const Request& request, const ScratchFolder& folder, Progress& progress) {
   PosedImage image;
   const auto kept = std::make_shared<const ScratchFolder>(request.scratch);
@@ -145,11 +145,11 @@ PosedImage read_posed_image(const Request& request, const ScratchFolder& folder,
   return image;
 }
 
-// What a job makes beside its edit of the document.
+// What a resampling job returns in addition to its edit of the document.
 struct Made {
-  std::string name;  // of the result
+  std::string name;  // name of the result
   PosedImage image;
-  std::string image_problem;  // why the posed image is missing; "": it is there, or none was asked for
+  std::string image_problem;  // why the posed image is missing; "": it was made, or none was requested
 };
 
 Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Progress& progress) {
@@ -168,7 +168,7 @@ Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Pro
     } catch (const Cancelled&) {
       throw;
     } catch (const std::exception& error) {
-      made->image_problem = error.what();  // the result itself is not lost for it
+      made->image_problem = error.what();  // the job continues: the posed volume is valid without the posed image
     }
   result->from_volume = request.from.volume;
   result->from_tissues = request.from.tissues;

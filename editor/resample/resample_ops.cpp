@@ -63,8 +63,8 @@ Operator colours_operator(const char* id, const char* label, const char* descrip
 
 void toggle_posed(Editor& editor) { show_result(editor, shown_result(editor) ? "" : chosen_result(editor)->name); }
 
-// If the comparison lacks a valid side A or B, sets side B to the last result. If the comparison is still not valid,
-// sets side A to the volume at rest.
+// Completes the comparison: if side A or B is not a valid result, side B becomes the last result. If the comparison is
+// still not valid, side A becomes the volume at rest.
 void choose_sides(Editor& editor) {
   if (!why_no_comparison(editor).empty()) editor.comparison.b = editor.document().results.back()->name;
   if (!why_no_comparison(editor).empty()) editor.comparison.a.clear();

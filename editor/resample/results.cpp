@@ -22,7 +22,7 @@ namespace limber::editor {
 
 namespace {
 
-// Replaces the command line's options in a report's warning by the editor's corresponding commands.
+// Replaces command line options that are named in a report's warning by the corresponding commands of the editor.
 std::string in_words_of_the_editor(std::string warning) {
   for (const auto& [said, here] : {std::pair<std::string_view, std::string_view>{
                                        "--glide MM allows longer shifts", "Keep bones apart allows longer shifts"},
@@ -246,7 +246,8 @@ void show_result(Editor& editor, const std::string& name) {
   stop_watching(editor);
   if (name.empty()) show_rest(editor.comparison);
   else editor.comparison.b = name, editor.comparison.shows_a = false;
-  // Where the workspace shows the body itself or another pose, the user would see nothing of the result.
+  // Other workspaces may show the body itself or another pose. Switches to the Resample workspace, so that the result
+  // is visible.
   if (result_named(editor.document(), name) && !shown_result(editor)) editor.workspace = Workspace::Resample;
 }
 

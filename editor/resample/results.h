@@ -55,11 +55,11 @@ std::string name_of_pose(const Armature& armature, const Pose& pose);
 // Returns `name`, with a number appended if a result already has that name.
 std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name);
 
-// Where a result of another pose is shown, or the body at rest without the user having chosen it, shows the newest
-// result of the current pose that is not stale. Otherwise shows the same as before.
+// Shows the newest result of the current pose that is not stale, if the views show a result of another pose, or the
+// volume at rest without the user having selected it. Otherwise changes nothing.
 void show_result_of_pose(Editor& editor);
 void show_result(Editor& editor, const std::string& name);  // "" shows the volume at rest
-// Lets the views show the volume at rest: as side A where that is the volume, so that it counts as chosen.
+// Makes the views show the volume at rest, and marks it as selected by the user: show_result_of_pose() then keeps it.
 void show_rest(Comparison& comparison);
 // Renames a result as one edit; makes the name unique among the results.
 void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name);

@@ -129,7 +129,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   char seconds[24];
   std::snprintf(seconds, sizeof seconds, "%.1f s", facts->seconds);
   const Colour plain = theme.text, second = theme.text2;
-  // The cell has only the start of the reason; the tooltip has all of it.
+  // The cell shows only the beginning of the reason why the result is stale. The tooltip shows the whole reason.
   const std::string state =
       reason.empty() ? state_of(side, shown)
                      : (side.empty() ? "" : side + ", ") + "stale: " + reason.substr(0, reason.find(" changed"));
@@ -194,7 +194,8 @@ void draw_results(Editor& editor, const Rect& rect) {
   for (const char* id : {"compare.show_b", "compare.show_a"}) {
     const Operator* op = find_operator(editor, id);
     const float width =
-        // The label is wider in the pressed style. This width keeps the buttons in place when one of them is pressed.
+        // A pressed button has a wider label. Every button gets the width of a pressed one, so that no button moves
+        // when one is pressed.
         width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});
     operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label,
                     op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);

@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kHead = 26, kAxis = 20, kPad = 12, kName = 112, kFigure = 58;
 constexpr double kLeastSpan =
-    2;  // smallest range of the axis, percent; a smaller one would make small changes look large
+    2;  // smallest range of the axis, percent; with a smaller range, small changes would look large
 
 struct Series {
   std::string letter, method;

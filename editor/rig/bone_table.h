@@ -16,7 +16,7 @@
 namespace limber::editor {
 
 struct BoneTable {
-  bool coloured = false;  // whether the Rig workspace colours bone tissue by the rig bone that it follows
+  bool coloured = false;  // true: the Rig workspace colours bone tissue by the rig bone that it follows
 
   // The table that was computed last, with the volume, tissues and rig for which it was computed.
   struct Known {

@@ -17,7 +17,7 @@ struct ViewProjection;
 // A bone that lies partly or wholly outside the tissue.
 struct LeavingBone {
   int bone = 0;
-  double share = 1;                 // share of the bone's length in tissue, [0, 1]
+  double share = 1;                 // fraction of the bone's length that lies in tissue, [0, 1]
   bool head = false, tail = false;  // true if the bone's head, or its tail, is outside the tissue
   glm::dvec3 place{
       0};  // position of an end outside the tissue; if both ends are inside: middle of the longest stretch outside, mm

@@ -32,11 +32,12 @@ void commit_rig(Editor& editor, const std::string& label, Armature next, const s
 //   from    for each bone of the new rig, its index in the old rig; -1: a new bone
 void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before,
                            const std::vector<int>& from);
-// The same for a rig whose bones are those of the old rig with the same names.
+// Warns if the last edit moved the target bones of constraints. Finds each bone of the old rig in the new rig by its
+// name.
 void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before);
 // rename_bone() renames one bone. commit_names() commits a rig that differs from the document's rig only in the names
-// of bones. Each call makes one edit, and all that refers to a bone by name (keys, library poses, pins, locks) gets the
-// new name.
+// of bones. Each call makes one edit. Keys, library poses, pins and locks that refer to a bone by name get the new
+// name.
 void rename_bone(Editor& editor, int bone, const std::string& name);
 void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen);
 // Mirrors the bones to the other side of the rig. A bone without a counterpart there gets the mirrored name and keeps

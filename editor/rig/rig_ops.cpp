@@ -134,7 +134,8 @@ std::vector<int> still(const Armature& before, const Armature& after, const std:
   return found;
 }
 
-// Which bones an edit changes: the selected bones, or with X-mirror on, also their counterparts on the other side.
+// The bones that an edit changes. Chosen: the selected bones. Mirrored: with X-mirror on, also their counterparts on
+// the other side of the body.
 enum class Sides { Chosen, Mirrored };
 
 template <class Edit>

@@ -262,8 +262,9 @@ std::vector<FoundCommand> find_commands(const Editor& editor, const std::string&
     one->command.reason = disabled_reason(editor, op);
     ranked.push_back(std::move(*one));
   }
-  // A command that is named but cannot run now says why when it is chosen. A command that only speaks of the words
-  // would do something else in its place.
+  // Commands whose label or category matches come first, even if they cannot run now: the search then shows the
+  // reason. Commands that match only by their description come last, because the user most likely wants another
+  // command.
   const auto only_speaks_of = [](const Ranked& one) { return one.score == -kSentencePenalty; };
   std::stable_sort(ranked.begin(), ranked.end(), [&](const Ranked& a, const Ranked& b) {
     if (only_speaks_of(a) != only_speaks_of(b)) return only_speaks_of(b);

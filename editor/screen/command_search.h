@@ -15,8 +15,8 @@ struct FoundCommand {
   std::vector<std::size_t> letters;  // byte offsets of the label's letters that match the query
   std::string reason;                // why the command cannot run now; "": it can
 };
-// Returns the commands that match the query, the best match first; of those that are named by it, and of those whose
-// descriptions speak of it, the ones that cannot run now come last. If the query
+// Returns the commands that match the query, the best match first. Commands that match by label or category come
+// before commands that match only by description. In both groups, commands that cannot run now come last. If the query
 // is empty, returns all commands: the five used last, then the others by number of uses, then those never used.
 std::vector<FoundCommand> find_commands(const Editor& editor, const std::string& query);
 // Returns the number of commands that the search can find.

@@ -31,7 +31,8 @@ std::vector<std::string> with_methods(std::vector<std::string> list) {
   return list;
 }
 
-// Replaces "* constraints" by the operators that add one of each kind.
+// Replaces the entry "* constraints" by one operator for each kind of constraint, which adds a constraint of this
+// kind.
 std::vector<std::string> with_constraints(std::vector<std::string> list) {
   const auto place = std::find(list.begin(), list.end(), "* constraints");
   if (place == list.end()) return list;

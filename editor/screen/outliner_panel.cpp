@@ -244,7 +244,7 @@ void take_drag(Editor& editor, const Row& row, const Pressed& pressed) {
     drag.moved |= glm::distance(editor.input.pointer, drag.begin) > editor.look.px(6);
 }
 
-// Draws a text beside the pointer. It tells what would happen if the user dropped the dragged row at the pointer.
+// Draws a text beside the pointer that says what happens if the user drops the dragged row here.
 void draw_dragged(Editor& editor, const std::string& words) {
   const Look& look = editor.look;
   const glm::vec2 size = text_size(look.fonts.regular, words) + glm::vec2(look.px(16), look.px(8));
@@ -351,8 +351,9 @@ void take_key(Editor& editor, const std::vector<Row>& rows) {
   }
 }
 
-// Returns the first row whose own name matches the search: a tissue, bone or result rather than the volume or a
-// heading. Rows above it may be there because of it. 0 without one.
+// Returns the index of the first row to select for the search: the first tissue, bone or result whose name matches,
+// otherwise the first other row whose name matches, otherwise 0. Rows of parents are also shown, but their own names
+// need not match.
 int first_found(const Editor& editor, const std::vector<Row>& rows) {
   const auto matches = [&](const Row& row) { return contains_ignoring_case(row.name, editor.outliner.search); };
   auto found = std::find_if(rows.begin(), rows.end(), [&](const Row& row) { return can_rename(row) && matches(row); });
@@ -417,8 +418,9 @@ float height_of_list(const Editor& editor, const Column& column, float whole) {
   return height = std::min(whole, std::max(kRow * kFewestRows, room));
 }
 
-// Scrolls what holds the list so that a row is in its middle. Does nothing if the row is already visible.
-//   above  the height of what lies above the list's first row in it, pixels
+// Scrolls the current ImGui window so that a row of the list is in the middle. Does nothing if the row is already
+// visible.
+//   above  height of the window's content above the list's first row, pixels
 void scroll_to_row(const Look& look, int row, float height, float above = 0) {
   const float top = above + look.px(kRow) * static_cast<float>(row), scroll = ImGui::GetScrollY();
   if (top < scroll || top + look.px(kRow) > scroll + height)

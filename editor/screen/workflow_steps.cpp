@@ -31,8 +31,8 @@ Step prepare_step(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.volume) return step;
   if ((!document.tissues || document.tissues->tissues.empty()) && editor.views->image) {
-    // A bare CT or MR has nothing that could follow bones. What works on its grid, for labels to be painted on, is
-    // there; what needs tissue is not.
+    // An image without labels (a bare CT or MR) has no tissue that could move with bones. The step offers only the
+    // operators that change the grid or paint labels, not those that need tissue.
     step.line = "No labels yet";
     step.operator_id = labels_operator(editor);
     step.button = "Labels...";
@@ -151,7 +151,7 @@ void draw_step(Editor& editor, Column& column, const Step& step, int number) {
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor, *op, place);
 }
 
-// Draws the operators that a step has besides its main button, as small buttons in as many rows as needed.
+// Draws the additional operators of a step as small buttons, in as many rows as needed.
 void draw_more(Editor& editor, Column& column, const Step& step) {
   const Look& look = editor.look;
   const PathScope path(editor, step.title + " more");

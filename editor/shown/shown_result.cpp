@@ -14,7 +14,7 @@ std::shared_ptr<const Result> result_named(const Document& document, const std::
 
 namespace {
 
-// The result of the side that the user selected, whatever the workspace shows.
+// Returns the result of the side that the user selected, even if the workspace shows something else.
 std::shared_ptr<const Result> result_of_side(const Editor& editor) {
   const Comparison& comparison = editor.comparison;
   return result_named(editor.document(), comparison.shows_a && !comparing(editor) ? comparison.a : comparison.b);
@@ -25,7 +25,7 @@ std::shared_ptr<const Result> result_of_side(const Editor& editor) {
 std::shared_ptr<const Result> shown_result(const Editor& editor) {
   if (watched_solve(editor)) return nullptr;
   auto result = result_of_side(editor);
-  // Bones are fitted, and weights are painted, on the body itself.
+  // The Rig and Skin workspaces never show a result: bones are fitted and weights are painted on the original volume.
   if (editor.workspace == Workspace::Rig || editor.workspace == Workspace::Skin) return nullptr;
   if (result && editor.workspace == Workspace::Pose && !(result->from_pose && *result->from_pose == shown_pose(editor)))
     return nullptr;

@@ -10,8 +10,8 @@
 
 namespace limber::editor {
 
-// Lays out fields for x, y and z in one row, wider than the single field of other rows, and marks them by the colours
-// of the axes. Returns the rectangles of the fields, in pixels.
+// Lays out input fields for x, y and z in one row. The fields together are wider than the single field of other rows,
+// and each is marked with the colour of its axis. Returns the rectangles of the fields, in pixels.
 std::array<Rect, 3> lay_axis_fields(const Look& look, Column& column, const std::string& title);
 
 }  // namespace limber::editor

@@ -10,7 +10,7 @@ namespace limber::editor {
 
 namespace {
 
-// Where Debian's packages put the fonts, in the order of FontFile.
+// The paths at which Debian's packages install the fonts, in the order of FontFile.
 constexpr struct {
   const char *file, *package;
 } kFonts[] = {{"/usr/share/fonts/opentype/inter/Inter-Regular.otf", "fonts-inter"},

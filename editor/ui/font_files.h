@@ -8,8 +8,8 @@ namespace limber::editor {
 
 enum class FontFile { Inter, InterSemiBold, JetBrainsMono, FontAwesome };
 
-// Returns the path of a font: one that came with the program, else that of Debian's package. Throws Error, which names
-// the package, if there is neither.
+// Returns the path of a font: the file that comes with the program, otherwise the file of Debian's package. Throws
+// Error, which names the package, if neither exists.
 std::string font_file(FontFile font);
 
 }  // namespace limber::editor

@@ -9,7 +9,7 @@ namespace limber::editor {
 namespace {
 
 constexpr int kTextStart = 24, kWordStart = 12, kInARow = 10,
-              kSkippedWord = 2;  // scores of a matched letter; only their order matters
+              kSkippedWord = 2;  // scores of a matched letter, by its position; only their order matters
 constexpr int kNone = -1'000'000;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }

@@ -16,8 +16,8 @@ bool checkbox(Ui& ui, const std::string& name, const Rect& rect, const std::stri
 // changes. `committed` is true in the frame in which the drag or typing ends.
 bool number_field(Ui& ui, const std::string& name, const Rect& rect, double& value, double low, double high,
                   const char* format, const char* unit, bool filled, bool& committed);
-// Draws a number field that does not clamp a typed number: the caller checks the number. If `focus` is true, the field
-// gets the keyboard.
+// Draws a number field that does not clamp a typed number to [low, high]. The caller checks the number. If `focus` is
+// true, the field gets the keyboard.
 bool judged_number_field(Ui& ui, const std::string& name, const Rect& rect, double& value, double low, double high,
                          const char* format, const char* unit, bool focus);
 // Draws a drop-down list. Its widgets have the same names in every list, so the caller must push a path (push_path())

@@ -9,9 +9,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kTurnsToAppear = 2;  // number of times the panels are drawn while keys wait for a field to appear
+constexpr int kTurnsToAppear = 2;  // number of frames for which pressed keys wait for a requested text field to appear
 constexpr int kTurnsToFocus =
-    4;  // number of times the panels are drawn while keys wait for ImGui to give a field the keyboard
+    4;  // number of frames for which pressed keys wait until ImGui gives the field the keyboard
 
 bool active_item_is_text() {
   const ImGuiContext& imgui = *ImGui::GetCurrentContext();

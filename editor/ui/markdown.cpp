@@ -19,7 +19,8 @@ constexpr Mark kMarks[] = {{"**", "**", Run::Style::Strong},
                            {"`", "`", Run::Style::Code},
                            {"{", "}", Run::Style::Key}};
 
-// Takes a link "[text](target)" from the beginning of the text. Returns nothing where the text begins with none.
+// Parses a link "[text](target)" at the beginning of the text and removes it from the text. Returns nothing if the
+// text does not begin with a link.
 std::optional<Run> take_link(std::string_view& text) {
   if (!text.starts_with('[')) return std::nullopt;
   const auto middle = text.find("](");
@@ -61,7 +62,7 @@ std::vector<Run> runs_of(std::string_view text, const std::function<std::string(
   return runs;
 }
 
-// How a line begins, and how many characters of it say so.
+// The kind of block that a line begins, and the number of characters of its marker ("## ", "- ", "1. ").
 struct Beginning {
   Block::Kind kind = Block::Kind::Paragraph;
   std::size_t length = 0;
@@ -79,7 +80,7 @@ Beginning beginning_of(std::string_view line) {
   return {};
 }
 
-// A line that is a picture, "![caption](file)".
+// Parses a line that is a picture, "![caption](file)". Returns nothing for any other line.
 std::optional<Block> picture_of(std::string_view line) {
   if (!line.starts_with('!')) return std::nullopt;
   line.remove_prefix(1);

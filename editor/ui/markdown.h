@@ -14,16 +14,16 @@ namespace limber::editor {
 struct Run {
   enum class Style { Plain, Strong, Name, Code, Key, Link } style = Style::Plain;
   std::string text;
-  std::string target = {};  // of a link: what it leads to, as it stands in the file
+  std::string target = {};  // of a link: its target, as written in the file
 
   bool operator==(const Run&) const = default;
 };
 
 struct Block {
   enum class Kind { Title, Heading, Paragraph, Point, Step, Picture } kind = Kind::Paragraph;
-  std::vector<Run> runs;     // of a picture: its caption
-  int number = 0;            // of a step
-  std::string picture = {};  // the picture's file, as it stands in the text
+  std::vector<Run> runs;     // the block's text; of a picture: its caption
+  int number = 0;            // of a numbered step: its number
+  std::string picture = {};  // of a picture: its file, as written in the text
 
   bool operator==(const Block&) const = default;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The colours of the editor, named by their purpose. They are read from assets/themes/NAME.json, where they are written
-// as "RRGGBB". The accent colour (blue) marks what is selected in panels; the selection colour (orange) marks what is
-// selected in the views.
+// The colours of the editor, named by their purpose. They are read from assets/themes/NAME.json, where they are
+// written as "RRGGBB". The accent colour (blue) marks selected rows and buttons in panels. The selection colour
+// (orange) marks selected bones and tissues in the views.
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,8 @@ void draw_tooltip(Ui& ui) {
   const ImGuiID active = ImGui::GetActiveID();
   const bool typing = active != 0 && ImGui::TempInputIsActive(active);
   if (!std::exchange(tip.asked, false) || typing) return tip.widget.clear();
-  // After a click the user knows what the widget does, and looks at what has changed.
+  // After a click, hides the tool tip: the user knows what the widget does, and the tool tip could cover what has
+  // changed.
   if (ui.input.down(MouseButton::Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
     tip.since = 1e300;
     return;

@@ -38,7 +38,7 @@ enum class ButtonStyle {
   Primary,
   Chosen,
   Soft
-};  // Chosen: filled with the accent colour; Soft: a switch that is on, edged in the accent colour
+};  // Chosen: filled with the accent colour; Soft: a switch that is on, with an outline in the accent colour
 struct ButtonLook {
   const char* icon = "";
   std::string label;

@@ -7,8 +7,8 @@ namespace limber::editor {
 
 namespace {
 
-// Number of rounds in which the middle of a bone's cross-section is found along `right` and then along `up`. Two rounds
-// suffice for a round cross-section.
+// Number of iterations of the search for the middle of a bone's cross-section. Each iteration moves the point to the
+// middle along `right`, then along `up`. Two iterations suffice for a round cross-section.
 constexpr int kRounds = 4;
 
 // Samples the bone tissue of the document's volume along lines, in steps of half a voxel.

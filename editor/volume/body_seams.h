@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Provides the seams of the open document: the surfaces between different limbs that touch at rest, such as hand and
-// thigh. They are the document's own seams, or are found once for a volume, its tissues and its rig. Previews, live
-// measurements and weights use them. Any thread may ask for them; while one thread searches for seams, the others wait
-// for its result.
+// thigh. If the document stores no seams, they are computed once for the volume, its tissues and its rig. Previews,
+// live measurements and weights use seams. Any thread may call these functions; while one thread searches for seams,
+// other threads wait for its result.
 #pragma once
 
 #include <memory>

@@ -16,8 +16,8 @@ namespace limber::editor {
 struct ShownImage {
   std::shared_ptr<const GreyVolume> image;
   std::string name;    // the file's name
-  std::string doubt;   // why it is no label volume: "it has 300 values, and ..."
-  std::string answer;  // label of the button that opens it as labels anyway
+  std::string doubt;   // why the file is not clearly a label volume: "it has 300 values, and ..."
+  std::string answer;  // label of the button that opens the file as labels
   std::function<void(Editor&)> as_labels, as_image;
 };
 void show_grey_image(Editor& editor, ShownImage shown);

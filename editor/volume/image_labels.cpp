@@ -24,7 +24,7 @@ CtThresholds thresholds_of(const Fields& fields) {
   return thresholds;
 }
 
-// The image may have been closed since the form was opened.
+// Returns the shown image. Throws Error if it has been closed since the form was opened.
 const GreyLevels& image_of(const Editor& editor) {
   if (!editor.views->image) throw Error("the image was closed", "Labels from image", "open it again");
   return *editor.views->image->image;

@@ -13,15 +13,16 @@ namespace limber::editor {
 
 namespace {
 
-// Share of the window's width, and of a width of 400, by which a drag of one pixel at scale 1 changes level and width.
+// Change of the window of grey values per pixel of a drag (at scale 1): the level changes by this fraction of the
+// width; the width is multiplied by e^(twice this number).
 constexpr double kPerPixel = 1.0 / 300;
 
 std::string needs_image(const Editor& editor) {
   return editor.views && editor.views->image ? "" : "Open an image first: File > Import > Image";
 }
 
-// Changes the window while the pointer is dragged: to the right widens it, up makes the picture darker, as radiologists
-// are used to.
+// Changes the window of grey values during a drag of the pointer, as in radiology programs: dragging right widens the
+// window, dragging up makes the picture darker.
 void drag_window(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || !editor.views->image) return;

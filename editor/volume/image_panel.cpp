@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the section "Image" of the sidebar: the window of values, the opacity of the tissues over the image, and how
-// the 3D view renders it.
+// Draws the section "Image" of the sidebar: the window of grey values, the opacity of the tissues over the image, and
+// the method by which the 3D view renders the image.
 #include <algorithm>
 #include <array>
 
@@ -18,7 +18,7 @@ namespace {
 constexpr std::array kRenderings = {"image.render_bone", "image.render_muscle", "image.render_skin",
                                     "image.render_window", "image.render_maximum"};  // in the order of GreyRendering
 
-// Draws a number field whose value changes at once, also while it is dragged.
+// Draws a number field that changes its value during a drag, not only at the end of the drag.
 void draw_number(Editor& editor, Column& column, const char* label, double low, double high, const char* unit,
                  bool filled, double& value) {
   bool committed = false;

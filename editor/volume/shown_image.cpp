@@ -23,7 +23,7 @@ Box box_of_grid(const Grid& grid) {
   return world_box(document);
 }
 
-// Returns by how many mm two boxes miss each other; 0 if they meet.
+// Returns the size of the gap between two boxes, mm; 0 if they touch or overlap.
 double gap_between(const Box& a, const Box& b) {
   return glm::length(glm::max(glm::max(a.low - b.high, b.low - a.high), glm::dvec3(0)));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The grey image (CT, MR) that the views show with the labels (Views::image): opening and closing it, and the windows
-// of values in which it is looked at. The image is no part of the document: the project stores the place of its file,
-// and reads it again when it is opened.
+// of grey values in which it is shown. The image is not part of the document: the project stores only the path of the
+// image's file, and reads the file again when the project is opened.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace limber::editor {
 
-// A window of values, as radiologists use for CT, in Hounsfield units.
+// A window of grey values, as radiologists use for CT, in Hounsfield units.
 struct ImageWindow {
   const char *id, *name;
   double level, width;
@@ -24,24 +24,24 @@ std::span<const ImageWindow> ct_windows();
 // Returns true if the values look like Hounsfield units: air at about -1000, and something denser than water.
 bool looks_like_ct(const GreyLevels& image);
 
-// Returns the values of a grey image as the views need them. Meant for tasks.
+// Converts a grey image to the form that the views need. Takes long, so call it in a background task.
 std::shared_ptr<const GreyLevels> levels_of(const GreyVolume& image);
 
-// Shows the image with the open body, in the usual window of its values, and remembers the file. Throws Error if the
-// open volume and the image lie beside each other, so that no view would show both.
+// Shows the image with the open body, with the default window of its values, and stores its path. Throws Error if the
+// open volume and the image do not overlap in the world, because no view would show both.
 void show_image(Editor& editor, std::shared_ptr<const GreyLevels> image, const Path& path);
-// Returns a document for a bare image: a volume on the image's grid in which everything is air, so that labels can be
-// made from the image or painted.
+// Returns a document for an image without labels: a volume on the image's grid in which all voxels are air. The user
+// can then make labels from the image or paint them.
 Document document_for_image(const GreyLevels& image);
 void close_image(Editor& editor);
 
-// Reads the image again that a project was saved with, and shows it as it was shown then (`shown`; empty: unknown). If
-// the file is gone, a message says so, and the project goes on naming it.
+// Reads the image with which a project was saved, and shows it with the saved settings (`shown`; empty: none were
+// saved). If the file is missing, shows a message; the project keeps the file's path.
 void reopen_image(Editor& editor, const Path& path, const std::optional<render::ShownGrey>& shown);
 
-// Keeps the posed image of a result, and drops those of results that are gone.
+// Stores the posed image of a result, and deletes the posed images of results that no longer exist.
 void keep_posed_image(Views& views, PosedImage image);
-// Returns the posed image of a result; null if it was made without one.
+// Returns the posed image of a result; null if the result has none.
 const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const LabelVolume>& result);
 
 // Returns the value of the image at a world point; empty outside the image.

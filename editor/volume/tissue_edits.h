@@ -26,9 +26,9 @@ void reveal_tissues(Editor& editor);
 // edit, such as "Colour of Muscle".
 void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue);
 
-// Sets the kind of a tissue, which decides whether it moves rigidly and what gives way where tissues overlap. Numbers
-// of its material that were the usual ones of the old kind become those of the new kind; the others, and the colour,
-// stay.
+// Sets the kind of a tissue. The kind decides whether the tissue moves rigidly, and which tissue a voxel gets if
+// several overlap. Material properties that had the default values of the old kind get those of the new kind. Other
+// properties and the colour do not change.
 void set_kind(Editor& editor, Label label, TissueKind kind);
 
 void rename_tissue(Editor& editor, Label label, const std::string& name);

@@ -125,8 +125,8 @@ void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>&
   }
 }
 
-// Draws the value of the grey image under the pointer: of the posed image of a result, else of the image at the point's
-// place at rest.
+// Draws the value of the grey image under the pointer. While a result is shown with its posed image, this is the posed
+// image's value. Otherwise it is the value of the image at the point's position at rest.
 void draw_image_value(Editor& editor, Column& column) {
   const Hover& hover = editor.views->hover;
   const render::Scene& scene = editor.views->scene;

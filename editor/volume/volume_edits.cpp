@@ -86,7 +86,7 @@ void start_preparation(Editor& editor, Preparation preparation) {
   const auto tissues = editor.document().tissues;
   const std::string label = preparation.label;
   auto note = std::make_shared<std::string>();
-  auto is_loss = std::make_shared<bool>(false);  // the note says what was removed
+  auto is_loss = std::make_shared<bool>(false);  // true: the message in `note` says that something was removed
   const int id = editor.jobs.start(
       label,
       [before, tissues, note, is_loss, preparation, visibility = editor.document().visibility,
