@@ -12,18 +12,18 @@ namespace limber::render {
 namespace {
 
 constexpr std::uint32_t kLargestSide = 16384;
-constexpr std::size_t kHeadSize = 33;  // of a PNG file's signature and first chunk, bytes
+constexpr std::size_t kHeadSize = 33;  // length of a PNG file's signature and first chunk, bytes
 
 void append_big_endian(std::string& bytes, std::uint32_t value) {
   for (const int shift : {24, 16, 8, 0}) bytes += static_cast<char>(value >> shift & 255);
 }
 
-// Returns the chunk pHYs, which libpng's simplified interface cannot write: pixels per metre along both axes.
+// Returns the PNG chunk pHYs (pixels per metre along both axes), which libpng's simplified interface cannot write.
 std::string resolution_chunk(double dots_per_inch) {
   std::string chunk = "pHYs";
   for (int axis = 0; axis < 2; ++axis)
     append_big_endian(chunk, static_cast<std::uint32_t>(std::lround(dots_per_inch / 0.0254)));
-  chunk += 1;               // the unit is the metre
+  chunk += 1;               // unit of the resolution: metre
   std::uint32_t sum = ~0u;  // CRC-32 of the chunk, bit by bit
   for (const char c : chunk) {
     sum ^= static_cast<unsigned char>(c);

@@ -17,13 +17,13 @@ struct Image {
   std::vector<std::uint8_t> rgba;  // size.x * size.y * 4 bytes, rows from top to bottom
 };
 
-// Writes the file atomically: never leaves a partial file.
-//   dots_per_inch  the resolution that the file tells to programs that print or place it; 0: none
+// Writes a PNG file atomically: never leaves a partial file.
+//   dots_per_inch  resolution stored in the file for programs that print or place the picture; 0: none
 void write_png(const Image& image, const Path& path, double dots_per_inch = 0);
-// Throws Error if the file is no PNG, or is wider or higher than 16384 pixels.
+// Reads a PNG file. Throws Error if the file is not a PNG, or if it is wider or higher than 16384 pixels.
 Image read_png(const Path& path);
 std::string png_of(const Image& image, double dots_per_inch = 0);  // returns the bytes of a PNG file
-// Reads the bytes of a PNG file as read_png() does. `where` names them in the message of an Error.
+// Reads the bytes of a PNG file as read_png() does. Error messages call the file `where`.
 Image parse_png(const std::string& bytes, const std::string& where);
 
 }  // namespace limber::render

@@ -35,8 +35,8 @@ class Directory {
     entries_.push_back({tag, 5, 1, bytes});
   }
 
-  // Returns the directory, followed by the values that do not fit in its entries.
-  //   at  position of the directory in the file
+  // Returns the bytes of the directory, followed by the values that do not fit into its entries.
+  //   at  offset of the directory in the file, bytes
   std::string bytes(std::uint32_t at) const {
     std::string directory, values;
     append(directory, static_cast<std::uint32_t>(entries_.size()), 2);
@@ -52,7 +52,7 @@ class Directory {
       append(directory, values_at + static_cast<std::uint32_t>(values.size()), 4);
       values += entry.bytes + std::string(entry.bytes.size() % 2, '\0');
     }
-    append(directory, 0, 4);  // no other picture
+    append(directory, 0, 4);  // offset of the next directory; 0: there is no other picture
     return directory + values;
   }
 
@@ -62,10 +62,11 @@ class Directory {
     std::uint32_t count;
     std::string bytes;
   };
-  std::vector<Entry> entries_;  // by ascending tags
+  std::vector<Entry> entries_;  // sorted by tag
 };
 
-// Returns rows of the picture, each channel as its difference from the pixel to the left, packed.
+// Returns the rows [from, to) of the picture, compressed. Each channel is stored as its difference from the pixel to
+// the left.
 std::string packed_strip(const Image& image, int channels, int from, int to) {
   std::string packed;
   Deflater deflater(Deflater::Wrap::Zlib,
@@ -91,7 +92,7 @@ std::string tiff_of(const Image& image, double dots_per_inch) {
   const int channels = opaque ? 3 : 4;
   std::string file = "II";
   append(file, 42, 2);
-  append(file, 0, 4);  // the position of the directory, written last
+  append(file, 0, 4);  // placeholder for the directory's offset, which is written last
   std::vector<std::uint32_t> offsets, sizes;
   for (int y = 0; y < image.size.y; y += kRowsPerStrip) {
     const std::string strip = packed_strip(image, channels, y, std::min(y + kRowsPerStrip, image.size.y));
@@ -102,20 +103,22 @@ std::string tiff_of(const Image& image, double dots_per_inch) {
   Directory directory;
   directory.add(256, {static_cast<std::uint32_t>(image.size.x)});
   directory.add(257, {static_cast<std::uint32_t>(image.size.y)});
-  directory.add(258, std::vector<std::uint32_t>(static_cast<std::size_t>(channels), 8), 16);  // bits a channel
-  directory.add(259, {8}, 16);                                                                // packed by deflate
-  directory.add(262, {2}, 16);                                                                // red, green, blue
+  // BitsPerSample: 8 for each channel.
+  directory.add(258, std::vector<std::uint32_t>(static_cast<std::size_t>(channels), 8), 16);
+  directory.add(259, {8}, 16);  // Compression: deflate
+  // PhotometricInterpretation: RGB.
+  directory.add(262, {2}, 16);
   directory.add(273, offsets);
   directory.add(277, {static_cast<std::uint32_t>(channels)}, 16);
   directory.add(278, {kRowsPerStrip});
   directory.add(279, sizes);
   directory.add_fraction(282, dots_per_inch);
   directory.add_fraction(283, dots_per_inch);
-  directory.add(284, {1}, 16);  // the channels of a pixel stand together
-  directory.add(296, {2}, 16);  // the resolution is per inch
+  directory.add(284, {1}, 16);  // PlanarConfiguration: the channels of a pixel are adjacent
+  directory.add(296, {2}, 16);  // ResolutionUnit: inch
   directory.add_text(305, "Limber");
-  directory.add(317, {2}, 16);               // horizontal differences
-  if (!opaque) directory.add(338, {2}, 16);  // the fourth channel is opacity, not multiplied into the others
+  directory.add(317, {2}, 16);               // Predictor: horizontal differences
+  if (!opaque) directory.add(338, {2}, 16);  // ExtraSamples: the fourth channel is unassociated alpha
   const auto at = static_cast<std::uint32_t>(file.size());
   std::string place;
   append(place, at, 4);

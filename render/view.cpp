@@ -19,9 +19,10 @@ constexpr double kRest = 0.1;          // time without a change after which the 
 constexpr double kFrame = 0.024;       // time limit for drawing the body while something moves, seconds
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
 constexpr int kTile = 128;             // edge length of a tile, pixels
-constexpr int kLightTile = 64;         // the same where rays go on from the hits to the light and the sky
-constexpr int kImageTile = 40;         // the same where a grey image is drawn, whose rays take ten times as long
-constexpr int kImagePictures = 2;      // largest number of pictures of a grey image that are averaged
+constexpr int kLightTile = 64;         // edge length of a tile in pictures with light by rays, pixels
+// Edge length of a tile of a grey image, whose rays take ten times as long, pixels.
+constexpr int kImageTile = 40;
+constexpr int kImagePictures = 2;  // largest number of averaged pictures of a grey image
 // Length of the steps of rays through a grey image, in voxels of the image: in a picture in full resolution, and while
 // something moves.
 constexpr double kFineStep = 0.7, kCoarseStep = 1.4;
@@ -129,7 +130,8 @@ struct BodyKey {
 };
 // Returns true if the 3D view shows the grey image instead of the body.
 bool shows_image(const Scene& scene) { return scene.display == Display::Image && scene.grey && scene.grey->image; }
-// Returns what the rendering of the image depends on: not on the window where its colours are fixed to values.
+// Returns the settings on which the rendering of the image depends. Level and width are included only if the rendering
+// uses them.
 std::optional<ShownGrey> rendered_image(const Scene& scene) {
   if (!shows_image(scene)) return std::nullopt;
   ShownGrey grey = *scene.grey;
@@ -165,7 +167,8 @@ bool same_overlay(const Scene& a, const Scene& b) {
 // that shows only outlines. Lines are fainter where the tets appear smaller, since they would hide what is below.
 LinePass::Ink ink_of_mesh(const Scene& scene, const std::vector<Segment>& lines, bool on_tissue,
                           double millimetres_per_pixel) {
-  // Mean length of the lines at which they are faintest and clearest, pixels at line scale 1.
+  // Mean lengths of the drawn lines, pixels at line scale 1: at kFaint and below they are faintest, at kClear and
+  // above clearest.
   constexpr double kFaint = 1.5, kClear = 12;
   double length = 0;
   for (const Segment& line : lines) length += glm::distance(line[0], line[1]);
@@ -224,19 +227,19 @@ struct View3D::Impl {
   PassResources& resources;
   Target output, body, average;
   Target lit;  // average of the pictures with fine light
-  // The grey image: the picture that is shown, and the one that is traced next, tile by tile.
+  // Pictures of the grey image: the picture that is shown, and the next one, which is drawn tile by tile.
   Target image, next_image;
   using Layers = std::array<GBuffer, kMostLayers>;
   Layers shown;                                // hits of the rays of the shown picture, the outermost layer first
   Layers jittered;                             // hits of the rays of the picture that will be averaged next
-  std::array<LightBuffer, kMostLayers> light;  // light at the hits of `jittered`
+  std::array<LightBuffer, kMostLayers> light;  // fine light at the hits of `jittered`
   BodyKey key;
   Scene scene;  // the scene that was drawn last
   bool drawn = false;
   double changed_at = 0;
   int moving_scale = 3;  // the body is drawn at every n-th pixel while something moves
   int shown_scale = 0;   // scale at which the body was drawn (every n-th pixel); 0: no body
-  int sample = 0;        // number of pictures in the averages so far; those with fine light come after the others
+  int sample = 0;        // number of pictures in the averages so far; the pictures with fine light come last
   bool fine = false;     // true: the last picture was drawn with fine light switched on
   int next_tile = 0;     // index of the next tile of the picture that will be averaged next
   bool refines = false;  // true: the picture will be refined to full resolution and averaged (scale 0)
@@ -384,9 +387,9 @@ struct View3D::Impl {
     shown_scale = scale;
   }
 
-  // Draws some tiles of the next picture to average. Returns true if the picture is complete and was averaged. The
-  // pictures with fine light take the same rays as the others, and two rounds over their tiles: in the first, rays are
-  // followed; in the second, each pixel is shaded by the light around it.
+  // Draws some tiles of the next picture to average. Returns true if the picture is complete and was averaged.
+  // Pictures with fine light use the same rays as the other pictures, in two rounds over the tiles: the first follows
+  // the rays, the second shades each pixel by the light around it.
   bool refine(const Source& source) {
     const double begin = seconds();
     const bool with_light = sample >= pictures();
@@ -435,8 +438,8 @@ struct View3D::Impl {
       next_image.clear();
     }
     if (!with_light) return;
-    // Light and outlines are looked up some pixels away, also beyond the rectangle that is drawn, where hits of other
-    // pictures would remain.
+    // Light and outlines read pixels outside the drawn rectangle too. Clear the buffers, so that no hits of earlier
+    // pictures remain there.
     for (size_t layer = 0; layer < source.layers.size(); ++layer) {
       jittered[layer].forget_hits();
       light[layer].resize(jittered[layer], source.pose ? 2 : 1);
@@ -499,7 +502,7 @@ struct View3D::Impl {
                              std::max(600.0, glm::length(high - low) * 1.5), scene.line_scale);
     const bool has_body = shown_scale > 0;
     const gl::Texture& first = shows_image(scene) ? image.texture() : body.texture();
-    // Fine light fades in with each of its pictures.
+    // While pictures with fine light are added, their average is blended in with growing weight.
     if (has_body && sample > pictures())
       resources.compose.bodies(average.texture(), lit.texture(), float(sample - pictures()) / float(lit_pictures()),
                                key.size, shown_rect());
@@ -513,11 +516,12 @@ struct View3D::Impl {
     gl::check_gl("drawing a picture");
   }
 
-  // The number of pictures to average. Those of a grey image take ten times as long, and have no hard edges.
+  // Returns the number of pictures to average. A grey image gets fewer, because they take ten times as long and have
+  // no hard edges.
   int pictures() const {
     return shows_image(scene) ? std::min(kImagePictures, resources.pictures_at_rest) : resources.pictures_at_rest;
   }
-  // The number of pictures with fine light that are averaged after those.
+  // Returns the number of pictures with fine light that are averaged after the other pictures.
   int lit_pictures() const { return resources.fine_light && !shows_image(scene) ? pictures() : 0; }
   bool complete() const {
     return drawn && has_all_weights && has_whole_image && fine == resources.fine_light &&

@@ -24,16 +24,16 @@ namespace limber::render {
 struct PassResources;
 struct PreparedBody;
 
-// Computes all that is uploaded of a label volume before it can be drawn. It needs no OpenGL, so any thread may do it
-// while others draw; Renderer::upload() then uploads the result over several frames. Throws Cancelled, and Error when
-// the volume does not fit in textures.
-//   looks, display   with which the volume will be drawn; with others, some of it is computed again
-//   limits           Renderer::limits()
+// Computes all data of a label volume that must be uploaded before it can be drawn. It needs no OpenGL, so any thread
+// may call it while others draw. Renderer::upload() then uploads the result over several frames. Throws Cancelled.
+// Throws Error if the volume does not fit in textures.
+//   looks, display  the settings with which the volume will be drawn; with other settings, parts are computed again
+//   limits          the result of Renderer::limits()
 std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
                                             Display display, const TextureLimits& limits, Progress& progress);
 
-// How the light on a body is computed. Draft: from the blurred occupancy of the body, at once, also while it moves.
-// Fine: by rays through the body to the light and to the sky, for pictures at rest (render/passes/light_pass.h).
+// How the light on a body is computed. Draft: from the body's blurred occupancy, immediately, also while something
+// moves. Fine: by rays through the body to the light and to the sky, while nothing moves (render/passes/light_pass.h).
 enum class Light { Draft, Fine };
 
 // The resources of one OpenGL context: textures of the volumes in use, and shader programs.
@@ -55,19 +55,22 @@ class Renderer {
   // it is not complete. If this function is never called, each draw uploads everything.
   void begin_frame(double upload_seconds);
 
-  // Uploads a prepared body: as much as the frame's time limit allows. Returns true when the body can be drawn without
-  // a delay. Throws Error when the driver has no memory for it.
+  // Uploads as much of a prepared body as the frame's time limit allows. Returns true when the body can be drawn
+  // without delay. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);
-  // Limits the textures of each volume that is uploaded from now on; by default only the driver limits them.
+  // Limits the memory for the textures of each volume that is uploaded from now on, bytes. By default, only the driver
+  // limits it.
   void limit_memory(std::int64_t bytes);
   const TextureLimits& limits() const;
 
-  // Sets how many pictures are averaged when nothing moves; the default is six. Fewer pictures are complete sooner, but
-  // less smooth. With 0 the picture stays at every third pixel, for tests that need no good picture.
+  // Sets the number of pictures that are averaged while nothing moves; the default is six. Fewer pictures are finished
+  // sooner, but are less smooth. With 0, the picture keeps the coarse scale of 3 (every third pixel), for tests that
+  // need no good picture.
   void average_at_rest(int pictures);
 
-  // Sets how the light of pictures at rest is computed; the default is Draft. Fine light starts when the pictures of
-  // average_at_rest() are complete, and fades in while its own pictures are added, as many as those.
+  // Sets how the light is computed while nothing moves; the default is Draft. Fine light starts when the pictures of
+  // average_at_rest() are complete. The same number of pictures with fine light is then added, and the fine light
+  // fades in.
   void light_at_rest(Light light);
 
   // Waits until everything drawn so far is finished, for time measurements.

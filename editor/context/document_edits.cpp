@@ -8,7 +8,7 @@
 namespace limber::editor {
 
 float scale_for(const Preferences& preferences, const Host& host) {
-  // the scale changes in steps of this size, so that fonts are not rebuilt at every pixel of a window resize
+  // The scale changes in steps of this size, so that fonts are not rebuilt at every pixel of a window resize.
   constexpr double kStep = 0.25;
   const glm::dvec2 most = glm::dvec2(host.size()) / glm::dvec2(800, 520);
   const double fitting = std::floor(std::min(most.x, most.y) / kStep) * kStep;

@@ -48,7 +48,7 @@ struct TransformSettings {
     bool moved = false;
   } row_drag;
 
-  // name of the selected pose of the library; of a body pose, its library_name() (body_pose_cards.h)
+  // Name of the selected pose of the library; of a body pose, its library_name() (body_pose_cards.h).
   std::string library_pose;
   struct {  // the program's own body poses, made for the current rig
     std::shared_ptr<const Armature> armature;

@@ -31,7 +31,7 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
 struct BodyView {
   render::Camera camera;
   std::optional<CameraMove> move;
-  // name of the standard view that the camera shows, such as "Front"; empty between the standard views
+  // Name of the standard view that the camera shows, such as "Front"; empty between the standard views.
   std::string name;
   std::unique_ptr<render::View3D> picture;
   std::unique_ptr<render::View3D> other;  // picture of result A (Views::other_scene) in a comparison
@@ -106,7 +106,7 @@ struct Views {
   Hover hover;
 
   std::shared_ptr<const Extents> extents;  // the tissues' bounding boxes in the document's volume
-  // tissue voxels of the volume `tissue_voxels_of`; computed at first use
+  // Tissue voxels of the volume `tissue_voxels_of`; computed at first use.
   std::shared_ptr<const TissueVoxels> tissue_voxels;
   std::shared_ptr<const LabelVolume> tissue_voxels_of;
   // Objects that the views show instead of the document's objects while the user drags. When the drag ends, they are

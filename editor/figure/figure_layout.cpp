@@ -21,7 +21,7 @@ constexpr double kSwatch = 0.8 * kTextSize, kSwatchGap = 1;
 constexpr double kBarHeight = 0.5, kTickHeight = 1.4;
 constexpr double kLongestBar = 0.3;        // largest length of the scale bar, as a fraction of the picture's width
 constexpr double kSmallestPicture = 0.35;  // smallest height of the picture, as a fraction of the figure's height
-// largest number of layout rounds, in case each new legend changes which tissues the picture shows
+// Largest number of layout rounds, in case each new legend changes which tissues the picture shows.
 constexpr int kMostRounds = 4;
 
 // Returns the largest number that is 1, 2 or 5 times a power of ten and not larger than `most`.

@@ -54,7 +54,7 @@ struct FigureLayout {
   FigureOptions options;
   glm::ivec2 pixels{0};                          // size of the whole figure, pixels
   glm::ivec2 picture_low{0}, picture_pixels{0};  // upper left corner and size of the picture, pixels
-  // length in the body that the scale bar represents, mm; 0: no scale bar
+  // Length in the body that the scale bar represents, mm; 0: no scale bar.
   double bar_millimetres = 0;
   FigureBox bar;                 // the scale bar
   std::vector<FigureBox> boxes;  // ticks of the scale bar, and colour swatches of the legend

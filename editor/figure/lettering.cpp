@@ -44,7 +44,7 @@ std::size_t after_character(const std::string& text, std::size_t at) {
 }  // namespace
 
 void draw_over(std::uint8_t* rgba, const glm::ivec3& colour, int alpha) {
-  // opacities of the old and of the resulting pixel, scaled by 255
+  // Opacities of the old and of the resulting pixel, scaled by 255.
   const int under = rgba[3] * (255 - alpha), sum = alpha * 255 + under;
   if (sum == 0) return;
   for (int c = 0; c < 3; ++c)

@@ -221,7 +221,7 @@ void FileBrowser::column_head(Editor& editor, const char* title, const Rect& rec
   put_text(editor, look.fonts.small, by_ == by || state.hovered ? look.theme.text : look.theme.text2, rect, words,
            align);
   if (!state.clicked) return;
-  // the first click on a column sorts sizes and dates in descending order; the next click reverses the order
+  // The first click on a column sorts sizes and dates in descending order; the next click reverses the order.
   falling_ = by_ == by ? !falling_ : by != SortBy::Name;
   by_ = by;
   changed_ = reveal_ = true;

@@ -15,7 +15,7 @@ namespace {
 
 using Paper = FigureOptions::Paper;
 
-// time limit for uploading the slice's data between two checks whether the user has cancelled, s
+// Time limit of one step of uploading the slice's data, s. Steps are repeated until the slice is complete.
 constexpr double kUploadTime = 1;
 
 bool shows_slice(const Editor& editor) {

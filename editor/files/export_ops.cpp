@@ -178,7 +178,7 @@ std::vector<Operator> export_operators() {
                        "Export the active motion as BVH.",
                        ExportKind::Motion,
                        {{"BVH", {".bvh"}}},
-                       // the suffix keeps the export from overwriting the imported BVH file, which has the clip's name
+                       // The suffix keeps the export from overwriting the imported BVH file, which has the clip's name.
                        "-motion"}),
       export_operator({"file.export_gltf",
                        "glTF...",

@@ -78,7 +78,7 @@ class PosedScenes {
   const Document document_;
   const Blend blend_;
   const std::vector<int> frames_;
-  // computes preview maps as fine as those that the 3D view shows when the pose does not change
+  // Computes preview maps as fine as those that the 3D view shows when the pose does not change.
   const std::shared_ptr<MapMaker> maker_;
 };
 

@@ -158,7 +158,7 @@ std::string editor_state(const Editor& editor) {
                      {"width", views.image->width},
                      {"tissues", views.image->tissues},
                      {"rendering", static_cast<int>(views.image->rendering)}};
-  // the image's file was not found, but its path is kept
+  // The image's file was not found, but its path is kept.
   else if (!views.image_path.empty()) json["image"] = {{"path", views.image_path.string()}};
   add_free_pose(json, editor);
   if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;

@@ -13,9 +13,8 @@
 
 namespace limber::editor {
 
-using KeyChanges = std::map<std::pair<std::string, std::string>,
-                            std::vector<std::string>>;  // key: context and operator id; value: the chords that replace
-                                                        // the original ones
+// Key: context and operator id. Value: the chords that replace the original chords.
+using KeyChanges = std::map<std::pair<std::string, std::string>, std::vector<std::string>>;
 
 // Returns the key map after the changes. Keys that cannot be read are left out.
 Keymap changed(Keymap keymap, const KeyChanges& changes);

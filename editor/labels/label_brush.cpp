@@ -37,7 +37,7 @@ void show_label_stroke(Views& views, LabelBrush& brush) {
   if (!brush.running || views.scene.volume != brush.running->stroke->before()) return;
   const LabelStroke& stroke = *brush.running->stroke;
   render::PassResources& resources = views.renderer.resources();
-  // the first call uploads the stroke's volume; later calls do nothing
+  // The first call uploads the stroke's volume; later calls do nothing.
   resources.relabel(stroke.before(), stroke.volume(), {}, Surface::Waits);
   if (const limber::VoxelBox box = std::exchange(brush.running->unshown, {}); box.size.x > 0)
     resources.relabel(stroke.volume(), stroke.volume(), box, Surface::Waits);

@@ -18,7 +18,7 @@ constexpr float kLine = 2, kDot = 4;  // pixels at scale 1
 constexpr float kPad = 6, kRow = 16;  // padding and line height of a measurement's label, pixels at scale 1
 constexpr double kArcShare = 0.35;    // radius of an angle's arc, as a fraction of the angle's shorter side
 constexpr int kArcSteps = 24;
-// a slice shows a measurement whose points are all within this distance of its plane, mm
+// A slice shows a measurement whose points are all within this distance of its plane, mm.
 constexpr double kNearSlice = 5;
 constexpr float kHiddenAlpha = 0.35f;  // opacity of the part of a girth's tape on the far side of the body
 

@@ -18,7 +18,7 @@ namespace limber::editor {
 namespace {
 
 constexpr std::size_t kRemembered = 4;
-// a point farther than this from a FEM result's mesh does not move with the mesh, mm
+// A point farther than this from a FEM result's mesh does not move with the mesh, mm.
 constexpr double kBesideMesh = 10;
 
 // Returns the positions of points of the rest body in the pose that a scene previews. Each point moves with the tissue

@@ -21,7 +21,7 @@ struct MeasureView {
   // Cached positions of the measurements' points on the body of a result, with the inputs of the computation.
   struct Placed {
     std::weak_ptr<const LabelVolume> volume;
-    // points of all measurements: in the rest pose, and in the result; world, mm
+    // Points of all measurements: in the rest pose, and in the result; world, mm.
     std::vector<glm::dvec3> at_rest, posed;
   };
   std::vector<Placed> placed;  // cache for the last few results, the newest last

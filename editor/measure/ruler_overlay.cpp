@@ -12,7 +12,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kApart = 64;  // smallest distance between two numbers, pixels at scale 1
-// height of the horizontal ruler, width of the vertical one, pixels at scale 1
+// Height of the horizontal ruler, width of the vertical one, pixels at scale 1.
 constexpr float kHeight = 20, kWidth = 34;
 constexpr float kLong = 8, kShort = 4;  // lengths of the ticks with and without a number, pixels at scale 1
 constexpr int kParts = 5;               // number of tick intervals between two numbers

@@ -23,9 +23,9 @@ namespace limber::editor {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are recorded at once
-// a clip of fewer frames changes its speed at once, a longer clip in a background task
+// A clip of fewer frames changes its speed at once, a longer clip in a background task.
 constexpr double kFewFrames = 2000;
-// the user is warned of a loop in which bones turn faster than this at the seam
+// The user is warned of a loop in which bones turn faster than this at the seam.
 constexpr double kHasty = 1.5;
 
 std::string needs_clip(const Editor& editor) {

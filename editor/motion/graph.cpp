@@ -339,7 +339,7 @@ void show_graph(Editor& editor, bool on) {
     for (std::size_t i = 0; i < editor.arrangements.size(); ++i) {
       const float before = std::exchange(graph.heights_before[i], 0.0f);
       float& height = editor.arrangements[i].bottom_height;
-      // restores the height if the user has not dragged the splitter since
+      // Restores the height if the user has not dragged the splitter since.
       if (before > 0 && height == kHeight) height = before;
     }
   }

@@ -46,7 +46,7 @@ struct GraphCurve {
   std::map<int, glm::dquat> turns;
   std::map<int, glm::dvec3> shifts;
   KeyShapes shapes;
-  // by frame, degrees or mm: the curve with its keys; the motion alone (empty: there is no motion)
+  // By frame, degrees or mm: the curve with its keys; the motion alone (empty: there is no motion).
   std::vector<glm::dvec3> values, motion;
 };
 
@@ -68,7 +68,7 @@ struct Graph {
   std::set<GraphTrack> met_shifts;  // shift tracks that have been listed before; a new one is hidden at first
   std::set<GraphKey> chosen;
   double low = -10, high = 10;  // the values at the plot's lower and upper edge
-  // text that identifies the clip and tracks to which `low` and `high` were fitted
+  // Text that identifies the clip and tracks to which `low` and `high` were fitted.
   std::string fitted;
   std::optional<Keys> preview;            // the keys while they are dragged
   std::shared_ptr<const Clip> previewed;  // the clip whose keys `preview` replaces
@@ -98,7 +98,7 @@ struct GraphTracks {
 GraphTracks graph_tracks(const Editor& editor);
 std::set<int> key_frames_of(const Keys& keys, const GraphTrack& track);
 bool is_shown(const Graph& graph, const GraphChannel& channel);
-// returns true if the key exists and its channel is shown
+// Returns true if the key exists and its channel is shown.
 bool exists(const Graph& graph, const Keys& keys, const GraphKey& key);
 
 // Updates the curves for changes of the clip, its keys or the rig. Needs a shown clip and a rig.
@@ -119,7 +119,7 @@ std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack&
 
 // ---- The view
 void show_graph(Editor& editor, bool on);
-// fits the value axis to the keys; nullptr: to all shown curves
+// Fits the value axis to the keys; nullptr: to all shown curves.
 void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys = nullptr);
 float graph_y(const Graph& graph, double value);
 double graph_value_at(const Graph& graph, float y);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFurthest = 1e7;  // largest absolute value of a frame number
 
-// for each track, the frames of its keys and the channels that are selected at each
+// For each track, the frames of its keys and the channels that are selected at each.
 using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;
 
 FramesOfTracks by_track(const std::set<GraphKey>& keys) {

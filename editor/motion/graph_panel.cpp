@@ -14,11 +14,11 @@ namespace limber::editor {
 
 namespace {
 
-// widths, pixels at scale 1: the list of tracks, the numbers beside the plot, a channel's button
+// Widths, pixels at scale 1: the list of tracks, the numbers beside the plot, a channel's button.
 constexpr float kList = 176, kValues = 62, kButton = 20;
 constexpr float kLeastValues = 26;  // smallest distance between two values beside the plot, pixels at scale 1
 constexpr int kMostTicks = 1000;
-// if frames are farther apart than this, curves are also drawn between frames; pixels at scale 1
+// If frames are farther apart than this, curves are also drawn between frames; pixels at scale 1.
 constexpr float kFine = 5;
 constexpr float kKeyRadius = 4, kHandleRadius = 3.5f;
 constexpr const char* kAxes[] = {"X", "Y", "Z"};

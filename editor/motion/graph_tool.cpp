@@ -198,7 +198,7 @@ class ChangingGraphKeys final : public Modal {
   bool scales_;
   int pivot_frame_;
   double pivot_value_ = 0;
-  // pixels: from the pivot to the pointer when the drag began; the pointer's motion since then
+  // Pixels: from the pivot to the pointer when the drag began; the pointer's motion since then.
   glm::vec2 reach_{0}, way_{0};
   Lock lock_ = Lock::None;
   GraphMap time_, value_;

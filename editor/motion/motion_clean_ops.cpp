@@ -20,7 +20,7 @@ namespace limber::editor {
 
 namespace {
 
-// mm; a limb that stays farther from its position than this counts as not reaching it
+// Mm; a limb that stays farther from its position than this counts as not reaching it.
 constexpr double kOff = 3;
 constexpr double kFarthest = 1e6;          // mm: upper limit on each of the typed x, y and z
 constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are cleaned at once

@@ -14,7 +14,7 @@ namespace {
 // Colours of the path before and after the shown frame, the same as those of the onion skin's ghosts, and of the keys'
 // diamonds, the same as in the timeline. ABGR (RGB: 4B8EF5, 5AD19A, F5A623).
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A, kKey = 0xFF23A6F5;
-// longest path, in frames; a longer playing range shows only its first frames
+// Longest path, in frames; a longer playing range shows only its first frames.
 constexpr int kMostFrames = 100'000;
 constexpr std::size_t kMostBones = 8;          // if more bones are selected, only the active bone has a path
 constexpr float kRoom = 5;                     // smallest distance between the dots of two frames, pixels at scale 1

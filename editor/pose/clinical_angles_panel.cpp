@@ -17,9 +17,9 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFarthest = 360;  // largest angle that can be typed, degrees
-// length that the slider shows beyond each end of the range, as a fraction of the range
+// Length that the slider shows beyond each end of the range, as a fraction of the range.
 constexpr double kBeside = 0.2;
-// an angle that exceeds the range by more than this is marked, degrees; numbers show one decimal
+// An angle that exceeds the range by more than this is marked, degrees; numbers show one decimal.
 constexpr double kBeyond = 0.05;
 
 std::string capitalized(std::string text) {

@@ -16,9 +16,9 @@ class Column;
 // The outcome of the last repair.
 struct RepairedJoint {
   std::string bone;  // name of the bone below the joint
-  // numbers that rate the joint before and after the repair; without the repaired weights
+  // Numbers that rate the joint before and after the repair; without the repaired weights.
   JointRepair figures;
-  // the document's weights right after the repair; if they have changed, the outcome is not shown
+  // The document's weights right after the repair; if they have changed, the outcome is not shown.
   std::weak_ptr<const SkinWeights> in;
 };
 

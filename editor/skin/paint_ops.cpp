@@ -16,7 +16,7 @@ namespace limber::editor {
 
 namespace {
 
-// change of the brush per key press: the radius is multiplied by kGrowth, kStep is added to the strength
+// Change of the brush per key press: the radius is multiplied by kGrowth, kStep is added to the strength.
 constexpr double kGrowth = 1.15, kStep = 0.05;
 
 bool paints_labels(const Editor& editor) { return editor.skin->painting->labels->on; }

@@ -54,7 +54,7 @@ struct Painting {
   BrushDepth depth = BrushDepth::ToDepth;
   double depth_mm = 25;
   PaintedTissue tissue = PaintedTissue::Visible;
-  // true: paints only where the active bone, its parent or one of its descendants has the largest weight
+  // True: paints only where the active bone, its parent or one of its descendants has the largest weight.
   bool subtree = false;
   Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of()
   bool relative_to_locks = false;

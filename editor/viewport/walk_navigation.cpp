@@ -16,7 +16,7 @@ constexpr double kSpeed = 0.4;
 constexpr double kFasterPerStep = 1.25;           // factor by which a wheel step changes the speed
 constexpr double kSlowest = 0.1, kFastest = 1e5;  // limits of the speed, mm/s
 constexpr double kHurry = 5, kCreep = 0.2;
-// rotation per pixel, relative to orbiting; smaller than 1, because looking around feels faster
+// Rotation per pixel, relative to orbiting; smaller than 1, because looking around feels faster.
 constexpr double kLookPerPixel = 0.35;
 
 class Walk final : public Modal {

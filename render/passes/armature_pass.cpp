@@ -15,8 +15,8 @@ namespace limber::render {
 namespace {
 
 // A corner of a triangle to draw. `pixel` is its position in pixels from the picture's top left corner. `local` is
-// interpolated over the triangle: the points where its length is below `reach` are coloured, with a smooth rim one
-// pixel wide.
+// interpolated over the triangle. The shader colours the points where the length of `local` is below `reach`, with a
+// smooth rim one pixel wide.
 struct Vertex {
   glm::vec2 pixel;
   float depth;

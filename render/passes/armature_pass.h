@@ -33,7 +33,8 @@ class ArmaturePass {
 // the top left corner.
 std::vector<BoneHit> bones_at(const Scene& scene, const Camera& camera, const glm::ivec2& size,
                               const glm::dvec2& pixel);
-// Returns that bone of bones_at() whose axis is nearest to the pixel, measured as a share of the bone's drawn width.
+// Returns the bone of bones_at() whose axis is nearest to the pixel, relative to the bone's drawn width; nothing if
+// there is no bone.
 std::optional<int> bone_at(const Scene& scene, const Camera& camera, const glm::ivec2& size, const glm::dvec2& pixel);
 
 }  // namespace limber::render

@@ -10,10 +10,10 @@ namespace limber::render {
 
 namespace {
 
-// Half the width of an octahedron, and the distance of its widest section from the bone's head, as shares of the bone's
-// length.
+// Half the width of an octahedron, and the distance of its widest section from the bone's head, as fractions of the
+// bone's length.
 constexpr double kHalfWidth = 0.085, kWidestAt = 0.12;
-constexpr double kRadius = 0.05;  // radius of a cylinder, as a share of the bone's length
+constexpr double kRadius = 0.05;  // radius of a cylinder, as a fraction of the bone's length
 // Number of sides of a cylinder. With 20 it looks round at any size in which bones are drawn.
 constexpr int kSides = 20;
 

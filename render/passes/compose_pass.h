@@ -23,7 +23,8 @@ class ComposePass {
             float line_scale);
   // Draws the picture of the body, which has premultiplied alpha, stretched over the framebuffer.
   void body(const gl::Texture& picture, const glm::ivec2& size, const PixelRect& rect);
-  // The same for a mixture of two pictures, `share` of the second.
+  // Draws a blend of two pictures of the body, which have premultiplied alpha: `share` of `other` and 1 - `share` of
+  // `picture`.
   void bodies(const gl::Texture& picture, const gl::Texture& other, float share, const glm::ivec2& size,
               const PixelRect& rect);
   // Draws an outline around the pixels that show `label`, two pixels times line_scale wide.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Renders a grey image in 3D. Each ray adds up colours and opacities of the image's values from front to back
-// [Levoy 1988], lit by the image's gradient, or keeps the largest value (maximum intensity projection). Blocks whose
-// values are all without opacity are skipped. The rays of a posed body convert each position to rest by the body's
-// inverse map, so that the image moves with the body.
+// Renders a grey image in 3D. Each ray adds up colours and opacities of the image's values from front to back [Levoy
+// 1988], shaded by the image's gradient, or keeps the largest value (maximum intensity projection). Blocks in which
+// all values have zero opacity are skipped. For a posed body, the rays convert each position to its rest position by
+// the body's inverse map, so that the image moves with the body.
 #pragma once
 
 #include <map>
@@ -25,22 +25,23 @@ class ImagePass {
  public:
   ImagePass();
 
-  // The box in the padded coordinates of the volume in which the image can be seen: that of the image at rest, or that
-  // of the posed body's map.
+  // Returns the box, in padded coordinates of the volume, in which the image can be visible: the image's box at rest,
+  // or the box of the posed body's inverse map.
   static std::array<glm::dvec3, 2> box(const VolumeTexture& volume, const PosedTexture* posed, const GreyTexture& grey);
 
-  // Draws the image, with premultiplied alpha, into a rectangle of the bound framebuffer of `size` pixels, and replaces
-  // what was there.
+  // Draws the image, with premultiplied alpha, into a rectangle of the bound framebuffer of `size` pixels, and
+  // replaces the previous content.
   //   posed  the inverse map of the posed body; null: the body is at rest
-  //   clip   cuts the image open as it cuts the body
-  //   step   the length of a ray's steps, in voxels of the image; a moving picture takes longer steps
+  //   clip   clip box and plane, which cut the image in the same way as the body
+  //   step   length of a ray's steps, in voxels of the image; longer while something moves
   void draw(const VolumeTexture& volume, const PosedTexture* posed, const GreyTexture& grey, const ShownGrey& shown,
             const Clip& clip, const ViewRays& rays, double step, const PixelRect& rect, const glm::ivec2& size);
 
  private:
   void upload_transfer(const ShownGrey& shown);
 
-  std::map<std::pair<bool, bool>, std::unique_ptr<gl::Program>> programs_;  // by: posed, maximum
+  // key: whether the body is posed, whether the picture is a maximum intensity projection
+  std::map<std::pair<bool, bool>, std::unique_ptr<gl::Program>> programs_;
   gl::Texture transfer_;
   std::optional<ShownGrey> transfer_of_;
   gl::VertexArray nothing_;

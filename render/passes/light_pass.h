@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Light by rays, for pictures at rest. From the surface that a pixel shows, rays go to a disc of the key light, which
-// gives soft shadows, and into the half space over the surface, evenly by the cosine, which gives the share of the sky
-// that is seen there (ambient occlusion, the form factor of the sky). A ray is followed through the field of the body,
-// posed bodies included, without a limit of its length. Every picture that is averaged has other rays than those
-// before, all from fixed sequences: the same scene gives the same light, byte for byte.
+// Computes light by rays for still pictures, in which nothing moves. From the surface point that a pixel shows, some
+// rays go to the disc of the key light, which gives soft shadows. Other rays go into the hemisphere above the surface
+// with a cosine-weighted density; the fraction of them that leaves the body is the visible share of the sky (ambient
+// occlusion). A ray is followed through the field of the body, also of a posed body, to any distance. Each of the
+// averaged pictures uses other rays, all from fixed sequences: the same scene gives the same light, byte for byte.
 //
-// Rays through the map of a posed body take several times as long, so that there only every other pixel along each axis
-// is followed.
+// Rays through the inverse map of a posed body take several times as long. In that case, light is computed only at
+// every other pixel along each axis.
 #pragma once
 
 #include <map>
@@ -17,12 +17,12 @@
 
 namespace limber::render {
 
-// The light at the pixels of a picture, or at every n-th pixel along each axis, other ones in each picture.
+// The light at every n-th pixel of a picture along each axis (n = `every`). Each averaged picture uses other pixels.
 class LightBuffer {
  public:
   void resize(const GBuffer& buffer, int every);
 
-  gl::Texture light;  // RG8: shares [0, 1] of the key light and of the sky
+  gl::Texture light;  // RG8: fractions [0, 1] of the key light (R) and of the sky (G) that reach the surface
   gl::Framebuffer target;
   int every = 1;
   glm::ivec2 offset{0};  // the first pixel that has light; set by LightPass::draw()
@@ -35,8 +35,8 @@ class LightPass {
  public:
   LightPass();
 
-  // Follows rays from the hits inside `rect` that VolumePass::march() stored in `buffer` for the same layer.
-  //   picture  number of pictures before this one, whose rays were others
+  // Follows light rays from the hits inside `rect` that VolumePass::march() stored in `buffer` for the same layer.
+  //   picture  number of pictures averaged before this one; selects the rays of this picture
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,
             const PosedHull* posed_hull, const Clip& clip, const ViewRays& rays, const GBuffer& buffer,
             LightBuffer& into, int picture, const PixelRect& rect);

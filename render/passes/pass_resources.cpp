@@ -20,8 +20,8 @@ int texture_limit(int largest_texture) {
   return largest_texture > 0 ? std::min<int>(most, largest_texture) : most;
 }
 
-// Returns true if a weak pointer refers to the object that `owner` shares. The comparison works even after the object
-// is destroyed.
+// Returns true if a weak pointer refers to the object that `owner` shares. The comparison also works after the object
+// has been destroyed.
 template <class T, class Owner>
 bool same(const std::weak_ptr<T>& key, const Owner& owner) {
   return !key.owner_before(owner) && !owner.owner_before(key);
@@ -36,7 +36,7 @@ PassResources::Body& PassResources::body(const std::shared_ptr<const LabelVolume
   if (found == bodies_.end()) {
     forget_expired();
     std::unique_ptr<Body> fresh;
-    if (arriving_ && same(arriving_->key, volume)) {  // the rest of its uploads cannot wait any longer
+    if (arriving_ && same(arriving_->key, volume)) {  // finishes the pending uploads now, because the volume is needed
       fresh = std::move(arriving_);
       fresh->volume->upload(nullptr);
       for (const auto& layer : fresh->layers) layer->upload(*fresh->volume, nullptr);
@@ -185,7 +185,7 @@ GreyTexture* PassResources::grey(const std::optional<ShownGrey>& shown, Extent e
   auto found = std::find_if(greys_.begin(), greys_.end(),
                             [&](const auto& grey) { return same(grey->original(), shown->image); });
   if (found == greys_.end()) {
-    // Frees memory before the next image asks for some.
+    // Frees the textures of destroyed images before the next image needs memory.
     std::erase_if(greys_, [](const auto& grey) { return grey->original().expired(); });
     if (greys_.size() == kMost) greys_.erase(greys_.begin());
     found = greys_.insert(greys_.end(), std::make_unique<GreyTexture>(shown->image, limits.side));

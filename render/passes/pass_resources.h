@@ -51,25 +51,25 @@ struct PassResources {
     std::unique_ptr<WeightTexture> weights;  // the weights that were shown last
     // For each layer, the slots whose labels changed since its field was computed (SurfaceField::update()).
     std::vector<std::vector<std::uint8_t>> changed;
-    bool surface_waits = false;  // true: fields stay as they are although labels changed
-    int revision = 0;            // another number whenever labels change or are uploaded again
+    bool surface_waits = false;  // true: labels have changed, but the fields are not updated yet
+    int revision = 0;            // changes whenever labels change or are uploaded again
   };
   Body& body(const std::shared_ptr<const LabelVolume>& volume);
   bool has(const std::shared_ptr<const LabelVolume>& volume) const;  // true if body() need not upload anything
-  // Lets the textures of `before` show `now`, which differs from it only within a box (size 0: nowhere), by uploading
-  // what lies in or near the box. `before` and `now` may be one volume whose voxels were changed in place. Does nothing
-  // if `before` has no textures. Where the change does not fit the textures, they are dropped, and body() uploads
-  // `now`.
-  //   surface  Waits: labels change at once, but the surfaces in 3D only with the next call with AtOnce; they take much
-  //            longer to compute than the labels
+  // Makes the textures of `before` show the volume `now`, by uploading only what lies in or near the box in which the
+  // volumes differ (size 0: nowhere). `before` and `now` may be the same volume, whose voxels were changed in place.
+  // Does nothing if `before` has no textures. If the change does not fit into the textures, deletes them, and body()
+  // uploads `now` as a whole.
+  //   surface  AtOnce: labels and 3D surfaces change now. Waits: only the labels change now, and the surfaces with the
+  //   next call with AtOnce, because they take much longer to compute.
   enum class Surface { AtOnce, Waits };
   void relabel(const std::shared_ptr<const LabelVolume>& before, const std::shared_ptr<const LabelVolume>& now,
                const VoxelBox& box, Surface surface);
   int revision_of(const std::shared_ptr<const LabelVolume>& volume) const;  // 0 for a volume without textures
   int uploads() const { return uploads_; }                                  // number of volumes uploaded so far
   std::size_t body_count() const { return bodies_.size(); }                 // number of volumes on the graphics card
-  // Uploads a prepared body: as much as the frame's time limit allows. Returns true once body() has it. Later calls
-  // must pass the same body until then. Throws Error when the driver has no memory for it.
+  // Uploads as much of a prepared body as the frame's time limit allows. Returns true once the whole body is uploaded.
+  // Until then, later calls must pass the same body. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
   // Returns the field of a layer, and first computes it if it is missing or out of date.
@@ -87,8 +87,8 @@ struct PassResources {
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 
   TextureLimits limits;
-  int pictures_at_rest = 6;  // number of pictures that are averaged once nothing in the 3D view moves
-  bool fine_light = false;   // true: pictures at rest get light that is computed by rays, after those
+  int pictures_at_rest = 6;  // number of pictures that are averaged while nothing in the 3D view moves
+  bool fine_light = false;   // true: after these pictures, as many with light that is computed by rays are averaged
   ShadePass shade;
   LightPass light;
   ComposePass compose;
@@ -97,7 +97,7 @@ struct PassResources {
   ImagePass image;
   WeightPass weigh;
   LinePass lines;
-  std::string note;                       // of the body that body() returned last
+  std::string note;                       // message for the user about the body that body() returned last
   std::optional<UploadTime> upload_time;  // time limit of all uploads in this frame; empty: no limit
 
  private:

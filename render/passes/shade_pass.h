@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Shades the surfaces that the rays hit: with a soft key light from over the viewer's left shoulder, light from the sky
-// above, a thin rim light, and darker creases (ambient occlusion from the body's blurred occupancy). Light is added in
-// linear space; sRGB is approximated by a gamma of two. Where skin weights are shown, their colours replace those of
-// the tissues, with contour lines on top. In X-ray the outer layer is a ghost: nearly transparent where it faces the
-// viewer, and denser where it is seen at a slant. Cut faces have plain tissue colours, without shading, as a legend has
-// them.
+// Shades the surfaces that the rays hit: with a soft key light from over the viewer's left shoulder, light from the
+// sky above, a thin rim light, and darker creases (ambient occlusion from the body's blurred occupancy). Light is
+// added in linear space; sRGB is approximated by a gamma of two. If skin weights are shown, their colours replace
+// those of the tissues, with contour lines on top. In X-ray the outer layer is a ghost: nearly transparent where it
+// faces the viewer, and denser where it is seen at a slant. Cut faces have plain tissue colours without shading, so
+// that they match the legend.
 #pragma once
 
 #include "render/passes/light_pass.h"
@@ -24,7 +24,7 @@ class ShadePass {
   //   ghost  draws the layer as the outer layer of X-ray
   //   layer  index of the layer; labels that also belong to a deeper layer are not drawn here
   //   posed  the inverse map of the posed body; null: the body is at rest
-  //   light  light by rays at the buffer's pixels; null: creases are darkened by the body's blurred occupancy
+  // light  light by rays at the buffer's pixels; null: creases are darkened by the body's blurred occupancy instead
   //   line_scale  width of the outlines of tissues on cut faces, which pictures with light by rays have, pixels
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
             const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws a plane through the labels without smoothing voxels. A posed body is read through its inverse map, from posed
-// to rest positions. Where weights are shown, their colours replace those of the tissues, with faint lines at the
-// borders of tissues. A grey image lies below the tissues, which let it through.
+// Draws a plane through the labels without smoothing voxels. For a posed body, each position of the plane is converted
+// to its rest position by the inverse map. If weights are shown, their colours replace those of the tissues, with
+// faint lines at the borders of tissues. A grey image is drawn below the tissues, which are then transparent.
 #pragma once
 
 #include <map>

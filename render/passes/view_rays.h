@@ -25,11 +25,11 @@ struct ViewRays {
   glm::dmat4 padded_from_world;
   double nearest = 0;  // depth of the near plane, mm
   bool perspective = true;
-  // Offset of the position at which labels are read, voxels. Each of the averaged pictures has another offset, which
-  // blends the borders between labels.
+  // Offset, in voxels, that is added to positions before labels are read. Each of the averaged pictures has another
+  // offset, so that the average blends the borders between labels.
   glm::vec3 label_shift{0};
-  // True: gradients are sampled at the corners of the mirrored tetrahedron. Every other one of the averaged pictures
-  // does this.
+  // True: the gradient is computed from the four corners of the mirrored tetrahedron. Averaged pictures alternate
+  // between both tetrahedra.
   bool mirrored_taps = false;
   bool smooth_cuts = false;  // true: borders between labels on cut faces are smooth
 };

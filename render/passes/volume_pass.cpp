@@ -150,7 +150,7 @@ void VolumePass::draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer
   const float far = 1, nothing[4] = {-kNothingDepth, -kNothingDepth, 0, 0};
   glClearBufferfv(GL_DEPTH, 0, &far);
   glClearBufferfv(GL_COLOR, 0, nothing);
-  // The hull only marks the pixels that it covers: any depth in front of the far plane will do.
+  // The hull only has to mark the pixels that it covers, so it may have any depth in front of the far plane.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   glEnable(GL_BLEND);

@@ -43,7 +43,7 @@ class GBuffer {
   //   places  true: adds the buffers for the rest position and the weight colour of each pixel
   void resize(const glm::ivec2& size, bool places = false);
   const glm::ivec2& size() const { return size_; }
-  void forget_hits();  // so that no pixel has a hit until the next march
+  void forget_hits();  // marks every pixel as "no hit" until the next march
 
   gl::Texture depth;  // R32F: mm from the eye along the viewing direction; kNothingDepth: no hit
   // RGB10_A2: unit normal in view axes, mapped to [0, 1]. Alpha is 0 for no hit, 1/3 for a surface, 2/3 for a surface

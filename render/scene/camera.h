@@ -50,7 +50,8 @@ Camera panned(const Camera& camera, const glm::dvec2& pixels, const glm::ivec2& 
 Camera zoomed(const Camera& camera, double factor);  // multiplies the distance, which stays within [1e-2, 1e6] mm
 // Zooms about a pixel. The point at the depth of the camera's centre that this pixel shows stays at the pixel.
 Camera zoomed(const Camera& camera, double factor, const glm::dvec2& pixel, const glm::ivec2& size);
-// Turns the view about the eye, by the angles by which orbited() would turn it. The eye stays, and the centre moves.
+// Turns the view about the eye, by the same angles as orbited(). The eye does not move, and the centre moves around
+// it.
 Camera looked_round(const Camera& camera, const glm::dvec2& pixels);
 
 }  // namespace limber::render

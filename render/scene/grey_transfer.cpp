@@ -8,11 +8,11 @@ namespace limber::render {
 
 namespace {
 
-// A value and what it looks like; between knots everything is interpolated linearly.
+// A value of the image with its colour and opacity. Between two knots, colour and opacity are interpolated linearly.
 struct Knot {
   double value;
   glm::vec3 colour;
-  float opacity;  // of one millimetre
+  float opacity;  // opacity of a layer one millimetre thick, [0, 1]
 };
 
 constexpr glm::vec3 kSkinColour{0.88f, 0.69f, 0.58f}, kFleshColour{0.72f, 0.26f, 0.20f},

@@ -32,12 +32,13 @@ enum class Display {
   Image,   // the grey image instead of the tissues, rendered as ShownGrey::rendering says
 };
 
-// How the 3D view renders a grey image: which values are seen, in which colours (render/scene/grey_transfer.h). Bone,
-// Muscle and Skin are for CT, whose values are Hounsfield units. Window and Maximum follow the window of ShownGrey.
+// How the 3D view renders a grey image: which values are visible, and in which colours (render/scene/grey_transfer.h).
+// Bone, Muscle and Skin are for CT, whose values are Hounsfield units. Window and Maximum use the level and width of
+// ShownGrey.
 enum class GreyRendering { Bone, Muscle, Skin, Window, Maximum };
 
-// A grey image (CT, MR). Slices show it below the tissues, and Display::Image in the 3D view. A posed body carries the
-// image along, like its labels; where the pose leaves no tissue, nothing of the image is shown.
+// A grey image (CT, MR). Slices show it below the tissues; with Display::Image, the 3D view shows it. The image moves
+// with a posed body, as the labels do. Where the posed body has no tissue, the image is not shown.
 struct ShownGrey {
   std::shared_ptr<const GreyLevels> image;
   // The value that slices show as middle grey, and the difference between the values shown as white and as black.
@@ -67,7 +68,7 @@ enum class BoneShape { Octahedron, Stick, Cylinder, None };
 // A bone under a pixel.
 struct BoneHit {
   int bone;
-  // Distance of the pixel from the bone's axis, as a share [0, 1) of the largest distance that still hits the bone.
+  // Distance of the pixel from the bone's axis, as a fraction [0, 1) of the largest distance that counts as a hit.
   double off;
   double depth;  // depth of the axis at the pixel, mm from the eye along the viewing direction
 };
@@ -104,7 +105,7 @@ struct ShownWeights {
   bool operator==(const ShownWeights&) const = default;
 };
 
-// A tet mesh, drawn as lines where the clip or a slice cuts it.
+// A tet mesh, drawn as lines where a clip plane, the clip box or a slice cuts it.
 struct CutMesh {
   std::shared_ptr<const Eigen::MatrixX3i> faces;  // faces of all tets, each once
   std::shared_ptr<const Eigen::MatrixX3d> V;      // node positions, world, mm

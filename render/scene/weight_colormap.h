@@ -31,8 +31,8 @@ glm::vec3 weight_colour(int weight);   // weight in 1/65535; exactly 0 and exact
 glm::vec3 count_colour(int bones);     // number of bones [1, 4]
 // Mixes the swatches of the voxel's bones by weight. The colour is darker where the largest weight is smaller.
 glm::vec3 mixed_colour(const Influence& influence, const std::vector<glm::vec3>& swatches);
-// Returns a colour (swatch) for each bone. It differs from the colour of the bone's parent and, as far as there are
-// enough colours, from those of its siblings.
+// Returns a colour (swatch) for each bone. It differs from the colour of the bone's parent and, if there are enough
+// colours, from the colours of its siblings.
 std::vector<glm::vec3> bone_swatches(const Armature& armature);
 
 }  // namespace limber::render

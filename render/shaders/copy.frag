@@ -4,7 +4,7 @@ in vec2 ndc;
 uniform sampler2D u_picture;
 #ifdef MIXED
 uniform sampler2D u_other;
-uniform float u_share;  // of u_other
+uniform float u_share;  // fraction of u_other in the blend, [0, 1]
 #endif
 layout(location = 0) out vec4 colour;
 void main() {

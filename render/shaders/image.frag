@@ -8,11 +8,11 @@
 #endif
 
 in vec2 ndc;
-uniform sampler2D u_transfer;  // colour, and opacity of one millimetre
+uniform sampler2D u_transfer;  // colour, and opacity of a layer one millimetre thick
 uniform vec2 u_values;         // the level of the transfer function's first sample, and samples per level
-uniform float u_step;          // mm
-uniform float u_nearest;       // depth at which rays start
-uniform vec3 u_low, u_high;    // box in which the image is seen, padded coordinates
+uniform float u_step;          // length of a ray's steps, mm
+uniform float u_nearest;       // depth at which rays start, mm
+uniform vec3 u_low, u_high;    // box in which the image can be visible, padded coordinates
 uniform vec4 u_plane;          // points p with dot(xyz, p) <= w stay visible
 uniform mat3 u_view_from_gradient;
 layout(location = 0) out vec4 colour;
@@ -32,7 +32,8 @@ float level_near(vec3 padded, float otherwise) {
   return in_grey(place) ? grey_level(place) : otherwise;
 }
 
-// Returns how bright a surface at `padded` is: lit from over the viewer's left shoulder, and a little from the viewer.
+// Returns the brightness of a surface at `padded`. It is lit from over the viewer's left shoulder and, more weakly,
+// from the viewer.
 float brightness(vec3 padded, float level) {
   const vec3 a = vec3(1, -1, -1), b = vec3(-1, -1, 1), c = vec3(-1, 1, -1), e = vec3(1);
   vec3 gradient = a * level_near(padded + a * 0.7, level) + b * level_near(padded + b * 0.7, level) +
@@ -44,7 +45,8 @@ float brightness(vec3 padded, float level) {
   return 0.22 + 0.58 * clamp(dot(normal, kKey), 0.0, 1.0) + 0.3 * abs(normal.z);
 }
 
-// Spreads the starts of neighbouring rays over one step, so that steps show as fine grain and not as rings.
+// Returns a pseudo-random offset of a pixel's ray, in steps, [0, 1). Neighbouring rays start at different depths, so
+// that the steps appear as fine grain and not as rings.
 float start_of(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
 void main() {
@@ -64,7 +66,8 @@ void main() {
   float alpha = 0.0, largest = -1.0;
   s += start_of(gl_FragCoord.xy) * u_step;
 #ifndef POSED
-  // Along the ray the place changes by this much per mm, and a block is this large.
+  // place_rate: change of the position in the image per mm along the ray. block: size of a block of 8^3 voxels. Both
+  // are fractions of the image.
   vec3 place_rate = u_grey_linear * toward, block = 8.0 / u_grey_size;
   vec3 safe_rate = mix(place_rate, vec3(1e-12), lessThan(abs(place_rate), vec3(1e-12)));
 #endif
@@ -84,7 +87,7 @@ void main() {
 #else
       vec3 corner = (floor(place / block) + vec3(greaterThan(safe_rate, vec3(0.0)))) * block;
       vec3 leave = (corner - place) / safe_rate;
-      // Keeps to whole steps, so that the picture does not depend on what was skipped.
+      // Advances by whole steps only, so that the picture does not depend on which blocks were skipped.
       s += max(1.0, ceil(min(min(leave.x, leave.y), leave.z) / u_step)) * u_step;
 #endif
       continue;
@@ -104,7 +107,7 @@ void main() {
   }
 #ifdef MAXIMUM
   float grey = clamp((largest - u_values.x) * u_values.y, 0.0, 1.0);
-  // Air, which is black, lets the background through.
+  // Air is black in the image. It becomes transparent, so that the background is visible.
   float seen = smoothstep(0.0, 0.06, grey);
   colour = vec4(vec3(grey) * seen, seen);
 #else

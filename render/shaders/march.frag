@@ -28,8 +28,8 @@ uniform bool u_smooth_cuts;        // true: borders between labels on cut faces 
 
 bool in_layer(uint label) { return (texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) > u_layer; }
 
-// Returns how many voxels of a label lie in a row through a voxel that has it, counted no farther than two away. Voxels
-// farther than two from `middle`, which the slot may not have, count as if they had it.
+// Returns the number of consecutive voxels with the label in a row through `voxel`, counting at most two on each side.
+// Voxels farther than two from `middle` may lie outside the slot; they count as if they had the label.
 int row_length(uint atlas, ivec3 middle, ivec3 voxel, ivec3 axis, uint label) {
   int count = 1;
   for (int side = -1; side <= 1; side += 2)
@@ -50,22 +50,22 @@ bool is_thin(uint atlas, ivec3 middle, ivec3 voxel, uint label) {
   return any(equal(rows, ivec3(1))) || narrow.x + narrow.y + narrow.z >= 2;
 }
 
-// Returns the weight of a voxel's vote by its distance along one axis, which falls smoothly to 0: at 2.5 voxels, or at
-// 1.5 (the quadratic B-spline).
+// Returns the weight of a voxel's vote by its distance along one axis, voxels. The weight falls smoothly to 0 at a
+// distance of 2.5 voxels or, if `narrow`, of 1.5 voxels (quadratic B-spline).
 float vote(float apart, bool narrow) {
   float far = max(0.0, 1.5 - apart), near = max(0.0, 1.0 - apart * apart / 6.25);
   return !narrow ? near * near : apart < 0.5 ? 0.75 - apart * apart : 0.5 * far * far;
 }
 
-// Returns the label of a position on a cut face. The voxels around it vote, so that a border between two labels is
-// smooth. Beside thin sheets and threads, which would lose such a vote, fewer voxels vote. A voxel whose label would
-// lose even at its middle keeps it, so that nothing vanishes.
+// Returns the label of a position on a cut face. The voxels around the position vote, so that the border between two
+// labels is smooth. Near thin sheets and threads, which would lose such a vote, only nearer voxels vote. A voxel that
+// would lose the vote even at its own centre keeps its label, so that no label vanishes.
 uint voted_label(uint atlas, vec3 p) {
   ivec3 middle = ivec3(p);
   vec3 f = p - vec3(middle) - 0.5;
   ivec3 side = ivec3(greaterThan(f, vec3(0.0))) * 2 - 1;
   uint own = label_at(atlas, middle), labels[8];
-  int count = 0;  // of the labels of the eight nearest voxels, each counted once
+  int count = 0;  // number of different labels among the eight nearest voxels
   for (int i = 0; i < 8; ++i) {
     uint label = label_at(atlas, middle + ivec3(i & 1, i >> 1 & 1, i >> 2) * side);
     bool known = label == 0u || !in_layer(label);

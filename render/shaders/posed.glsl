@@ -23,9 +23,10 @@ uint cube_in(usampler3D cubes, vec3 node) {
   return texelFetch(cubes, cube, 0).r;
 }
 
-// The sheet of a position. Beside a fold its rest positions are extrapolated: the position is mirrored through the
-// nearest node, and the difference between the rest positions of node and mirrored position is added to the node's. All
-// cases share this code, since a software driver executes both branches.
+// The rest position of a posed position, on one sheet of the map. Beside a fold it is extrapolated: the position is
+// mirrored through the nearest node, and the difference between the rest positions of the node and of the mirrored
+// position is added to the node's rest position. Both cases share this code, because a software driver executes both
+// branches.
 struct Sheet { bool mirrored; vec3 node, rest; };
 Sheet sheet_at(vec3 node, uint cube) {
   vec3 nearest = floor(node + 0.5);

@@ -9,9 +9,9 @@ in vec2 ndc;
 uniform sampler2D u_depth, u_normal;
 uniform usampler2D u_label, u_looks;
 #ifdef LIT
-uniform sampler2D u_light;  // shares of the key light and of the sky, of the rays of light.frag
-uniform int u_every;        // the light is that of every n-th pixel
-uniform ivec2 u_offset;     // the first of these pixels
+uniform sampler2D u_light;  // light computed by light.frag: fractions of the key light (r) and of the sky (g)
+uniform int u_every;        // light.frag computed the light of every n-th pixel along each axis
+uniform ivec2 u_offset;     // the first pixel for which light was computed
 uniform vec2 u_pixel;       // a pixel is x + y * depth wide, mm
 uniform int u_cut_line;     // width of the outlines of tissues on cut faces, pixels
 #else
@@ -25,7 +25,7 @@ layout(location = 0) out vec4 colour;
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
 const float kFold = 0.7;  // openness() in the crease of a fold, where two parts of a posed body touch
 
-// Returns the light on a surface that nothing covers, without gloss and rim.
+// Returns the light on a surface that nothing occludes, without gloss and rim light.
 vec3 open_light(vec3 normal) {
   float toward = clamp(normal.z, 0.0, 1.0);
   float key = clamp(dot(normal, kKey) * 0.86 + 0.14, 0.0, 1.0);
@@ -46,8 +46,8 @@ float rim_of(vec3 normal) {
 }
 
 #ifdef LIT
-// Averages the light over 4 x 4 texels around a pixel, which have all directions of rays between them. Only those of
-// the same surface count: those near the plane through the pixel, with a similar normal.
+// Averages the light over 4 x 4 texels around a pixel, which together contain all ray directions. Only texels of the
+// same surface are averaged: those near the tangent plane at the pixel, with a similar normal.
 vec2 light_at(ivec2 at, vec4 stored, vec3 normal) {
   float depth = texelFetch(u_depth, at, 0).r, pixel = (u_pixel.x + u_pixel.y * depth) * float(u_every);
   ivec2 last = textureSize(u_depth, 0) - 1, last_texel = textureSize(u_light, 0) - 1;
@@ -79,18 +79,18 @@ bool outlined(ivec2 at, uint label) {
   }
   return false;
 }
-const float kCutLine = 0.45;  // brightness of these outlines
+const float kCutLine = 0.45;  // factor on the brightness where outlines of tissues are drawn on cut faces
 
-// The light of an open surface comes from the key light and from the sky in these shares. They give a picture of a body
-// the mean brightness that it has while it moves.
+// Share of the key light in the light of an unoccluded surface; the rest comes from the sky. With this value, a still
+// picture of a body has the same mean brightness as a picture of the moving body.
 const float kKeyShare = 0.5;
 
 vec3 lit(vec3 albedo, vec3 normal, vec2 light) {
-  // Light that the surfaces around a position reflect onto it. [Jimenez, Wu, Pesce, Jarabo, "Practical real-time
-  // strategies for accurate indirect occlusion", SIGGRAPH courses 2016]
+  // Approximates the light that surrounding surfaces reflect onto a position. [Jimenez, Wu, Pesce, Jarabo, "Practical
+  // real-time strategies for accurate indirect occlusion", SIGGRAPH courses 2016]
   vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
   vec3 sky = max(vec3(light.y), ((light.y * a + b) * light.y + c) * light.y);
-  // Faces turned away from the key light are in their own shadow already.
+  // Surfaces that face away from the key light are already dark in open_light(), so shadows fade out there.
   float key = mix(1.0, light.x, smoothstep(0.0, 0.3, dot(normal, kKey)));
   return albedo * (open_light(normal) * (kKeyShare * key + (1.0 - kKeyShare) * sky) + rim_of(normal) * light.y) +
          gloss_of(normal) * key;
@@ -101,7 +101,7 @@ float openness(float depth, vec3 normal) {
   vec3 p = u_base + ndc.x * u_base_x + ndc.y * u_base_y + depth * (u_toward + ndc.x * u_toward_x + ndc.y * u_toward_y);
   vec3 out_of = u_padded_from_view * normal;
 #ifdef POSED
-  // Converts position and direction to rest. The direction is turned in the way that the map turns a short step inward.
+  // Converts position and direction to rest. The direction is taken from the rest positions of a short step.
   vec3 rest = rest_of(p);
   vec3 turned = (rest - rest_of(p - 0.35 * out_of)) / 0.35;
   if (length(turned) > 4.0 * length(out_of)) return kFold;  // the step crossed a fold
@@ -114,7 +114,7 @@ float openness(float depth, vec3 normal) {
 }
 
 vec3 lit(vec3 albedo, vec3 normal, float open) {
-  // Shadows are warmer, like light that has passed through flesh.
+  // Shadows get a warmer colour, like light that has passed through flesh.
   vec3 shade = mix(vec3(0.55, 0.42, 0.38), vec3(1.0), open);
   return albedo * (open_light(normal) * shade * open + rim_of(normal)) + gloss_of(normal) * open;
 }
@@ -164,7 +164,7 @@ void main() {
   float alpha = normal.a == 0.0 || (look.a & 7u) > u_layer + 1u ? 0.0 : 1.0;
 #ifdef GHOST
   float steep = clamp(1.0 - abs(normal.z * 2.0 - 1.0), 0.0, 1.0);
-  // A cut through flesh stays transparent.
+  // In X-ray, a cut face through flesh stays transparent.
   alpha *= cap ? 0.30 : 0.10 + 0.62 * steep * steep * steep;
   vec3 rgb = cap ? srgb : vec3(0.624, 0.722, 0.839);
 #else

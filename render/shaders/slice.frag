@@ -49,13 +49,13 @@ uint label_at_place(vec3 p) {
 uvec4 look_of(uint label) { return texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0); }
 
 #ifdef WEIGHTS
-// Returns the share of the pixel that lines cover, [0, 1].
+// Returns the fraction of the pixel that contour lines cover, [0, 1].
 float contour(vec4 texel, vec3 right, vec3 below) {
 #ifdef RAMP
   float level = texel.r / max(texel.a, 1e-3);
   vec2 slope = abs(vec2(dFdx(level), dFdy(level)));
   float off = min(min(abs(level - 0.25), abs(level - 0.5)), abs(level - 0.75));
-  // A steep level means a fold or the border of the tissue, where no line is drawn.
+  // A steep change of the weight means a fold of the posed body or the border of the tissue. No line is drawn there.
   return texel.a > 0.0 && all(lessThan(slope, vec2(0.3))) ? clamp(1.1 - off / max(length(slope), 1e-4), 0.0, 1.0) : 0.0;
 #elif defined(VOXELS)
   vec4 to_right = weights_at(right), to_below = weights_at(below);
@@ -76,7 +76,7 @@ void main() {
   uint right = label_at_place(p_right), below = label_at_place(p_below);
   bool border = right != label || below != label;
   if (u_outline) {
-    // The border is drawn in the colour of the visible side.
+    // If the pixel's own label is hidden, the border is drawn in the colour of the visible neighbour.
     if (!seen && border) look = look_of((look_of(right).a & 7u) != 0u ? right : below);
     alpha = border && (look.a & 7u) != 0u ? 1.0 : seen ? 0.10 : 0.0;
   }
@@ -98,11 +98,12 @@ void main() {
     alpha = 1.0;
   }
 #ifdef GREY
-  // Areas of tissue let the image through; lines do not.
+  // Tissue areas are transparent over the image; border and contour lines are not.
   if (!(u_outline && border) && !marked) alpha *= u_over;
   vec3 place = grey_place(p);
 #ifdef POSED
-  bool shown = label != 0u && in_grey(place);  // the map reaches a little into the air around the body
+  // Excludes air: the map of a posed body reaches a little into the air around the body.
+  bool shown = label != 0u && in_grey(place);
 #else
   bool shown = in_grey(place);
 #endif

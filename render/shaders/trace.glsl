@@ -23,7 +23,7 @@ const float kFirstFieldValue = 7.5 / 255.0;
 struct Slot { ivec3 offset; uint atlas; };
 Slot slot_of(ivec3 block) {
 #ifdef POSED
-  // A piece of a ray, converted to rest positions, may leave the blocks.
+  // Clamps the block, because a piece of a ray that was converted to rest positions may leave the volume.
   ivec3 inside = clamp(block, ivec3(0), u_blocks - 1);
   uvec4 entry = texelFetch(u_index, inside, 0);
   if (inside != block) entry.w = 0u;
@@ -36,12 +36,12 @@ Slot slot_of(ivec3 block) {
 // Returns the slot of the block that contains p. It may differ from the block in which the march found p.
 Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 
-// Where a ray hits the surface (s = -1e30: nowhere), the field's value there, and the last position before it with its
-// value.
+// Where a ray hits the surface: the position s (-1e30: no hit) and the field's value there; the last position before
+// the hit and the field's value there.
 struct Meeting { float s, value, s_before, value_before; };
 
-// Marches from s to s_end along the straight line base + d s in rest positions, on which a voxel has the length 1 /
-// rate. Moves s on, and stores a hit in `found`, never before s_start.
+// Marches from s to s_end along the straight line base + d s in rest positions. A voxel has the length 1 / rate in s.
+// Advances s. Stores a hit in `found`, at s_start or later.
 void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout float s, inout Meeting found) {
   float voxel = 1.0 / rate;
   vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
@@ -49,7 +49,7 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
   vec3 block_exit = vec3(greaterThan(safe, vec3(0.0))) * float(BLOCK);
   vec3 ahead = sign(safe) * 0.02;  // moves on to the next block even where the ray runs along a face
   for (int tries = 0; tries < 1024 && s < s_end && found.s < -1e29; ++tries) {
-    // Moves on, block by block, until the surface may be near.
+    // Advance block by block until the surface may be near.
     Slot slot = Slot(ivec3(0), 0u);
     vec3 at;  // the line's base in texels of the slot
     float value = 0.0;
@@ -87,7 +87,7 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
 }
 
 #ifdef POSED
-// The straight piece of a posed ray on which it was followed last, at rest: base + d s.
+// The last straight piece of a posed ray that was followed, in rest positions: base + d s.
 struct Piece { vec3 base, d; Sheet sheet; };
 #endif
 
@@ -121,7 +121,8 @@ Meeting trace(vec3 base, vec3 d, float s_start, float s_end) {
       if (cube != 0u || s_leave >= s_end) break;
       s = s_leave;
     }
-    // Where the map is linear, as in limbs that turn rigidly, one piece of the ray runs through several cubes.
+    // If neighbouring cubes map linearly in the same way, as in limbs that turn rigidly, one piece of the ray runs
+    // through several cubes.
     float s_far = s + kStretch / u_node_scale;
     sheet = sheet_at(low + 0.5 * size, cube);
     vec3 from = rest_on(sheet, node_base + node_d * s), to = rest_on(sheet, node_base + node_d * s_leave);

@@ -17,15 +17,15 @@ namespace limber::render {
 
 inline constexpr int kMostLayers = 5;
 
-// Returns the layers of a body: for each the set of its labels. Layer 0 has all visible labels, and each next one has
-// those that lie behind the layer before it.
-//   exposure  see LooksTexture
+// Returns the label sets of the layers. Layer 0 has all visible labels; each next layer has only the labels that lie
+// deeper than the layer before it.
+//   exposure  for each label, the fraction of its voxels that touch air
 std::vector<LabelSet> layers_of(const LabelLooks& looks, Display display, const std::vector<float>& exposure);
 
 class LooksTexture {
  public:
-  //   exposure  for each of the 65536 labels: the share of its voxels that touch air, which distinguishes outer from
-  //             inner tissues
+  // exposure  for each of the 65536 labels, the fraction of its voxels that touch air; it tells outer from inner
+  // tissues
   LooksTexture(const LabelLooks& looks, Display display, const std::vector<float>& exposure);
 
   // Returns a texture of 256 x 256 texels in RGBA16UI; label = x + 256 y. RGB is the label's colour in 1/255. Bits 0 to

@@ -15,7 +15,7 @@ namespace {
 constexpr Format3D kLevels = {GL_R16, GL_RED, GL_UNSIGNED_SHORT, true};
 constexpr Format3D kRanges = {GL_RG16, GL_RG, GL_UNSIGNED_SHORT, false};
 constexpr int kMostHalvings = 3;
-constexpr std::int64_t kAtOnce = 2 << 20;  // voxels to upload between two looks at the clock
+constexpr std::int64_t kAtOnce = 2 << 20;  // number of voxels that are uploaded between two checks of the time limit
 
 }  // namespace
 
@@ -66,7 +66,8 @@ void GreyTexture::upload(UploadTime* time) {
 int GreyTexture::bind(const VolumeTexture& volume, gl::Program& program, int first) const {
   program.set_texture("u_grey", first++, GL_TEXTURE_3D, levels_.name());
   program.set_texture("u_grey_ranges", first++, GL_TEXTURE_3D, ranges_.name());
-  // From padded coordinates of the volume to voxel coordinates of the image, to fractions of its texture.
+  // Computes two transforms: padded coordinates of the volume to voxel coordinates of the image, and these to
+  // fractions [0, 1] of the image's texture.
   const AffineTransform to_padded = padded_from_world(volume.grid()), to_voxel = voxel_from_world(grid_);
   const glm::dmat3 linear = to_voxel.linear * glm::inverse(to_padded.linear);
   const glm::dvec3 size(grid_.size), offset = to_voxel.offset - linear * to_padded.offset + 0.5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A grey image on the graphics card: its 16-bit levels, and the range of levels in each block of 8^3 voxels, by which
-// rays skip what their picture does not show. Large images are uploaded over several frames.
+// A grey image on the graphics card: its 16-bit levels, and the range of levels in each block of 8^3 voxels. By these
+// ranges, rays skip blocks that are not visible. Large images are uploaded over several frames.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ class GreyTexture {
   const Grid& grid() const { return grid_; }  // grid of the drawn image: the original, or a coarser one
   int halvings() const { return halvings_; }
 
-  // Uploads slices until the time is up, all that are missing if `time` is null.
+  // Uploads slices until the time limit is reached. If `time` is null, uploads all missing slices.
   void upload(UploadTime* time);
   bool complete() const { return next_slice_ == grid_.size.z; }
   int uploaded() const { return next_slice_; }  // number of slices (z layers) uploaded so far

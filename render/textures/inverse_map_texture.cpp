@@ -115,9 +115,9 @@ void PosedHull::update(const std::shared_ptr<const PreviewMap>& pointer, const V
     for (std::int64_t i = begin * stride[2]; i < end * stride[2]; ++i) {
       holds[i] = PreviewMap::kNothing;
       if (map.cubes[i] == PreviewMap::kNothing) continue;
-      // Rest positions in a cube can lie outside the bounding box of its nodes by this margin. Beside a fold they are
-      // extrapolated from the nearest node. Elsewhere a ray is divided into straight pieces, while the map is slightly
-      // curved.
+      // Rest positions in a cube can lie outside the bounding box of its nodes by this margin. In a cube beside a
+      // fold, they are extrapolated from the nearest node, so the margin is large. In other cubes, only the slight
+      // curvature of the map adds to the error of the straight pieces of a ray.
       const float margin = map.cubes[i] >= PreviewMap::kBroken ? float(map.step / halving) : 0.25f;
       const glm::vec3 low(map.reach[i].low), high(map.reach[i].high);
       if (field.may_be_met(low * scale + offset - margin, high * scale + offset + margin)) holds[i] = map.cubes[i];

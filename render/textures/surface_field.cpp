@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kReach = 2;                  // farthest neighbour that the blur of a voxel reads, voxels
 constexpr int kRead = kSlot + 2 * kReach;  // edge length of the region on which the field of a slot depends, voxels
-// Field value (in 1/255) of a voxel that the blur would make vanish. With this value the voxel keeps its size.
+// Field value (in 1/255) that is given to a voxel which the blur would make vanish, so that the voxel keeps its size.
 constexpr int kRaised = 230;
 constexpr int kFarthest = kFirstFieldValue - 1;  // largest distance that a texel can store, bricks
 constexpr int kHalf = kBrick / 2;
@@ -80,8 +80,8 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
       }
     }
 
-  // Raises a voxel that the blur made vanish, unless a neighbour is inside the surface. A bump on a thick body may
-  // vanish, but a thin sheet or thread may not.
+  // Returns true if the blur made a voxel vanish and no neighbour is inside the surface. Such a voxel is raised: a
+  // bump on a thick body may vanish, but a thin sheet or thread may not.
   const auto stands_alone = [&](int at) {
     for (const int step : {1, kSlot, kSlot * kSlot})
       for (const int next : {at - step, at + step})
@@ -203,7 +203,7 @@ std::vector<std::uint8_t> outside_of(const std::vector<std::uint8_t>& hull, cons
   return outside;
 }
 
-// Returns whether a brick of the block has a shorter distance than before.
+// Returns true if a brick of the block is nearer to the set than before.
 bool any_nearer(const BlockLayout& layout, const glm::ivec3& block, const std::vector<std::uint8_t>& distance,
                 const std::vector<std::uint8_t>& before) {
   const glm::ivec3 low = block * kBricksPerBlock;
@@ -230,7 +230,7 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
   const bool first = distance_.empty();
   const auto is_new = [&](size_t s) { return first || (s < changed.size() && changed[s]); };
   bricks_ = bricks;
-  if (slots == 0) {  // an empty volume, such as that of a grey image
+  if (slots == 0) {  // an empty volume, as for a grey image without labels
     set_ = set;
     return {};
   }
@@ -244,8 +244,8 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
   labels_of_slot_.resize(slots);
   slot_present_.resize(slots, 0);
 
-  // Computes the fields of the slots that depend on an added or removed label again.
-  //   touched  for each brick: whether any of its voxels has a blurred value above 0
+  // Compute the fields again in the slots that depend on an added or removed label. In `touched`, a brick has 1 if any
+  // of its voxels has a blurred value above 0.
   std::vector<Slot> fields(slots);
   std::vector<std::uint8_t> touched(brick_count);
   for (size_t b = 0; b < brick_count; ++b) touched[b] = distance_[b] == 0;
@@ -285,9 +285,9 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
 
   hull_changed_ = first || in_hull_ != hull_before;
   occupancy_changed_ = first || occupancy_ != occupancy_before;
-  // Where no brick became empty or stopped being empty, all distances stay. Else a changed label can change distances
-  // in any slot. A slot in which a distance became shorter must be written again, since rays would skip too far. Where
-  // distances only became longer, the old ones remain valid.
+  // If no brick became empty or stopped being empty, no distance changes. Otherwise a changed label can change
+  // distances in any slot. A slot in which a distance became shorter must be written again, because rays would skip
+  // too far. If distances only became longer, the old ones remain valid.
   if (first || touched != touched_before) {
     std::vector<std::uint8_t> distance(brick_count);
     for (size_t b = 0; b < brick_count; ++b) distance[b] = touched[b] ? 0 : kFarthest;

@@ -30,29 +30,30 @@ using LabelSet = std::vector<std::uint8_t>;  // for each of the 65536 labels: 1 
 // The field of a set in the main memory. It needs no OpenGL, so any thread may compute it.
 class SurfaceField {
  public:
-  // For each slot its texels, as they are uploaded; empty for a slot that need not be uploaded.
+  // For each slot, the texels to upload; empty for a slot that does not need an upload.
   using Texels = std::vector<std::vector<std::uint8_t>>;
 
   // Changes the set of labels. Computes the field again only in blocks that contain, or are near, an added or removed
-  // label. Returns the slots that were computed.
-  //   drawn, layout  the same in every call, except for the slots in `changed` and for slots added at the end
-  //   changed        one byte per slot, or fewer: not 0 for slots whose voxels may have other labels than before
+  // label. Returns the texels of the computed slots.
+  //   drawn, layout  the same in every call, except for the slots in `changed` and for slots appended to the layout
+  //   changed        one byte per slot (missing bytes are 0); nonzero: the labels of the slot's voxels may have
+  //   changed
   Texels update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set,
                 const std::vector<std::uint8_t>& changed = {});
   const LabelSet& set() const { return set_; }
 
-  // Whether the last update changed the result of hull(), or that of occupancy(). Labels that are painted inside a body
-  // change neither.
+  // Return true if the last update changed the result of hull(), or of occupancy(). Painting labels inside a body
+  // changes neither.
   bool hull_changed() const { return hull_changed_; }
   bool occupancy_changed() const { return occupancy_changed_; }
 
   // Returns the faces of the hull; their corners are counted in bricks.
   Hull::Faces hull() const;
-  // Returns for each brick the share of its voxels that belong to the set, blurred over the bricks around it. It tells
-  // how enclosed a position is, from which the soft shadows in creases are computed.
+  // Returns, for each brick, the fraction of its voxels that belong to the set, blurred over the neighbouring bricks.
+  // It tells how enclosed a position is, which is used to darken creases.
   std::vector<std::uint8_t> occupancy() const;
   const glm::ivec3& bricks() const { return bricks_; }  // number of bricks per axis
-  // For each slot: whether the set has voxels in or near it.
+  // Returns, for each slot, 1 if the set has voxels in the slot or near it.
   const std::vector<std::uint8_t>& slot_present() const { return slot_present_; }
   // Returns false if no ray can hit the body in this box of padded coordinates.
   bool may_be_met(const glm::vec3& low, const glm::vec3& high) const;
@@ -62,12 +63,12 @@ class SurfaceField {
 
   LabelSet set_;
   bool hull_changed_ = true, occupancy_changed_ = true;
-  // For each brick: the distance in bricks to the nearest brick that has part of the blurred set, at most 7.
+  // For each brick: the distance to the nearest brick that contains part of the blurred set, in bricks, at most 7.
   std::vector<std::uint8_t> distance_;
   std::vector<std::uint8_t> in_hull_, occupancy_;
-  // For each octant of each brick (2^3 voxels): whether a ray can hit the body there, and the distance to the nearest
-  // octant towards higher x, y and z where a ray can hit it, in octants (the largest of the three axes). `upward_`
-  // is empty if no ray can hit the body anywhere.
+  // For each octant of each brick (2^3 voxels): met_ is 1 if a ray can hit the body there. upward_ is the distance to
+  // the nearest such octant towards higher x, y and z, in octants (the largest of the three axes). upward_ is empty if
+  // no ray can hit the body anywhere.
   std::vector<std::uint8_t> met_, upward_;
   glm::ivec3 bricks_{0};
   // For each slot: the labels in the voxels on which its field depends.

@@ -9,7 +9,8 @@ namespace limber::render {
 
 struct TextureLimits {
   int side = 0;  // largest number of texels per axis of a 3D texture
-  // Most bytes that the labels and one surface may take. (The driver's own copies come on top.)
+  // Largest number of bytes that the labels and one surface may use on the graphics card, without the driver's own
+  // copies.
   std::int64_t bytes = std::numeric_limits<std::int64_t>::max();
 };
 

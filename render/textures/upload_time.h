@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The time limit for all uploads of a frame together. At least one lot (a group of slots, or of slices of an image) is
-// uploaded, however long its upload takes.
+// The time limit for all uploads of a frame together. Data are uploaded in lots (groups of slots, or of slices of an
+// image). Each frame uploads at least one lot, however long this takes.
 #pragma once
 
 #include <chrono>

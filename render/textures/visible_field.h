@@ -14,7 +14,7 @@
 
 namespace limber::render {
 
-// A field and all that is uploaded of it. Making it needs no OpenGL.
+// A field with all data that will be uploaded for it. Computing it needs no OpenGL.
 struct PreparedField {
   SurfaceField field;
   SurfaceField::Texels texels;
@@ -27,18 +27,19 @@ class VisibleField {
  public:
   // Computes the field and uploads it. Throws Error when the driver has no memory for it.
   VisibleField(const VolumeTexture& volume, const LabelSet& set);
-  // Takes a field that was prepared for the volume; upload() uploads it. Throws Error when the driver has no memory.
+  // Takes a field that was prepared for the volume; upload() must be called to upload it. Throws Error when the driver
+  // has no memory.
   VisibleField(const VolumeTexture& volume, PreparedField&& prepared);
 
   // Uploads the field: as much as `time` allows, or all if `time` is null.
   void upload(const VolumeTexture& volume, UploadTime* time);
   bool complete() const { return next_slot_ < 0; }
 
-  // Changes the set of labels. Computes and uploads only blocks that contain, or are near, an added or removed label.
-  // The same for slots whose voxels have other labels than before (SurfaceField::update()).
+  // Changes the set of labels. Computes and uploads only blocks that contain, or are near, an added or removed label,
+  // or whose voxels have changed (`changed`, see SurfaceField::update()).
   void update(const VolumeTexture& volume, const LabelSet& set, const std::vector<std::uint8_t>& changed = {});
   const LabelSet& set() const { return field_.set(); }
-  // Returns a 3D texture with one texel per brick: the share of the brick that belongs to the set, blurred.
+  // Returns a 3D texture with one texel per brick: the fraction of the brick that belongs to the set, blurred.
   const gl::Texture& occupancy() const { return occupancy_texture_; }
 
   const Hull& hull() const { return hull_; }
@@ -54,7 +55,7 @@ class VisibleField {
 
  private:
   SurfaceField field_;
-  SurfaceField::Texels texels_;  // what upload() still has to upload
+  SurfaceField::Texels texels_;  // texels that upload() has not uploaded yet
   Hull::Faces faces_;
   std::vector<std::uint8_t> occupancy_;
   std::int64_t next_slot_ = 0;  // the next slot to upload; -1: everything was uploaded

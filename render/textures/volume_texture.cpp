@@ -18,8 +18,8 @@ constexpr int kBlockShift = 5;
 
 constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
 constexpr int kMostHalvings = 3;
-// How far a changed label may change what a slot stores or its surface depends on, voxels: the two bricks within which
-// tissue gives a block its slot. The slot's apron and the blur of the surface reach less far.
+// Distance in voxels over which a changed label can affect a slot and its surface. A block gets a slot if there is
+// tissue within two bricks. The slot's apron and the blur of the surface reach less far.
 constexpr int kNear = 2 * kBrick;
 
 // Collects the labels of a slot, including its apron. Voxels outside the grid are air.
@@ -75,7 +75,7 @@ class Exposure {
 };
 
 std::vector<float> exposure_of(const LabelVolume& volume, const BlockLayout& layout) {
-  constexpr std::int64_t kSlots = 256;  // slots that are counted together
+  constexpr std::int64_t kSlots = 256;  // number of slots that are counted in one parallel work block
   Exposure all;
   std::mutex adding;
   parallel_for(std::ssize(layout.block_of_slot), kSlots, [&](std::int64_t begin, std::int64_t end) {
@@ -111,8 +111,8 @@ Grid halved_often(Grid grid, int halvings) {
   return grid;
 }
 
-// Computes a coarse volume anew where a box of the volume from which it was made has changed. Returns the box in voxels
-// of the coarse volume.
+// Updates a coarse volume after the original volume has changed within `box`. Returns the updated box in voxels of the
+// coarse volume.
 VoxelBox renew(LabelVolume& coarse, const LabelVolume& volume, const VoxelBox& box, int halvings) {
   const glm::ivec3 from = box.lowest >> halvings, to = (box.lowest + box.size - 1) >> halvings;
   LabelVolume part;

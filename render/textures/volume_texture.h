@@ -16,7 +16,7 @@
 
 namespace limber::render {
 
-// A label volume as it is drawn, before it is uploaded. Making it needs no OpenGL.
+// A label volume at the resolution at which it is drawn, before it is uploaded. Computing it needs no OpenGL.
 struct DrawnVolume {
   // The document owns the original volume; this object does not keep it alive.
   std::weak_ptr<const LabelVolume> original;
@@ -30,29 +30,29 @@ struct DrawnVolume {
   std::shared_ptr<const LabelVolume> drawn() const { return coarse ? coarse : original.lock(); }
 };
 
-// Arranges the volume in textures. If they are beyond the limits, its resolution is halved until it fits. Throws Error
-// when textures of even an eighth of the resolution have too many texels per axis.
-//   least_halvings  how often the resolution is halved in any case
+// Arranges the volume in textures. If the textures exceed the limits, halves the resolution until they fit. Throws
+// Error if even at an eighth of the resolution the textures have too many texels per axis.
+//   least_halvings  smallest number of times that the resolution is halved
 DrawnVolume drawn_volume(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits,
                          int least_halvings = 0);
 
 class VolumeTexture {
  public:
-  // Uploads the volume, at half its resolution or less if it does not fit (drawn_volume()) or the driver has no memory
-  // for it. Throws Error when even an eighth of the resolution does not fit.
+  // Uploads the volume. Halves its resolution until it fits (drawn_volume()) and the driver has memory for it. Throws
+  // Error if even an eighth of the resolution does not fit.
   VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits);
-  // Takes a volume that upload() uploads. Throws Error when the driver has no memory for it at this resolution.
+  // Takes a volume that upload() must upload. Throws Error when the driver has no memory for it at this resolution.
   explicit VolumeTexture(DrawnVolume volume);
 
   // Uploads the volume: as much as `time` allows, or all if `time` is null.
   void upload(UploadTime* time);
   bool complete() const { return next_slot_ < 0; }
 
-  // Takes over the volume `now`, which has the same grid and differs only within a box (size 0: nowhere), and uploads
-  // the slots in or near the box; of a volume that is drawn at a coarser resolution it computes the labels in the box
-  // anew. Returns false if that is impossible: the volume is not uploaded yet, or new tissue needs more slots than the
-  // atlases have.
-  //   changed  set to 1 for each slot in or near the box; it is as long as there are slots
+  // Replaces the volume by `now`, which has the same grid and differs only within a box (size 0: nowhere). Uploads the
+  // slots in or near the box. If the volume is drawn at a coarser resolution, computes the coarse labels in the box
+  // again. Returns false if this is impossible: the volume is not uploaded yet, or new tissue needs more slots than
+  // the atlases have.
+  //   changed  receives 1 for each slot in or near the box, else 0; one byte per slot
   bool relabel(const std::shared_ptr<const LabelVolume>& now, const VoxelBox& box, std::vector<std::uint8_t>& changed);
 
   const std::weak_ptr<const LabelVolume>& original() const { return volume_.original; }

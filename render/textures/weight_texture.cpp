@@ -128,7 +128,7 @@ class SpreadIntoAir {
     const glm::u8vec4* texel = texels_.data() + row;
     for (int x = 0; x < count; ++x, ++texel) {
       if (texel->a != 0) continue;
-      // Where the offset is 0, the texel itself is read, which is air.
+      // If the offset is 0, the texel itself is read. It is air, so it adds no colour.
       const glm::u8vec4 before = texel[back], after = texel[on];
       if ((before.a | after.a) == 0) continue;
       found_.push_back({row + x, before.a == 0  ? after
@@ -185,7 +185,7 @@ std::vector<glm::u8vec4> texels_of(const Box& box, const ShownWeights& shown, co
   return result;
 }
 
-// Computes the texels of the boxes in `parts`, and returns `parts` with them.
+// Computes the texels of each box in `parts` and stores them there. Returns `parts`.
 std::vector<Part> worked_out(std::vector<Part> parts, const ShownWeights& shown, int halvings) {
   const Texels texels(shown);
   parallel_for(std::ssize(parts), 1, [&](std::int64_t begin, std::int64_t end) {
