@@ -12,7 +12,8 @@ namespace {
 
 constexpr int kRowsPerStrip = 64;
 
-void append(std::string& bytes, std::uint32_t value, int count) {  // low byte first
+// Appends the `count` lowest bytes of the value, the lowest byte first.
+void append(std::string& bytes, std::uint32_t value, int count) {
   for (int i = 0; i < count; ++i) bytes += static_cast<char>(value >> 8 * i & 255);
 }
 

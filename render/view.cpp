@@ -488,7 +488,8 @@ struct View3D::Impl {
     // A cut face seen at a slant has several depths within one pixel of the body's picture, so `off` allows for two
     // such pixels.
     const double pixel = 2 * key.camera.distance * std::tan(key.camera.field_of_view / 2) / key.size.y;
-    const float off = static_cast<float>(1 + 2 * pixel * shown_scale);  // mm
+    // Lines are drawn where their depth differs from the body's surface by at most this, mm.
+    const float off = static_cast<float>(1 + 2 * pixel * shown_scale);
     resources.lines.draw(cut.lines, key.camera, key.size, shown[0].depth, off,
                          ink_of_mesh(scene, cut.lines, true, pixel));
   }

@@ -121,7 +121,7 @@ class View3D {
   // These functions return what the last picture shows at a pixel. Pixels are counted from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;
   std::optional<int> pick_bone(const glm::ivec2& pixel) const;
-  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all bones under the pixel
+  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all bones whose drawn shapes are under the pixel
 
  private:
   struct Impl;

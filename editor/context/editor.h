@@ -126,7 +126,7 @@ struct Editor : Ui {
   std::map<int, std::function<void(Editor&, const JobStatus&)>> after_job;  // called when a job of this id ends
   Path worker_program = running_program();                                  // the program that runs `limber job`
   bool workers_yield = true;              // true: worker processes run at low priority
-  std::map<int, Task> tasks;              // the jobs that are background tasks, by id
+  std::map<int, Task> tasks;              // background tasks, by the id of their job
   std::map<int, StepOfWork> step_of_job;  // workflow step in which a job was started, by the job's id
   ProjectLife life;
   // Functions that are called once in every frame. A function that returns false is removed.
@@ -200,7 +200,7 @@ struct Editor : Ui {
     bool mass_exact = false;   // true: each soft tissue keeps its volume, exact to a voxel
     // Options of the method "finite elements"
     bool contact = true;
-    std::string quality = "normal";  // "draft", "normal", "fine"
+    std::string quality = "normal";  // quality of the FEM mesh: "draft", "normal" or "fine"
   } resampling;
   struct {
     bool keep_limits = true;                   // true: joints stop at their limits

@@ -13,21 +13,23 @@ namespace limber::editor {
 struct Editor;
 
 struct Operator {
-  std::string id;           // "view.frame_all"
-  std::string label;        // "Frame all"; ends in "..." if a dialog opens
-  const char* icon = "";    // one of icons.h
-  std::string category;     // the menu it belongs to, which the search shows: "View"
-  std::string description;  // what it does, for its tool tip
+  std::string id;           // unique name of the operator, such as "view.frame_all"
+  std::string label;        // text in menus, such as "Frame all"; ends in "..." if the operator opens a dialog
+  const char* icon = "";    // icon, one of the constants in icons.h; "": none
+  std::string category;     // the menu that the operator belongs to, such as "View"; the search shows it
+  std::string description;  // text of the tool tip: what the operator does
   std::function<void(Editor&)> run;
-  std::function<std::string(const Editor&)> disabled_reason;  // why it cannot run; "" or no function: it can
-  std::function<bool(const Editor&)> checked;                 // true if the operator is a switch that is on now
+  // Returns why the operator cannot run now; "" or no function: it can run.
+  std::function<std::string(const Editor&)> disabled_reason;
+  std::function<bool(const Editor&)> checked;  // true if the operator is a switch that is on now
 };
 
 // Returns all operators, in the order of the menus.
 std::vector<Operator> gather_operators();
 
-const Operator* find_operator(const Editor& editor, std::string_view id);  // nullptr for none
-std::string disabled_reason(const Editor& editor, const Operator& op);     // "" when it can run
+const Operator* find_operator(const Editor& editor, std::string_view id);  // nullptr if there is no such operator
+// Returns why the operator cannot run now; "" if it can.
+std::string disabled_reason(const Editor& editor, const Operator& op);
 // Runs the operator. If it cannot run now, shows a message with the reason instead.
 void run(Editor& editor, const Operator& op);
 void run(Editor& editor, std::string_view id);

@@ -17,12 +17,12 @@ struct Preferences {
   // Interface
   std::string theme = "dark";
   double scale = 1;            // scale of the interface relative to the monitor's scale, [0.75, 3]
-  double tooltip_delay = 0.5;  // s, [0, 3]
+  double tooltip_delay = 0.5;  // delay before a tool tip appears, s, [0, 3]
   bool reduce_motion = false;
 
   // What is shown in the views when the editor starts
   bool grid = true, axes = true, scale_bar = true, letters = true, cross_hair = true;
-  std::string display = "solid";  // "solid", "xray" or "tissue"
+  std::string display = "solid";  // display mode of the 3D view: "solid", "xray" or "tissue"
   bool fine_light = true;         // true: the 3D view gets ray-traced shadows while its picture does not change
 
   // Undo and saving
@@ -38,7 +38,7 @@ struct Preferences {
   std::string scratch_folder;  // for the temporary files of a resampling; "": the system's
 
   Arrangements arrangements = default_arrangements();  // arrangements of the last use; a project stores its own
-  std::string keymap = "blender";                      // the preset: "blender" or "maya"
+  std::string keymap = "blender";                      // preset of the key map: "blender" or "maya"
   KeyChanges keys;                                     // the user's changes of the key map preset
   bool advanced_steps = false;
   std::vector<std::string> recent_commands;  // ids of operators, latest first, at most kMostRecent

@@ -15,14 +15,14 @@
 namespace limber::editor {
 
 struct Recent {
-  Path path;              // absolute
+  Path path;              // absolute path of the file
   std::int64_t time = 0;  // when the file was last opened or saved, s since 1970
 
   bool operator==(const Recent&) const = default;
 };
 
 struct RecentFiles {
-  std::vector<Recent> recents;          // latest first
+  std::vector<Recent> recents;          // recent files, the latest first
   std::map<std::string, Path> folders;  // last folder of each file dialog, by the dialog's purpose
   std::vector<Path> recent_folders;     // folders used in any file dialog, latest first
   bool show_start = true;

@@ -14,7 +14,7 @@
 namespace limber::editor {
 
 enum class Space { Global, Local, Parent, View };
-const char* name_of(Space space);  // "Global"
+const char* name_of(Space space);  // returns the name shown to the user, such as "Global"
 
 enum class Snap { Steps, Voxel, Joint, BoneMiddle };
 

@@ -8,9 +8,9 @@ namespace limber::editor {
 
 // The folders for the editor's own files. If a path is empty, no files of that kind are stored.
 struct Folders {
-  Path config;  // settings, recent files
-  Path cache;   // small pictures; may be deleted at any time
-  Path edits;   // journals of projects that were never saved
+  Path config;  // folder for settings and the list of recent files
+  Path cache;   // folder for small pictures of files; may be deleted at any time
+  Path edits;   // folder for journals (logs of edits) of projects that were never saved
 };
 
 // Returns the folders $XDG_CONFIG_HOME/limber (by default ~/.config/limber), $XDG_CACHE_HOME/limber (by default

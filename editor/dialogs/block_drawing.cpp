@@ -37,7 +37,7 @@ struct Word {
 std::size_t bytes_within(ImFont* font, std::string_view word, float width) {
   std::size_t fitting = 0;
   for (std::size_t end = 1; end <= word.size(); ++end) {
-    if (end < word.size() && (word[end] & 0xC0) == 0x80) continue;  // inside a character of UTF-8
+    if (end < word.size() && (word[end] & 0xC0) == 0x80) continue;  // a word must not be cut inside a UTF-8 character
     if (fitting > 0 && text_size(font, word.substr(0, end)).x > width) break;
     fitting = end;
   }

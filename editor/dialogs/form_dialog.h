@@ -16,7 +16,7 @@ struct FormField {
   std::string description;  // the field's tool tip
 
   enum class Kind { Number, Choice, Text, Fact } kind = Kind::Number;
-  double value = 0, low = 0, high = 1;  // for a Number
+  double value = 0, low = 0, high = 1;  // of a Number field: its value and its range [low, high]
   const char* format = "%.0f";
   const char* unit = "";
   std::vector<std::string> choices;  // for a Choice: up to four are shown as buttons in a row, more as a list

@@ -57,7 +57,7 @@ class DirectoryReader {
 // A type of files, such as "Volumes", recognized by the endings of their names. With no endings, it includes all files.
 struct FileFilter {
   std::string name;
-  std::vector<std::string> ends;  // in lower case, with the dot: ".mha"
+  std::vector<std::string> ends;  // endings of file names, in lower case, with the dot: ".mha"
 };
 bool matches(const FileFilter& filter, const std::string& name);
 
@@ -75,7 +75,8 @@ struct DirectoryView {
 std::vector<int> shown_entries(const std::vector<DirectoryEntry>& entries, const DirectoryView& view);
 bool natural_less(const std::string& a, const std::string& b);
 
-std::string size_text(std::uint64_t bytes);                  // "1.4 MB"
-std::string time_text(std::int64_t time, std::int64_t now);  // "today 10:42", "yesterday", "18 Nov", "18 Nov 2024"
+std::string size_text(std::uint64_t bytes);  // returns a file size as text: "1.4 MB"
+// Returns a time as text: "today 10:42", "yesterday", "18 Nov", "18 Nov 2024".
+std::string time_text(std::int64_t time, std::int64_t now);
 
 }  // namespace limber::editor

@@ -12,7 +12,7 @@
 
 namespace limber::editor {
 
-inline constexpr glm::ivec2 kThumbnailSize{240, 160};  // pixels
+inline constexpr glm::ivec2 kThumbnailSize{240, 160};  // size of the small pictures, pixels
 
 // Renders the body as the 3D view shows it now. Returns the picture as the bytes of a PNG file; "" without a volume.
 std::string thumbnail_png(Editor& editor);

@@ -50,7 +50,7 @@ struct Chord {
 };
 
 std::optional<Chord> chord_from_text(std::string_view text);
-std::string to_text(const Chord& chord);                // "Ctrl+Shift+Z"
-std::vector<std::string> key_caps(const Chord& chord);  // one text for each key: "Ctrl", "Shift", "Z"
+std::string to_text(const Chord& chord);                // returns the text of a chord, such as "Ctrl+Shift+Z"
+std::vector<std::string> key_caps(const Chord& chord);  // returns the names of the chord's keys: "Ctrl", "Shift", "Z"
 
 }  // namespace limber::editor

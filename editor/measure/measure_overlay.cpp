@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kLine = 2, kDot = 4;  // pixels at scale 1
+constexpr float kLine = 2, kDot = 4;  // width of lines and size of points, pixels at scale 1
 constexpr float kPad = 6, kRow = 16;  // padding and line height of a measurement's label, pixels at scale 1
 constexpr double kArcShare = 0.35;    // radius of an angle's arc, as a fraction of the angle's shorter side
 constexpr int kArcSteps = 24;

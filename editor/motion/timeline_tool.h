@@ -13,7 +13,7 @@ float x_of(const Timeline& timeline, double frame);
 constexpr double kFewestFrames = 8;  // fewest frames that the timeline shows
 // Fits the whole motion and the playing range into the timeline, with a small margin on both sides.
 void fit_window(Editor& editor);
-void fit_window_to_keys(Editor& editor);  // needs selected keys
+void fit_window_to_keys(Editor& editor);  // fits the selected keys into the timeline; needs selected keys
 
 // Handles a press of the left button in the timeline. On a key, selects the key (Shift: adds it to the selection or
 // removes it) and drags the selected keys. Elsewhere, deselects all keys and shows the frame under the pointer while

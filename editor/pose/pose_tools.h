@@ -25,7 +25,7 @@ std::unique_ptr<TransformTool> begin_dragging(Editor& editor, const Grip& grip =
 // The share is base + slope * amount. The pointer changes the amount; a typed number is the amount in percent.
 struct Blend {
   std::string label;  // name of the edit in the undo history
-  std::string words;  // text shown beside the amount
+  std::string words;  // text shown below the amount
   Pose from, to;
   double base = 0, slope = 1;
   double begin = 0, most = 1;     // initial amount; largest amount that the pointer can set

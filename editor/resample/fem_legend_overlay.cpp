@@ -14,7 +14,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 322, kNarrow = 236, kHeight = 58, kMargin = 8, kNeeded = 360;
-constexpr int kSteps = 64;  // colour steps of the ramp
+constexpr int kSteps = 64;  // number of rectangles of equal colour that make up the drawn colour scale
 
 Colour colour(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 

@@ -27,7 +27,7 @@ struct FemScale {
 };
 const FemScale& scale_of(FemMeasure measure);
 double place_on(const FemScale& scale, double value);   // position of the value on the scale: 0 at low, 1 at high
-glm::vec3 colour_at(FemMeasure measure, double place);  // sRGB
+glm::vec3 colour_at(FemMeasure measure, double place);  // returns the colour at a position of the scale, sRGB
 glm::vec3 colour_of(FemMeasure measure, float value);   // sRGB; grey for tets of joints and for a gap with no skin near
 std::string text_of(FemMeasure measure, float value);   // the value as text: "0.93", "joint"
 

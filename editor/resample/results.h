@@ -24,9 +24,9 @@ struct ResultTissue {
 };
 struct ResultFacts {
   double seconds = 0;                    // run time of the deformation method alone, s
-  std::optional<double> change_percent;  // change of the total tissue volume
+  std::optional<double> change_percent;  // change of the total tissue volume, percent
   std::int64_t overlap_voxels = 0, hole_voxels = 0, dropped_voxels = 0, trapped_air_voxels = 0;
-  std::optional<std::int64_t> inverted;  // FEM only: inverted tets of the mesh
+  std::optional<std::int64_t> inverted;  // FEM only: number of inverted tets of the mesh
   std::vector<ResultTissue> tissues;
   std::vector<std::string> warnings;
   std::vector<QualityGate> gates;

@@ -27,7 +27,7 @@ struct KnownRigCheck {
   std::shared_ptr<const Armature> rig;
   std::shared_ptr<const LabelVolume> volume;
   RigCheck check;
-  std::vector<LeavingBone> bones;  // in the rig's order
+  std::vector<LeavingBone> bones;  // bones that leave the tissue, in the rig's order
 };
 
 // Returns the result of the rig check for the rig that the views show; null without a rig or a volume, and outside the

@@ -6,6 +6,6 @@
 
 namespace limber::editor {
 
-std::string time_left_text(double seconds);  // rounded text: "about 3 min"
+std::string time_left_text(double seconds);  // returns the time as rounded text: "about 3 min"
 
 }  // namespace limber::editor

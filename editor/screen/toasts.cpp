@@ -183,7 +183,8 @@ void draw_toasts(Editor& editor) {
     const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
     const std::size_t count = toasts.size();
     const bool closes = draw_toast(editor, toast, shape, rect, static_cast<int>(shown));
-    if (toasts.size() != count || toasts[at].line != toast.line) return;  // its button has changed the list
+    // Stop drawing, because the toast's button has changed the list.
+    if (toasts.size() != count || toasts[at].line != toast.line) return;
     if (closes) closed = at;
     if (life_of(toast.severity) < 1e9) editor.wake_at(toast.since + life_of(toast.severity) - kFadeOut);
     bottom = rect.low.y - look.px(kGap);

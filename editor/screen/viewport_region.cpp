@@ -115,7 +115,7 @@ void hover_slice(Editor& editor, const ViewPlace& place) {
   Hover& hover = editor.views->hover;
   hover.point =
       world_of(slice_of(*editor.views, place.id).camera, editor.input.pointer - place.rect.low, place.rect.size());
-  const render::Scene& scene = scene_at_pointer(editor, place);  // of the compared result at the pointer
+  const render::Scene& scene = scene_at_pointer(editor, place);  // scene of the result that is shown at the pointer
   const auto voxel = voxel_shown_at(scene, hover.point);
   if (!voxel) return;
   hover.voxel = *voxel;

@@ -24,7 +24,7 @@ constexpr double kAxisShare = 0.25, kLongestAxis = 36;
 // A bone that the 3D view shows, projected into the view.
 struct SeenBone {
   int bone;
-  glm::vec2 head, tail;  // pixels
+  glm::vec2 head, tail;  // positions of the bone's ends in the view, pixels
   double depth;          // position of the bone's middle along the direction to the eye, mm; larger is nearer
   bool chosen, active;
 };

@@ -12,7 +12,8 @@
 namespace limber::editor {
 
 // The colours that mark results A and B of a comparison. The letter A or B is always drawn beside the colour.
-inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;  // RRGGBB: B07AD9, 3FB6A8
+// In RGB: B07AD9 (A), 3FB6A8 (B); the constants are ABGR.
+inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;
 std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);  // null for none
 // Returns why no two results can be compared now, as a hint for the user; "" when they can.
 std::string why_no_comparison(const Editor& editor);
@@ -20,7 +21,7 @@ std::string why_no_comparison(const Editor& editor);
 // each view between both results. side_by_side(): true if each view is drawn twice, once for each result.
 bool wiping(const Editor& editor);
 bool side_by_side(const Editor& editor);
-bool comparing(const Editor& editor);  // wiping() or side_by_side()
+bool comparing(const Editor& editor);  // true if wiping() or side_by_side() is true
 // Returns the name that the views show for one side of a comparison: the name of the result, or "At rest" if the
 // document has no result of this name.
 std::string name_of_side(const Editor& editor, const std::string& result);

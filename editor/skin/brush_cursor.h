@@ -11,7 +11,7 @@
 namespace limber::editor {
 
 struct RingPoint {
-  glm::dvec3 at{0};      // world, mm
+  glm::dvec3 at{0};      // position of the point in the world, mm
   bool on_body = false;  // false: no surface was found, the point lies in the tangent plane
 };
 

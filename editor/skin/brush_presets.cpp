@@ -22,7 +22,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "limber-brushes/1";
-constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear", "constant"};  // order of FalloffShape
+// Names in the file, in the order of FalloffShape.
+constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear", "constant"};
 constexpr std::size_t kMostPoints = 16;  // largest number of points of a falloff curve, the same as in the Brush panel
 constexpr std::size_t kLongestName = 100;
 

@@ -37,12 +37,12 @@ struct BrushPlace {
 };
 
 struct Painting {
-  static constexpr double kLeastRadius = 0.5, kMostRadius = 300;  // mm
+  static constexpr double kLeastRadius = 0.5, kMostRadius = 300;  // smallest and largest radius, mm
 
   BrushKind kind = BrushKind::Add;
-  double radius = 20;      // mm
-  double strength = 0.75;  // [0, 1]
-  double value = 1;        // [0, 1], used by Set and Multiply
+  double radius = 20;      // radius of the brush, mm
+  double strength = 0.75;  // strength of one dab, [0, 1]; 1: the full change
+  double value = 1;        // weight that the brushes Set and Multiply use, [0, 1]
   FalloffShape falloff = FalloffShape::Smooth;
   // Points of a custom falloff curve, sorted by x. x: distance from the brush's centre, relative to the radius; y: the
   // brush's effect, [0, 1]. Empty: use `falloff`.
@@ -96,7 +96,7 @@ struct Painting {
 Falloff falloff_of(const Painting& painting);
 // Starts a custom falloff curve with the points of the current falloff shape.
 void begin_falloff_curve(Painting& painting);
-std::string name_of(BrushKind kind);             // the brush's label: "Add"
+std::string name_of(BrushKind kind);             // returns the brush's label, such as "Add"
 std::string operator_of(const BrushRule& rule);  // id of the operator that selects the brush: "skin.brush_add"
 // Replaces the entry "*" of a list of operator ids by the ids of all brushes, and returns the list. Brushes that
 // compute each voxel's weights without its neighbours come first; a separator "-" stands between them and the other

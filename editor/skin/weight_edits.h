@@ -40,7 +40,7 @@ struct EditedWeights {
 enum class EditReach { AsBrush, AllTissues };
 
 struct WeightOperation {
-  std::string label;  // name of the edit, "Flood Forearm"
+  std::string label;  // name of the edit, such as "Flood Forearm"
   EditReach reach = EditReach::AsBrush;
   bool edits_bone_tissue = false;  // false: the weights of voxels labelled as bone do not change
   bool reads_file = false;         // true: runs in a job even on a small body

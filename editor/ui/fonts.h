@@ -9,11 +9,11 @@ struct ImFont;
 namespace limber::editor {
 
 struct Fonts {
-  ImFont* regular = nullptr;     // 16 px at scale 1, its icons 14 px
-  ImFont* semibold = nullptr;    // 16 px at scale 1, its icons 14 px
-  ImFont* small = nullptr;       // 14 px at scale 1, its icons 12 px
+  ImFont* regular = nullptr;     // for most texts; 16 px at scale 1, its icons 14 px
+  ImFont* semibold = nullptr;    // bold texts; 16 px at scale 1, its icons 14 px
+  ImFont* small = nullptr;       // small texts; 14 px at scale 1, its icons 12 px
   ImFont* title = nullptr;       // 32 px at scale 1: the program's name on the start screen
-  ImFont* mono = nullptr;        // 16 px at scale 1
+  ImFont* mono = nullptr;        // fixed-width digits; 16 px at scale 1
   ImFont* small_mono = nullptr;  // 14 px at scale 1: key caps
   ImFont* icons = nullptr;       // 16 px at scale 1, icons only: the tool strip
 };

@@ -48,8 +48,8 @@ struct Ui {
   InputState input;
   Keyboard keyboard;
   double now = 0;            // time of this frame, s
-  Rect window;               // pixels
-  double tooltip_delay = 0;  // s
+  Rect window;               // rectangle of the window, pixels
+  double tooltip_delay = 0;  // delay before a tool tip appears, s
   bool dialog_open = false;  // true: the dialog gets the keys instead of lists
 
   ListFocus list_focus;

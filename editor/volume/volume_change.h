@@ -9,7 +9,8 @@
 
 namespace limber::editor {
 
-std::string figure_of_change(double percent);             // "+1.25"; "+0.00" if the number rounds to zero
+// Returns a change in percent as text: "+1.25"; "+0.00" if it rounds to zero.
+std::string figure_of_change(double percent);
 std::string percent(const std::optional<double>& value);  // "+1.25 %"; "-" for none
 constexpr double kSmallChange = 1;                        // changes up to this size are coloured as good, percent
 Colour colour_of_change(const Theme& theme, const std::optional<double>& percent);

@@ -9,7 +9,7 @@
 namespace limber::render::gl {
 
 struct ShaderFile {
-  std::string_view name;  // "march.frag"
+  std::string_view name;  // name of the file, such as "march.frag"
   std::string_view text;
 };
 // Returns all shader files, sorted by name. The build generates this function (render/gl/embed_shaders.cmake).

@@ -31,7 +31,7 @@ constexpr float kBehindEdge = 0.35f;  // opacity of edges on the far side of the
 
 // A point of a bone's solid, projected into the picture.
 struct Corner {
-  glm::dvec3 view{0};  // in view coordinates, mm
+  glm::dvec3 view{0};  // position in view coordinates, mm
   glm::vec2 pixel{0};
   float depth = 0;
   bool in_front = false;

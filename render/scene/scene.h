@@ -134,7 +134,7 @@ struct Scene {
 
   bool grid = true;             // true: the ground grid is drawn
   bool dark_background = true;  // true: the background gradient of the dark theme; false: that of the light theme
-  bool transparent_background = false;  // for saved pictures
+  bool transparent_background = false;  // true: no background is drawn, for saved pictures
 };
 
 }  // namespace limber::render

@@ -9,7 +9,7 @@ uniform sampler2D u_depth, u_normal;
 uniform int u_every;     // light is computed for every n-th pixel along each axis
 uniform ivec2 u_offset;  // the first pixel for which light is computed
 uniform mat3 u_padded_from_view;  // converts directions; a unit normal becomes one brick long
-uniform int u_picture;            // number of pictures before this one
+uniform int u_picture;            // number of pictures that were averaged before this one
 layout(location = 0) out vec2 light;
 
 // Number of rays of one texel in one picture. Rays through the map of a posed body take several times as long, so

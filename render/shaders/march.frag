@@ -23,7 +23,7 @@ const float kNodeTap = 0.5 / 1.4;
 
 uniform float u_tap;  // distance of gradient samples along each axis, voxels; negative: mirrored tetrahedron
 uniform vec3 u_label_shift;
-uniform float u_places;            // steps of out_place per padded voxel
+uniform float u_places;            // number of steps of out_place per padded voxel
 uniform bool u_smooth_cuts;        // true: borders between labels on cut faces are smooth
 
 bool in_layer(uint label) { return (texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) > u_layer; }

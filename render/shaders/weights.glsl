@@ -43,7 +43,8 @@ vec4 weights_fetched(uint atlas, ivec3 at) {
 }
 
 const int kRampSteps = 6;
-const vec3 kRamp[kRampSteps + 1] = vec3[kRampSteps + 1](RAMP_COLOURS);  // render/scene/weight_colormap.h
+// Colours of the weight ramp, from render/scene/weight_colormap.h.
+const vec3 kRamp[kRampSteps + 1] = vec3[kRampSteps + 1](RAMP_COLOURS);
 
 vec3 weight_ramp(float weight) {
   float at = clamp(weight, 0.0, 1.0) * float(kRampSteps);

@@ -47,7 +47,7 @@ bool has_tissue_near(const LabelVolume& volume, const glm::ivec3& block) {
   return false;
 }
 
-// Estimates, for each tissue, the share of its voxels that have air beside them along x. Only every second voxel is
+// Estimates, for each tissue, the fraction of its voxels that have air beside them along x. Only every second voxel is
 // examined.
 class Exposure {
  public:

@@ -23,9 +23,9 @@ struct DrawnVolume {
   std::shared_ptr<LabelVolume> coarse;  // the volume at the resolution at which it is drawn; null: the original
   Grid grid;                            // grid of the volume that is drawn
   BlockLayout layout;
-  int halvings = 0;  // how often the resolution was halved
+  int halvings = 0;  // number of times that the resolution was halved
   int largest_texture = 0;
-  std::vector<float> exposure;  // for each label: the share of its voxels that have air beside them along x
+  std::vector<float> exposure;  // for each label, the fraction of its voxels that have air beside them along x
 
   std::shared_ptr<const LabelVolume> drawn() const { return coarse ? coarse : original.lock(); }
 };
@@ -61,8 +61,9 @@ class VolumeTexture {
   int halvings() const { return volume_.halvings; }
   const BlockLayout& layout() const { return volume_.layout; }
   int largest_texture() const { return volume_.largest_texture; }
-  const std::vector<float>& exposure() const { return volume_.exposure; }  // see DrawnVolume
-  const std::string& note() const { return note_; }                        // a note for the user, or empty
+  // For each label, the fraction of its voxels that have air beside them along x.
+  const std::vector<float>& exposure() const { return volume_.exposure; }
+  const std::string& note() const { return note_; }  // a note for the user, or empty
 
   // Returns the index texture: 3D, RGBA8UI, one texel per block. A texel has the position of the block's slot, then the
   // atlas, counted from 1 (0: no tissue).
