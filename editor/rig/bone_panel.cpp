@@ -84,7 +84,7 @@ void draw_parent(Editor& editor, const Rect& rect, int index) {
 // tail. Disconnecting moves the head a little along the bone, so that the head and the parent's tail can then be moved
 // independently.
 void draw_connected(Editor& editor, const Rect& rect, int index) {
-  // The head moves by the share kBack of the bone's length, but by kMostBack mm at most.
+  // The head moves by the fraction kBack of the bone's length, but by kMostBack mm at most.
   constexpr double kBack = 0.05, kMostBack = 5;
   const std::shared_ptr<const Armature> rig = editor.document().armature;
   const Bone& bone = rig->bones[index];

@@ -41,11 +41,11 @@ bool has_brush_presets(const Editor& editor);
 // Returns the index of the preset whose settings all equal the brush's settings; -1: none.
 int brush_preset_in_use(Editor& editor);
 
-// Saves the brush's settings under a name and writes the file. A preset of that name is replaced. Presets that other
-// programs have saved meanwhile, and entries that cannot be read, stay in the file. Throws Error if the file cannot be
-// written, or if it is not a presets file; the presets then do not change.
-// Throws Error if the name cannot be used for a preset because it is blank or too long, or if there are too many
-// presets.
+// save_brush_preset() saves the brush's settings under a name and replaces a preset of the same name.
+// delete_brush_preset() deletes a preset. Both write the file; presets that other programs have saved meanwhile, and
+// entries that cannot be read, stay in it. Both throw Error if the file cannot be written or is not a presets file;
+// the presets then do not change. require_preset_name() throws Error if the name is blank or too long, or if there are
+// too many presets.
 void require_preset_name(const std::vector<BrushPreset>& presets, const std::string& name);
 void save_brush_preset(Editor& editor, const std::string& name);
 void delete_brush_preset(Editor& editor, const std::string& name);

@@ -56,7 +56,7 @@ struct Painting {
   PaintedTissue tissue = PaintedTissue::Visible;
   // True: paints only where the active bone, its parent or one of its descendants has the largest weight.
   bool subtree = false;
-  Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of()
+  Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of(), which may replace it
   bool relative_to_locks = false;
 
   std::shared_ptr<BrushPresets> presets;  // the user's (editor/skin/brush_presets.h); null: not read yet
