@@ -340,7 +340,7 @@ cmd::OptionFiles files_of_pictures(const Options& options, const std::string& na
   return files;
 }
 
-// Draws a picture, or pictures from all around, and writes them or a video of them.
+// Draws one picture, or a turntable of pictures, and writes them as PNG files or as a video.
 void draw_pictures(Renderer& renderer, const PosedScene& posed, const Options& options, const glm::ivec2& size,
                    Progress& progress) {
   const Camera camera = camera_of(posed, options)(size);

@@ -22,7 +22,7 @@ struct Comparison {
   std::string a, b;
   bool shows_a = false;  // used while nothing is compared. true: the views show result a; false: they show result b
   enum class Views {
-    One,         // no comparison: the views show either a or b
+    One,         // no comparison: the views show either result a or result b
     Wipe,        // each view is divided by a movable line: a is shown left of the line, b right of it
     SideBySide,  // each view is shown twice with the same camera: a at the left, b at the right
   } views = Views::One;

@@ -33,7 +33,7 @@ struct TransformSettings {
   Snap snap = Snap::Steps;
   bool snapping = false;  // true: snaps unless Ctrl is held; false: snaps while Ctrl is held
   struct {                // the pole target (it directs the knee or elbow) that is being dragged
-    std::string bone;     // "" for none
+    std::string bone;     // name of the limb's last bone; "" if no pole target is dragged
     glm::dvec3 place{0};
   } shown_pole;
 
@@ -43,7 +43,7 @@ struct TransformSettings {
   bool rig_check_marks = true;                         // true: the views mark the problems that rig_check found
 
   struct {             // the bone whose row in the outliner is being dragged
-    std::string bone;  // "" for none
+    std::string bone;  // name of the bone; "" if no row is dragged
     glm::vec2 begin{0};
     bool moved = false;
   } row_drag;

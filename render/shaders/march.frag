@@ -17,7 +17,8 @@ layout(location = 2) out uint out_label;
 layout(location = 3) out uvec4 out_place;
 
 #ifdef POSED
-// Scales u_tap to half a node, so that directions change smoothly from cube to cube.
+// Factor that makes u_tap half the distance between two nodes of the map, so that directions change smoothly from cube
+// to cube.
 const float kNodeTap = 0.5 / 1.4;
 #endif
 
