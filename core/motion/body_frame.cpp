@@ -18,7 +18,7 @@ glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b) {
   if (sine > 1e-12) return glm::angleAxis(std::atan2(sine, glm::dot(a, b)), axis / sine);
   if (glm::dot(a, b) > 0) return {1, 0, 0, 0};
   if (!(glm::length(a) > 0 && glm::length(b) > 0)) return {1, 0, 0, 0};
-  // Opposite directions: a half turn about any axis perpendicular to `a`.
+  // The directions are opposite: returns a half turn about any axis perpendicular to `a`.
   const glm::dvec3 across = glm::cross(a, std::abs(a.z) < 0.9 * glm::length(a) ? kUp : glm::dvec3(1, 0, 0));
   return glm::angleAxis(std::numbers::pi, glm::normalize(across));
 }

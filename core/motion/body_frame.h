@@ -22,8 +22,8 @@ inline double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-// Returns the shortest rotation that takes direction a to direction b; neither needs unit length. The identity if one
-// of them has none.
+// Returns the shortest rotation that takes direction a to direction b; neither needs unit length. Returns the identity
+// if one of them is the zero vector.
 glm::dquat shortest_turn(const glm::dvec3& a, const glm::dvec3& b);
 
 // Returns a right-handed orthonormal frame whose third axis points along `main` and whose first axis is as near to

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Cleans a recorded motion of a rig: feet that stand stay in place, and hands are held where they should be.
+// Cleans a recorded motion of a rig: feet that stand no longer slide, and hands are held at given positions.
 #pragma once
 
 #include <vector>
@@ -13,11 +13,11 @@ struct CleanedMotion {
   std::vector<Plant> plants;  // the feet that were found to stand, then the holds
 };
 
-// Returns the poses with the limb of each hold at its place and, if wanted, each foot in place while it stands. What is
-// held is not planted as well.
+// Returns the poses in which each hold keeps its limb at its position and, if wanted, each foot stays in place while it
+// stands. A foot that a hold keeps is not planted as well.
 //   limbs  from planted_limbs()
 //   rate   frames per second
-//   ease   seconds over which a limb comes to its place and leaves it
+//   ease   seconds over which a limb moves to its position before the hold, and back after it
 // Throws Error as planted() does.
 CleanedMotion clean_motion(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                            const std::vector<Pose>& poses, double rate, bool plants_feet,

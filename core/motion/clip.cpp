@@ -29,7 +29,8 @@ Between<Value> around(const std::map<int, Value>& track, int frame) {
   return {&*before, &*after, static_cast<double>(frame - before->first) / (after->first - before->first)};
 }
 
-// Returns how the value goes on at a frame. At a key and outside of the keys it stays as the key before it is.
+// Returns the interpolation at a frame: that of the last key before it. At a key, and outside of the keys, it is
+// Constant.
 template <class Value>
 Interpolation interpolation_at(const Between<Value>& between, const KeyShapes& shapes) {
   return between.share == 0 ? Interpolation::Constant : shape_at(shapes, between.before->first).next;

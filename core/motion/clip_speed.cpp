@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostFrame = 1 << 28;  // projects hold no frame beyond this one
+constexpr double kMostFrame = 1 << 28;  // largest frame number that a project can hold
 constexpr double kMostFrames = 1e6;     // upper limit on the frames of a motion that is slowed down
 
 void require_speed(double factor) {
@@ -27,8 +27,9 @@ void require_frames(double frames) {
                 "choose a higher speed");
 }
 
-// Gives the clip `ratio` times as many frames.
-//   played_rate  the rate at which the clip's motion is read, frames per second;  rate  that of the new motion
+// Gives the clip `ratio` times as many frames: resamples its motion, and multiplies the frames of keys and markers.
+//   played_rate  frame rate at which the clip's motion is read, per second
+//   rate         frame rate of the resampled motion, per second
 void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress& progress) {
   const auto moved = [&](int frame) {
     const double wanted = clip.start + std::round((double(frame) - clip.start) * ratio);
@@ -51,7 +52,7 @@ void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress
   const int most = std::max(0, clip.motion->frame_count - 1);
   clip.first = std::clamp(static_cast<int>(std::round(clip.first * ratio)), 0, most);
   clip.last = std::clamp(static_cast<int>(std::round(clip.last * ratio)), clip.first, most);
-  if (plays_to_end) clip.range_end = clip.end();  // half a frame may be lost in rounding
+  if (plays_to_end) clip.range_end = clip.end();  // corrects the rounding, which may differ by one frame
 }
 
 }  // namespace
@@ -67,7 +68,7 @@ Clip at_speed(const Clip& clip, double factor, Progress& progress) {
   require_speed(factor);
   if (clip.motion) require_frames(clip.motion->frame_count / factor);
   Clip changed = clip;
-  // A rate that the motion could be resampled to, whatever the clip's own rate is.
+  // Resampling accepts only rates in a limited range, so the rate is clamped here.
   const double rate = std::clamp(clip.rate, 1.0, 1000.0);
   stretch(changed, 1 / factor, rate * factor, rate, progress);
   return changed;

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-constexpr double kSlowest = 0.05, kFastest = 20;  // factors of speed
+constexpr double kSlowest = 0.05, kFastest = 20;  // limits of the factor by which a clip is played faster
 
 // Returns the clip resampled to another rate, in frames per second. Keys, markers and the playing range get new frame
 // numbers, so that they stay at the same time.
@@ -17,7 +17,8 @@ Clip at_rate(const Clip& clip, double rate);
 // handles, markers and the playing range keep their places in the motion, to the nearest frame. The clip's frame
 // `start` stays. Throws Error for a factor outside [kSlowest, kFastest], and Cancelled.
 Clip at_speed(const Clip& clip, double factor, Progress& progress = no_progress());
-// The same for poses. The first pose stays, and the duration changes by less than a frame.
+// Returns the poses resampled so that they play `factor` times as fast. The first pose stays, and the duration changes
+// by less than a frame.
 std::vector<Pose> at_speed(const std::vector<Pose>& poses, double factor);
 
 }  // namespace limber

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Replaces bad frames of a recorded motion by a smooth bridge, as where a marker of the capture was hidden.
+// Replaces bad frames of a recorded motion by a smooth bridge, for example frames in which a capture marker was hidden.
 #pragma once
 
 #include <vector>

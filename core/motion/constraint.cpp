@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-// Returns the index of the component with the largest size.
+// Returns the index of the component with the largest absolute value.
 int largest(const glm::dvec3& v) {
   const glm::dvec3 size = glm::abs(v);
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -48,7 +48,7 @@ void name_after_bones(std::vector<Constraint>& list, Keys& keys, const std::vect
         name.starts_with(wanted + " ") && name.find_first_not_of("0123456789", wanted.size() + 1) == std::string::npos;
     return before[i] != list[i].bone && (name == wanted || numbered);
   };
-  // The others keep their names, so these are taken first.
+  // The constraints that are not renamed keep their names, so these names are reserved first.
   Constraints named;
   std::vector<std::size_t> renamed;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -78,7 +78,8 @@ Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bo
   mirrored.rotation = plane.rotation(constraint.rotation);
   const glm::dmat3 own = rest_axes(bone), other = glm::transpose(rest_axes(counterpart));
   for (int axis = 0; axis < 3; ++axis) {
-    // A rotation vector turns the other way in the mirror. It lies along that axis of the counterpart that is nearest.
+    // Mirroring negates a rotation vector's direction. The limits of this axis then belong to the axis of the
+    // counterpart that is most nearly parallel to the mirrored vector.
     const glm::dvec3 seen = other * -plane.direction(own[axis]);
     const int along = largest(seen);
     mirrored.axes[along] = constraint.axes[axis];

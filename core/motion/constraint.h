@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Constraints tie bones to targets. They change the pose of a frame after its motion and its keys have made it: a bone
-// turns as another one does, keeps within limits or looks at a target, a hand or foot stays in its place, and a limb
-// reaches for one by inverse kinematics. Bones are named, as in keys, so that a change of the rig loses only the
-// constraints of removed bones.
+// copies the rotation of another bone, stays within limits or looks at a target; a hand or foot stays at a position; a
+// limb reaches for a position by inverse kinematics. Constraints store the names of bones, as keys do, so that a change
+// of the rig loses only the constraints of removed bones.
 //
 // A weight says how much a constraint counts. At 0 the pose of motion and keys stays bit for bit, at 1 the constraint
-// holds fully, and between them each bone is slerped from the one to the other. Keys of the weight switch between
-// forward and inverse kinematics. core/motion/constraint_rule.h lists the kinds, core/motion/constraint_stack.h applies
-// them.
+// holds fully, and between them each bone is slerped from the first pose to the second. Keys of the weight switch
+// between forward and inverse kinematics. core/motion/constraint_rule.h lists the kinds, core/motion/constraint_stack.h
+// applies the constraints.
 #pragma once
 
 #include <array>
@@ -23,37 +23,39 @@
 
 namespace limber {
 
-// The indices of the kinds in the table of constraint_rule.h. Projects hold these numbers.
+// The kinds of constraints, as indices into the table of constraint_rule.h. Projects store these numbers.
 enum class ConstraintKind : std::uint8_t { CopyRotation, LimitRotation, JointRange, Aim, Plant, InverseKinematics };
 
-// Whether a rotation is that from the rest pose in the world, or relative to the parent bone.
+// Tells what a rotation is measured from. World: the bone's rest pose in the world. Parent: the parent bone.
 enum class RotationSpace : std::uint8_t { World, Parent };
 
-// A direction along one of a bone's own axes at rest (rest_axes(); y is from head to tail).
+// A direction along one of a bone's own axes in the rest pose (rest_axes()); y points from head to tail.
 enum class BoneAxis : std::uint8_t { PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
 
 struct Constraint {
-  std::string name;  // unique among the clip's constraints; keys of the weight are listed by it
+  std::string name;  // unique among the clip's constraints; the keys of the weight are stored under this name
   ConstraintKind kind = ConstraintKind::CopyRotation;
   bool on = true;
-  double weight = 1;  // where the weight has no keys, [0, 1]
+  double weight = 1;  // used if the weight has no keys, [0, 1]
   std::string bone;   // the bone that is constrained
-  // The target is a bone, or a place: of the world where `target` is empty, else fixed to that bone. The place is
-  // given in the world, mm; that of a bone as it is in the rest pose.
+  // The target is a bone or a position. If `target` is empty, `place` is a position in the world; else it is fixed to
+  // the bone `target`. Either is given in world coordinates, mm; one that is fixed to a bone, as it lies in the rest
+  // pose.
   std::string target;
   glm::dvec3 place{0};
 
-  // Limit rotation: which parts of the rotation vector are limited, about the bone's own axes. Copy rotation: which
-  // parts of the turn from the bone's own rotation to its target's are taken.
+  // Components of a rotation vector about the bone's own axes. Limit rotation limits these components. Copy rotation
+  // copies these components of the rotation from the bone's own orientation to its target's.
   std::array<bool, 3> axes{true, true, true};
-  RotationSpace space = RotationSpace::World;                            // copy rotation
-  glm::dvec3 minimum{glm::radians(-30.0)}, maximum{glm::radians(30.0)};  // limit rotation: about the own axes
-  BoneAxis aim = BoneAxis::PlusY;                                        // aim: the direction that points at the target
-  PlantPoint point = PlantPoint::Tip;                                    // plant: the point of hand or foot that stays
-  bool keeps_rotation = true;                                            // plant: the hand or foot keeps `rotation` too
-  glm::dquat rotation{1, 0, 0, 0};                                       // plant: from rest, relative to the target
-  int chain = 2;            // inverse kinematics: number of bones that turn; 0: up to the root
-  bool keep_limits = true;  // inverse kinematics: joints keep to their limits
+  RotationSpace space = RotationSpace::World;  // used by copy rotation
+  glm::dvec3 minimum{glm::radians(-30.0)},
+      maximum{glm::radians(30.0)};     // limit rotation: limits about the bone's own axes, radians
+  BoneAxis aim = BoneAxis::PlusY;      // aim: the direction that points at the target
+  PlantPoint point = PlantPoint::Tip;  // plant: the point of hand or foot that stays
+  bool keeps_rotation = true;          // plant: the hand or foot keeps `rotation` too
+  glm::dquat rotation{1, 0, 0, 0};     // plant: rotation from the rest pose, relative to the target
+  int chain = 2;                       // inverse kinematics: number of bones that turn; 0: all up to the root
+  bool keep_limits = true;             // inverse kinematics: joints stay within their limits
 
   bool operator==(const Constraint&) const = default;
 };
@@ -64,27 +66,28 @@ struct Constraints {
   bool operator==(const Constraints&) const = default;
 };
 
-constexpr std::size_t kMostConstraints = 4096;  // of a clip; far more than a rig has bones
-constexpr double kFarthestPlace = 1e7;          // bound of a place's coordinates in a project, mm
+constexpr std::size_t kMostConstraints = 4096;  // upper limit for one clip; far more than a rig has bones
+constexpr double kFarthestPlace = 1e7;          // largest coordinate of a position that a project can hold, mm
 
-// Returns the weight of a constraint at a frame, [0, 1]: that of its keys, or its own where it has none.
+// Returns the weight of a constraint at a frame, [0, 1]: from the keys of the weight, or the constraint's constant
+// weight if there are none.
 double weight_at(const Constraint& constraint, const Keys& keys, int frame);
 
 // Returns the name `wanted`, with a number appended if a constraint has this name already.
 std::string unique_constraint_name(const Constraints& constraints, const std::string& wanted);
 
-// Renames the constraints that are named by their kind and bone, as in "Plant LeftHand", where they went over to
-// another bone; keys of their weights go along.
-//   before  for each constraint, the bone that it had
+// Renames constraints that are named after their kind and bone, such as "Plant LeftHand", if they now have another
+// bone. The keys of their weights are renamed too.
+//   before  the previous bone of each constraint
 void name_after_bones(std::vector<Constraint>& list, Keys& keys, const std::vector<std::string>& before);
 
-// Returns the constraint with its place, rotation, axes and limits mirrored. Names stay.
-//   bone, counterpart  the bone that is constrained, and the one that the mirrored constraint belongs to, at rest
+// Returns the constraint with its position, rotation, axes and limits mirrored. Names stay.
+//   bone, counterpart  the constrained bone, and the bone of the mirrored constraint, both in the rest pose
 Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bone& counterpart,
                         const MirrorPlane& plane);
 
-// Returns the constraint for the rig that has the pose as its rest pose (core/pose/apply_pose_as_rest.h): its place and
-// rotation are the same in the world.
+// Returns the constraint for a rig whose rest pose is replaced by `pose` (core/pose/apply_pose_as_rest.h). The position
+// and the rotation of the constraint stay the same in the world.
 Constraint with_pose_as_rest(const Constraint& constraint, const Armature& armature, const Pose& pose);
 
 }  // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Aim: one of the bone's own axes points from the bone's head at the target. The bone takes the shortest turn there, so
-// that it does not roll.
+// Aim: one of the bone's own axes points from the bone's head at the target. The bone takes the shortest rotation to
+// this direction, so that it does not roll.
 #include "core/motion/body_frame.h"
 #include "core/motion/constraint_rule.h"
 
@@ -8,7 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kNearest = 1e-6;  // a target nearer to the bone's head than this gives no direction, mm
+constexpr double kNearest =
+    1e-6;  // mm; a target nearer to the bone's head gives no direction, so the bone does not turn
 
 void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
   const glm::dvec3 towards = target_place(on_rig, rig) - rig.head(on_rig.bone);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Copy rotation: a bone turns from its rest pose as another bone does. With all axes the copy is exact. Otherwise
-// the turn from the bone's own rotation to the other's is split about the bone's own axes, and the bone takes the
-// chosen parts of it: it nods as its target does, wherever the body is turned.
+// Copy rotation: a bone rotates from its rest pose as another bone does. If all axes are selected, the copy is exact.
+// Otherwise the rotation from the bone's own orientation to the other bone's is written as a rotation vector along the
+// bone's own axes, and only the selected components are applied. A head can so copy the nodding of its target without
+// copying how the body faces.
 #include "core/motion/constraint_rule.h"
 #include "core/motion/key_curve.h"
 #include "core/rig/joint_limits.h"

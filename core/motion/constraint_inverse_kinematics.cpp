@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Inverse kinematics: a chain of bones turns so that the tail of its last bone comes to the target, or as near as it
-// can (core/rig/inverse_kinematics.h). The search starts from the pose of motion and keys, so that it goes smoothly
-// from frame to frame.
+// Inverse kinematics: a chain of bones turns so that the tail of its last bone comes to the target, or as near to the
+// target as it can (core/rig/inverse_kinematics.h). The search starts from the pose of motion and keys, so that the
+// result changes smoothly from frame to frame.
 #include "core/base/error.h"
 #include "core/motion/constraint_rule.h"
 #include "core/rig/inverse_kinematics.h"
@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-// Other start poses lead to other bends of the limb, which would jump between frames. These two start close by; a
-// straight chain needs them to bend at all.
+// Number of further start poses of the search. More start poses could find other bends of the limb, which would jump
+// between frames. These two are close to the given pose; a straight chain needs them to bend at all.
 constexpr int kRestarts = 2;
 
 std::vector<int> turned(const ConstraintOnRig& on_rig, const Armature& armature) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Joint range: the bone keeps within the limits of its joint, as the rig has them (core/rig/joint_limits.h).
+// Joint range: the bone stays within the joint limits that the rig stores (core/rig/joint_limits.h).
 #include "core/motion/constraint_rule.h"
 #include "core/rig/joint_limits.h"
 

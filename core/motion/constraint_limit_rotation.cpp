@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Limit rotation: the rotation vector of a bone, relative to its parent, keeps within a range about each of the bone's
-// own axes at rest. Unlike Euler angles, the parts of the vector do not depend on an order, and they change smoothly up
-// to half a turn.
+// Limit rotation: the rotation vector of a bone, relative to its parent, stays within a range about each of the bone's
+// own axes at rest. Unlike Euler angles, the components of the vector do not depend on an order of axes, and they
+// change smoothly up to half a turn.
 #include "core/motion/constraint_rule.h"
 #include "core/motion/key_curve.h"
 #include "core/rig/joint_limits.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Plant: a hand or foot stays at a place of the world or of another bone, and with it its direction. The two long bones
-// of the limb turn so that it does, by the law of cosines: the elbow or knee bends in the plane in which it is bent
-// already. A place that the limb does not reach is met as nearly as it can be with that direction.
+// Plant: a hand or foot keeps its position in the world or on another bone, and if wanted its orientation. The two long
+// bones of the limb turn to make this possible, by the law of cosines: the elbow or knee bends in the plane in which it
+// is already bent. If the limb is too short or too long for the position, it ends as near to it as possible.
 #include <algorithm>
 #include <cmath>
 
@@ -17,9 +17,9 @@ glm::dvec3 joint_of(const ConstraintOnRig& on_rig, const PosedRig& rig) {
   return has_planted_end(on_rig) ? rig.head(on_rig.bone) : rig.tail(on_rig.bone);
 }
 
-// Returns the axis about which the limb bends: the one about which it is bent already, on the side of its hinge. The
-// plane of a nearly straight limb, or of one that is bent the wrong way, is chance; there the hinge decides. The axis
-// is at right angles to the upper bone.
+// Returns the axis about which the limb bends, perpendicular to the upper bone. It is the axis about which the limb is
+// already bent, with the sign of the hinge. If the limb is nearly straight, or is bent the wrong way, its plane is
+// arbitrary, and the hinge gives the axis.
 //   upper, lower  vectors from joint to joint, mm
 glm::dvec3 bending_axis(const glm::dvec3& upper, const glm::dvec3& lower, const glm::dvec3& hinge) {
   constexpr double kOfHinge = 0.1;
@@ -38,8 +38,8 @@ void bring_joint(const ConstraintOnRig& on_rig, PosedRig& rig, const glm::dvec3&
   const double a = glm::length(upper), b = glm::length(lower);
   if (a == 0 || b == 0) return;
   const glm::dvec3 axis = bending_axis(upper, lower, rig.turn(on_rig.upper) * on_rig.hinge);
-  // The lower bone first comes into the plane across the axis. Only there every distance between straight and folded
-  // can be bent to.
+  // First turns the lower bone into the plane perpendicular to the axis: only there can bending reach every distance
+  // between a straight and a folded limb.
   const glm::dvec3 flat = lower - glm::dot(lower, axis) * axis;
   rig.turn_by(on_rig.lower, shortest_turn(lower, flat));
   const double wanted = std::clamp(glm::distance(root, target), std::abs(a - b), a + b);

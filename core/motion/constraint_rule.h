@@ -13,13 +13,13 @@
 
 namespace limber {
 
-// A constraint with its bones found in a rig.
+// A constraint together with the indices of its bones in a rig.
 struct ConstraintOnRig {
   const Constraint& constraint;
   int bone = 0;
-  int target = -1;  // -1: the target is a place of the world, or the kind has none
-  // Plant: the bones of the limb, or the two bones above where the bone ends no limb that is known by its name. The
-  // axis about which the limb bends at rest, world, or zero.
+  int target = -1;  // -1: the target is a position in the world, or this kind of constraint has no target
+  // For plants: the two long bones of the limb. If the bone's name tells no limb, the two bones above the bone. `hinge`
+  // is the axis about which the limb bends at rest, in world axes, or zero.
   int upper = -1, lower = -1;
   glm::dvec3 hinge{0};
 };
@@ -27,15 +27,15 @@ struct ConstraintOnRig {
 enum class ConstraintTarget : std::uint8_t { None, Bone, Place };
 
 struct ConstraintRule {
-  ConstraintKind kind = {};      // the rule's index in the table
-  std::string id;                // as in "copy_rotation"; the operator that adds one is "constraint.add_copy_rotation"
-  std::string name;              // as in "Copy rotation"
-  std::string description;       // for the user, as a sentence
-  ConstraintTarget target = {};  // what a constraint of this kind needs; a place may be that of a bone
+  ConstraintKind kind = {};  // equals the rule's index in the table
+  std::string id;           // for example "copy_rotation"; the operator that adds one is "constraint.add_copy_rotation"
+  std::string name;         // for example "Copy rotation"
+  std::string description;  // a sentence that the user sees
+  ConstraintTarget target = {};  // kind of target that the constraint needs; a position may be fixed to a bone
 
-  // Returns the bones that the constraint turns, in no order. Throws Error where the rig lacks bones for it.
+  // Returns the bones that the constraint turns, in no order. Throws Error if the rig lacks the bones for it.
   std::vector<int> (*turned)(const ConstraintOnRig& on_rig, const Armature& armature) = nullptr;
-  // Turns these bones so that the constraint holds.
+  // Turns the bones of turned() so that the constraint holds.
   void (*solve)(const ConstraintOnRig& on_rig, PosedRig& rig) = nullptr;
 };
 
@@ -43,19 +43,19 @@ struct ConstraintRule {
 std::span<const ConstraintRule> constraint_rules();
 const ConstraintRule& constraint_rule(ConstraintKind kind);
 
-// Finds the bones of a constraint. Throws Error with one line where the rig does not have them.
+// Finds the bones of a constraint. Throws Error with a one-line message if the rig does not have them.
 //   limbs  from planted_limbs()
 ConstraintOnRig on_rig(const Constraint& constraint, const Armature& armature, const std::vector<PlantedLimb>& limbs);
 
-// Returns the place of the target in a pose, world, mm.
+// Returns the position of the target in a pose, in the world, mm.
 glm::dvec3 target_place(const ConstraintOnRig& on_rig, const PosedRig& rig);
 
-// Of a plant: returns whether a hand or foot ends the limb. Otherwise the forearm or shank is planted by its tail.
+// Returns whether the limb of a plant ends with a hand or foot. If not, the tail of the forearm or shank is planted.
 bool has_planted_end(const ConstraintOnRig& on_rig);
-// Returns the point of a planted bone that stays, in a pose, world, mm.
+// Returns where the planted point lies in a pose, in the world, mm.
 glm::dvec3 planted_point(const ConstraintOnRig& on_rig, const PosedRig& rig);
 
-// Returns the bone alone, as most kinds turn nothing else.
+// Returns only the constrained bone: most kinds of constraints turn no other.
 std::vector<int> turned_alone(const ConstraintOnRig& on_rig, const Armature& armature);
 
 // ---- The kinds, one source file each

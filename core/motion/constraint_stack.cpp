@@ -23,8 +23,8 @@ std::set<int> bones_of_target(const ConstraintOnRig& found, const Armature& arma
   return bones;
 }
 
-// Returns the bones that a constraint reads, beside those that it turns: those of its target, and those above the bones
-// that it turns where it holds in the world.
+// Returns the bones whose rotations the constraint depends on, without those that it turns: the bones of its target
+// and, if it holds in world axes, the ancestors of the bones that it turns.
 std::set<int> bones_read(const ConstraintOnRig& found, const Armature& armature, const std::vector<int>& turned) {
   std::set<int> bones = bones_of_target(found, armature);
   const bool is_relative =
@@ -39,9 +39,9 @@ bool share_a_bone(const std::vector<int>& turned, const std::set<int>& bones) {
   return std::any_of(turned.begin(), turned.end(), [&](int bone) { return bones.contains(bone); });
 }
 
-// The constraints that are not yet in the order. One waits for another that turns a bone which it reads: it must. One
-// that turns the same bone as an earlier one of the list waits for that too, so that the later one has the last word,
-// unless this would close a circle.
+// The constraints that have no position in the order yet. A constraint must wait for each constraint that turns a bone
+// that it reads. If two constraints turn the same bone, the later one in the list also waits for the earlier one, so
+// that its result remains; this second rule is dropped where it would lead to a cycle.
 class WaitingConstraints {
  public:
   WaitingConstraints(std::size_t constraints, std::size_t bones)
@@ -61,7 +61,8 @@ class WaitingConstraints {
   }
   bool empty() const { return all_.empty(); }
 
-  // Returns the first that waits for no other; nothing where all must wait for each other.
+  // Returns the first constraint that waits for no other. Returns nothing if every constraint must wait for another
+  // one.
   std::optional<std::size_t> next() const {
     const auto first = [&](const auto& is_ready) -> std::optional<std::size_t> {
       const auto found = std::find_if(all_.begin(), all_.end(), is_ready);
@@ -69,8 +70,8 @@ class WaitingConstraints {
     };
     if (const auto free = first([&](std::size_t one) { return !must_wait_for(one) && !waits_for_earlier(one); }))
       return free;
-    // Only a circle may break the list's order: each that one waits for waits for the one in turn. Those come first for
-    // which others must wait.
+    // Every constraint waits for another one. The list's order may be broken only for a constraint in a cycle: all
+    // constraints that it waits for also wait for it. Constraints that others must wait for are taken first.
     const auto is_in_circle = [&](std::size_t one) {
       if (must_wait_for(one)) return false;
       const std::set<std::size_t> earlier = earlier_of(one);
@@ -81,8 +82,8 @@ class WaitingConstraints {
     return awaited ? awaited : first(is_in_circle);
   }
 
-  // Returns a circle of constraints that must wait for each other: each for the next one, and the last is the first
-  // again. Where next() returns nothing, there is one.
+  // Returns a cycle of constraints of which each must wait for the next one; the first constraint is repeated at the
+  // end. Such a cycle exists whenever next() returns nothing.
   std::vector<std::size_t> circle() const {
     const auto start = std::find_if(all_.begin(), all_.end(), [&](std::size_t one) { return closes_circle(one); });
     std::vector<std::size_t> circle{*start};
@@ -123,8 +124,8 @@ class WaitingConstraints {
     for (const int bone : turned_[one]) others.insert(turning(bone).begin(), turning(bone).lower_bound(one));
     return others;
   }
-  // Returns whether the first waits for the last, or for one that waits for it, and so on.
-  //   must  only those count that must wait for another
+  // Returns whether the first constraint waits for the last one, directly or through other constraints.
+  //   must  true: follows only the waits that cannot be dropped
   bool is_reached(std::size_t first, std::size_t last, bool must) const {
     std::set<std::size_t> reached;
     std::vector<std::size_t> open{first};
@@ -143,7 +144,7 @@ class WaitingConstraints {
 
   std::vector<std::vector<int>> turned_;
   std::vector<std::set<int>> read_;
-  std::vector<std::set<std::size_t>> turning_;  // for each bone those that turn it
+  std::vector<std::set<std::size_t>> turning_;  // for each bone, the constraints that turn it
   std::set<std::size_t> all_;
 };
 
@@ -176,7 +177,7 @@ void ConstraintStack::find_order() {
       problems_[i].emplace(error);
     }
   }
-  // Takes the first in the list that waits for no other, again and again [Kahn 1962].
+  // Topological sort: repeatedly takes the first constraint of the list that waits for no other [Kahn 1962].
   while (!waiting.empty()) {
     if (const auto next = waiting.next()) {
       order_.push_back(*next);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Applies a clip's constraints to the pose of a frame.
 //
-// They are applied in the list's order, except that a constraint waits for those that turn its target, or a bone above
-// the bones that it turns: a hand is planted on the hip after the hip has its rotation. Where two constraints turn the
-// same bone, the later one has the last word: it waits for the earlier one too, unless that would wait for it in turn.
-// Constraints that must wait for each other in a circle have no order. They are not applied, and problem() says so; so
-// are those whose bones the rig does not have. One that is switched off keeps no other waiting.
+// Constraints are applied in the list's order, with one exception: a constraint waits for those that turn its target or
+// a parent of the bones that it turns. For example, a hand is planted on the hip after the hip has its rotation. If two
+// constraints turn the same bone, the later one waits for the earlier one, so that its result remains, unless this
+// would make a cycle. Constraints that must wait for each other in a cycle have no order; they are not applied.
+// Constraints whose bones the rig lacks are not applied either. problem() returns the reason. A constraint that is
+// switched off delays no other.
 #pragma once
 
 #include <memory>
@@ -22,18 +23,18 @@ class ConstraintStack {
  public:
   ConstraintStack(std::shared_ptr<const Constraints> constraints, std::shared_ptr<const Armature> armature);
 
-  // Returns the pose in which the constraints hold, each by its weight at the frame.
-  //   keys  those of the clip, for the weights
+  // Returns the pose in which the constraints hold, each according to its weight at the frame.
+  //   keys  the clip's keys, which include those of the weights
   Pose constrained(const Pose& pose, const Keys& keys, int frame) const;
 
-  // Returns why a constraint is not applied: one line; empty if it is.
+  // Returns one line that says why a constraint is not applied; empty if it is applied.
   //   index  in the list of constraints
   std::string problem(std::size_t index) const { return problems_[index] ? problems_[index]->what() : ""; }
-  // Throws that problem, if there is one.
+  // Throws Error with the text of problem(index), if there is one.
   void require_applied(std::size_t index) const;
-  // Returns the indices of the constraints that are applied, in the order in which they are.
+  // Returns the indices of the applied constraints, in the order in which they are applied.
   const std::vector<std::size_t>& order() const { return order_; }
-  // Returns a constraint with its bones; nothing where the rig does not have them.
+  // Returns a constraint with the indices of its bones; nothing if the rig does not have these bones.
   const std::optional<ConstraintOnRig>& found(std::size_t index) const { return found_[index]; }
   // Returns the bones that a constraint turns; empty if it is not applied.
   const std::vector<int>& turned(std::size_t index) const { return turned_[index]; }
@@ -42,7 +43,8 @@ class ConstraintStack {
 
  private:
   void find_order();
-  // Leaves out constraints that wait for each other: each for the next one, and the last is the first again.
+  // Excludes constraints that wait for each other in a cycle from the order.
+  //   circle  each constraint waits for the next one; the last equals the first
   void leave_out(const std::vector<std::size_t>& circle);
 
   std::shared_ptr<const Constraints> constraints_;

@@ -9,8 +9,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<int, 3> kOrder = {2, 1, 0};  // z, y, x
-constexpr double kLocked = 1e-6;                  // a smaller |cos y| is gimbal lock
+constexpr std::array<int, 3> kOrder = {2, 1, 0};  // order of the rotations: z, y, x
+constexpr double kLocked = 1e-6;                  // |cos y| below this counts as gimbal lock
 
 glm::dquat about(int axis, double angle) {
   glm::dquat q(std::cos(angle / 2), 0, 0, 0);
@@ -41,7 +41,8 @@ glm::dvec3 channel_speeds(const glm::dvec3& angles, const glm::dvec3& velocity) 
   const glm::dmat3 axes = axes_of(angles);
   const double cy = std::cos(angles.y), across = glm::dot(axes[1], velocity);
   if (std::abs(cy) < kLocked) {
-    // x turns about -z or z here: half of what is wanted about z goes to each.
+    // In gimbal lock x rotates about the same axis as z, or the opposite one. Each of the two takes half of the
+    // velocity about z.
     const double half = velocity.z / 2;
     return {axes[0].z < 0 ? -half : half, across, half};
   }

@@ -11,16 +11,17 @@ namespace limber {
 
 namespace {
 
-// A foot stands while it moves slower than kStanding, mm/s, and is less than kLifted above its lowest places, mm. Both
-// are for a leg of kUsualLeg and grow with its length.
+// A foot stands while it moves slower than kStanding, mm/s, and is less than kLifted, mm, above its lowest positions.
+// Both limits are for a leg of length kUsualLeg, mm, and are scaled with the length of the leg.
 constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
-constexpr double kRest = 2;              // mm: how far a limb at rest is from its place, and moves in kShortestStance
-constexpr double kHeld = 0.3;            // mm: likewise for a limb that rests amid slow movement
-constexpr double kLowest = 0.02;         // share of the frames whose places are lower than what counts as the lowest
-constexpr double kShortestStance = 0.1;  // seconds; shorter ones are passed over
+constexpr double kRest =
+    2;  // mm; a limb rests if it moves less than this in kShortestStance and stays this near to one position
+constexpr double kHeld = 0.3;            // mm; the same limit for a limb that moves slowly before and after it rests
+constexpr double kLowest = 0.02;         // quantile of a point's heights that is taken as the height of the ground
+constexpr double kShortestStance = 0.1;  // seconds; shorter stances are ignored
 constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
 
-// The spans of frames for which `stands` is true, without short interruptions and short spans.
+// Returns the spans of frames for which `stands` is true. Short interruptions are closed and short spans dropped.
 std::vector<std::array<int, 2>> spans_of(const std::vector<bool>& stands, double rate) {
   const int longest_gap = static_cast<int>(kLongestGap * rate);
   const int shortest = std::max(2, static_cast<int>(std::ceil(kShortestStance * rate)));
@@ -34,8 +35,8 @@ std::vector<std::array<int, 2>> spans_of(const std::vector<bool>& stands, double
   return spans;
 }
 
-// Finds the spans in which a point stands.
-//   size  of the leg, as a share of a usual one
+// Finds the spans of frames in which a point of the foot stands on the ground.
+//   size  the leg's length as a multiple of kUsualLeg
 std::vector<std::array<int, 2>> stances_of(const std::vector<glm::dvec3>& places, double size, double rate) {
   std::vector<double> heights;
   for (const glm::dvec3& place : places) heights.push_back(place.z);
@@ -60,10 +61,12 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
   return sum / double(last - first + 1);
 }
 
-// Finds the spans of frames, of `within`, in which a point moves less than `near` in a window to one side at least.
+// Finds the spans of frames in `within` in which a point is still: it moves less than `near` mm within `window` frames
+// before or after.
 std::vector<std::array<int, 2>> still_spans(const std::vector<glm::dvec3>& places, const std::array<int, 2>& within,
                                             int window, double near) {
-  // At the ends of a rest the point is still to one side only.
+  // One side suffices, since at the first frame of a rest the point is still only afterwards, and at the last only
+  // before.
   const auto is_still = [&](int f) {
     const auto stays_to = [&](int g) {
       return g >= 0 && g < std::ssize(places) && glm::distance(places[f], places[g]) < near;
@@ -79,26 +82,26 @@ std::vector<std::array<int, 2>> still_spans(const std::vector<glm::dvec3>& place
   return spans;
 }
 
-// Returns the rest in a span in which a point is still: the frames in which it is within `near` of one place. Nothing
-// if it drifts.
+// Returns the longest part of a span in which a still point stays within `near` mm of one position. Returns nothing if
+// the point drifts.
 std::optional<Plant> rest_in(const std::vector<glm::dvec3>& places, const std::array<int, 2>& span, int window,
                              double near) {
   auto [from, to] = span;
   if (to - from < window) return {};
-  // The frames in the middle say where it rests; those in which it comes and leaves are left out.
+  // The position is the mean of the middle half of the frames: in the first and last quarter the limb may still move.
   const int quarter = (to - from + 1) / 4;
   const glm::dvec3 place = mean_of(places, from + quarter, to - quarter);
   const auto is_there = [&](int f) { return glm::distance(places[f], place) <= near; };
   while (from <= to && !is_there(from)) ++from;
   while (from <= to && !is_there(to)) --to;
-  // A limb that is slow for longer than it takes to come and to leave drifts.
+  // A limb that needs more than `window` frames to arrive or to leave drifts.
   bool stays = to - from >= window && from - span[0] <= window && span[1] - to <= window;
   for (int f = from; f <= to; ++f) stays = stays && is_there(f);
   if (!stays) return {};
   return Plant{.first = from, .last = to, .place = mean_of(places, from, to)};
 }
 
-// Finds the spans in which a point rests, with the places.
+// Finds the spans of frames in which a point rests, and its mean position in each.
 std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) {
   const int window = window_of(rate);
   std::vector<Plant> rests;
@@ -107,14 +110,16 @@ std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) 
       rests.push_back(*rest);
       continue;
     }
-    // A limb that was held where it moves slowly before or after is far stiller there than a drift.
+    // The span is a slow drift, but a limb may rest in a part of it. Such a rest is far stiller than a drift, so it is
+    // searched for with the smaller limit kHeld.
     for (const auto& inner : still_spans(places, span, window, kHeld))
       if (const auto rest = rest_in(places, inner, window, kHeld)) rests.push_back(*rest);
   }
   return rests;
 }
 
-// Gives each plant of a foot's tip its place. While the joint stays in one place, the tip has one place too.
+// Sets the position of each plant of a foot's tip to the mean over its frames. Plants of the tip during which the joint
+// stays planted get the same position.
 //   tips, joints  plants of one foot, sorted by frames
 void place_tips(std::vector<Plant>& tips, const std::vector<Plant>& joints, const std::vector<glm::dvec3>& tip) {
   for (std::size_t from = 0, to = 0; from < tips.size(); from = to) {
@@ -157,7 +162,7 @@ std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<Pl
       joints.push_back({l, PlantPoint::Joint, first, last, mean_of(joint, first, last)});
     place_tips(tips, joints, tip);
     for (Plant& plant : joints) {
-      // Joint and tip of a foot on the ground must be as far apart as they are in the foot.
+      // Moves the joint's plant so that its distance from the tip's plant is the length of the foot.
       for (const Plant& other : tips) {
         const int from = std::max(plant.first, other.first), to = std::min(plant.last, other.last);
         if (from > to) continue;
@@ -180,7 +185,7 @@ std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<Pl
   std::vector<Plant> plants;
   for (int l = 0; l < std::ssize(limbs); ++l)
     for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip}) {
-      // Of a hand the tip is what holds on to something.
+      // For hands only the tip is examined, since it is what holds on to something. For feet both points are.
       if (point == PlantPoint::Joint ? !limbs[l].is_leg : limbs[l].is_leg && limbs[l].end < 0) continue;
       for (Plant rest : rests_of(tracks[l][static_cast<int>(point)], rate)) {
         rest.limb = l;
@@ -201,7 +206,7 @@ std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature
     const int trunk = armature.bones[limb.upper].parent;
     bool moves = limb.is_leg || trunk < 0;
     if (!moves) {
-      // Where the point would be if the trunk were as at rest.
+      // Computes the positions of the point relative to the trunk.
       const int from = std::max(0, rest.first - window), to = std::min(last, rest.last + window);
       std::vector<glm::dvec3> places;
       for (int f = from; f <= to; ++f) {

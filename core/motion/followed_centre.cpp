@@ -11,9 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kDeviation = 0.25;   // s; a step takes about half a second, so its bounce is smoothed away
-constexpr double kMostFrames = 1000;  // upper limit of the deviation, for clips of a very high rate
-constexpr int kReach = 3;             // the Gaussian is cut off after so many deviations
+constexpr double kDeviation = 0.25;   // seconds; standard deviation of the Gaussian. A step takes about half a second,
+                                      // so its bounce is smoothed away
+constexpr double kMostFrames = 1000;  // frames; upper limit of the standard deviation, for clips of a very high rate
+constexpr int kReach = 3;             // standard deviations after which the Gaussian is cut off
 
 int centre_bone(const Armature& armature) {
   const Skeleton skeleton = skeleton_of(armature);

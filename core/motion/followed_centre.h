@@ -18,18 +18,18 @@ class FollowedCentre {
   // Returns the smoothed centre at a frame, mm. Only frames range_start to range_end of the clip count; a frame outside
   // of them has the centre of the nearest one.
   glm::dvec3 at(int frame);
-  // Returns the centre in a pose that may be none of the clip's, mm, not smoothed.
+  // Returns the unsmoothed centre in any pose, mm. The pose need not belong to the clip.
   glm::dvec3 in_pose(const Pose& pose) const;
 
  private:
   const glm::dvec3& measured(int frame);
-  // Beyond the ends of the range the centre goes on as it came there, reflected at the end's own place: a walk that is
-  // cut there keeps its speed.
+  // Extends the path of the centre beyond the ends of the range by a point reflection at each end. A walk that is cut
+  // there so keeps its speed.
   glm::dvec3 extended(int frame);
 
   const ClipOnRig clip_;
   int bone_ = 0, first_ = 0, last_ = 0;
-  double deviation_ = 1;  // of the Gaussian, frames
+  double deviation_ = 1;  // standard deviation of the Gaussian, frames
   std::map<int, glm::dvec3> measured_;
 };
 

@@ -76,8 +76,8 @@ struct Chain {
   }
 };
 
-// Compute the rotation by which a leg moves its ankle by `aside`, mm, or a foot its toes. Return this rotation divided
-// by the largest allowed rotation, so that a result above 1 is not allowed.
+// Computes the rotation by which a leg moves its ankle by `aside`, mm. Returns this rotation divided by the largest
+// allowed one, so that a result above 1 is not allowed.
 double share_of_leg(const FootTrack& leg, std::size_t frame, const glm::dvec2& aside) {
   return turns_of_leg(leg.knee[frame] - leg.hip[frame], leg.body[FootTrack::Ankle][frame] - leg.knee[frame], aside)
              .most() /

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves a posed body along the ground and turns it about the vertical, so that one take goes on where another ends.
+// Moves a posed body along the ground and turns it about the vertical, so that one take continues where another ends.
 #pragma once
 
 #include "core/rig/pose.h"
@@ -8,7 +8,7 @@ namespace limber {
 
 struct GroundMove {
   double turn = 0;            // radians about the vertical (z)
-  glm::dvec3 from{0}, to{0};  // the place about which the body turns, and where this place comes to lie, mm
+  glm::dvec3 from{0}, to{0};  // the point about which the body turns, and the position to which this point moves, mm
 
   glm::dquat rotation() const { return glm::angleAxis(turn, glm::dvec3(0, 0, 1)); }
   glm::dvec3 place(const glm::dvec3& p) const { return to + rotation() * (p - from); }
@@ -17,11 +17,11 @@ struct GroundMove {
 // Returns the index of the rig's root bone. Throws Error for a rig with several root bones, which cannot turn as one.
 int only_root(const Armature& armature);
 
-// Returns the place of the root bone's head in a pose, world, mm.
+// Returns the position of the root bone's head in a pose, in the world, mm.
 glm::dvec3 root_place(const Armature& armature, const Pose& pose);
 
-// Returns the move that gives the body in `pose` the place on the ground and the heading that it has in `wanted`. Its
-// height stays, and so does its lean: of the turn between the root bones only the part about the vertical counts.
+// Returns the move that gives the body in `pose` the ground position and the heading that it has in `wanted`. The body
+// keeps its height and its lean: only the rotation about the vertical is taken over from the root bone.
 GroundMove move_to(const Armature& armature, const Pose& pose, const Pose& wanted);
 Pose moved(const Armature& armature, Pose pose, const GroundMove& move);
 

@@ -11,7 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kNear = 1.0 / 7;  // of the leg's length: places of a foot that are nearer are made one
+constexpr double kNear =
+    1.0 / 7;  // share of the leg's length; a foot that stands nearer than this in both takes gets one position
 
 Pose mixed(const Pose& a, const Pose& b, double share) {
   Pose pose = a;
@@ -29,11 +30,12 @@ double leg_length(const Armature& armature, const PlantedLimb& limb) {
 bool same_point(const Plant& a, const Plant& b) { return a.limb == b.limb && a.point == b.point; }
 double apart(const Plant& a, const Plant& b) { return std::hypot(a.place.x - b.place.x, a.place.y - b.place.y); }
 
-// When feet stand in the joined takes, found in each take alone: a foot that slides in the cross-fade would not be
-// found there.
+// The frames in which feet stand in the joined takes. They are found in each take alone: in the cross-fade a foot
+// slides, so its stance could not be found there.
 class Stances {
  public:
-  //   middle  the last frame of the cross-fade that counts for the first take;  ease  frames
+  //   middle  the last frame of the cross-fade in which the first take's plants are used
+  //   ease    frames over which a foot moves to its position and away from it
   Stances(const Armature& armature, const std::vector<PlantedLimb>& limbs, const std::vector<Plant>& first,
           std::vector<Plant> second, int fade_first, int middle, int ease) {
     for (Plant& plant : second) plant.first += fade_first, plant.last += fade_first;
@@ -46,7 +48,7 @@ class Stances {
         return same_point(other, b) && other.first < b.first;
       });
       if (!is_first || b.first > middle + 1 + ease) continue;
-      const Plant* a = nullptr;  // the latest of the first take
+      const Plant* a = nullptr;  // the first take's latest plant of the same point
       for (const Plant& plant : before_)
         if (same_point(plant, b) && (!a || plant.last > a->last)) a = &plant;
       if (!a || a->last < middle - ease) continue;
@@ -55,14 +57,14 @@ class Stances {
     }
   }
 
-  // The mean way along the ground from the second take's places to the first take's.
+  // Returns the mean horizontal vector from the feet of the second take to the same feet of the first take, mm.
   glm::dvec3 shift() const {
     glm::dvec3 sum(0);
     for (const auto& [a, b] : pairs_) sum += a.place - b.place;
     return pairs_.empty() ? sum : glm::dvec3(sum.x, sum.y, 0) / double(pairs_.size());
   }
 
-  // The plants that touch the cross-fade, after the second take was moved by shift().
+  // Returns the plants that overlap the cross-fade, after the second take was moved by shift().
   std::vector<Plant> plants(int middle, int fade_last) const {
     std::vector<Plant> all;
     const auto is_paired = [&](const Plant& plant, bool second) {
@@ -95,7 +97,7 @@ class Stances {
   struct Pair {
     Plant a, b;
   };
-  std::vector<Plant> before_, after_;  // of the first take, and of the second one
+  std::vector<Plant> before_, after_;  // plants of the first take, and of the second take
   std::vector<Pair> pairs_;
   double gap_ = 0;
 };

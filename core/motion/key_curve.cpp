@@ -11,10 +11,11 @@ namespace limber {
 
 namespace {
 
-constexpr double kSteepest = 3;  // a tangent of a clamped key, in multiples of the smaller velocity [Fritsch & Carlson]
+constexpr double kSteepest =
+    3;  // largest tangent of a clamped key, as a multiple of the smaller neighbouring velocity [Fritsch & Carlson]
 
-// The straight ways to the keys before and after a key: velocities, and numbers of frames. A key without a neighbour
-// has the velocity zero on that side.
+// The constant velocities from the key before to this key, and from this key to the one after, with the numbers of
+// frames. At the first and last key the missing velocity is zero.
 struct Ways {
   glm::dvec3 before{0}, after{0};
   double frames_before = 0, frames_after = 0;
@@ -43,7 +44,7 @@ Ways ways_at(const std::map<int, Value>& keys, typename std::map<int, Value>::co
   return ways;
 }
 
-// Returns the clamped speed along one direction, in which the speeds on both sides are a and b.
+// Returns the clamped speed along one direction, where a and b are the speeds before and after the key.
 double clamped(const Ways& ways, double a, double b) {
   if (a * b <= 0) return 0;
   const double mean = (ways.frames_before * a + ways.frames_after * b) / (ways.frames_before + ways.frames_after);
@@ -56,7 +57,7 @@ glm::dvec3 clamped_tangent(const Ways& ways, const glm::dquat&) {
   if (a == 0 || b == 0) return glm::dvec3(0);
   const glm::dvec3 bisector = ways.before / a + ways.after / b;
   const double length = glm::length(bisector);
-  if (length < 1e-9) return glm::dvec3(0);  // the bone turns back exactly
+  if (length < 1e-9) return glm::dvec3(0);  // the bone turns exactly back to where it came from
   const glm::dvec3 through = bisector / length;
   return clamped(ways, glm::dot(ways.before, through), glm::dot(ways.after, through)) * through;
 }
@@ -136,7 +137,8 @@ glm::dquat bezier_rotation(const glm::dquat& q0, const glm::dvec3& v0, const glm
   const glm::dvec3 w1 = v0 * (frames / 3), w3 = v1 * (frames / 3);
   glm::dquat turn = q1 * glm::conjugate(q0);
   if (turn.w < 0) turn = -turn;
-  // The sign of the product is kept, so that w2 grows steadily with the velocities, beyond half a turn too.
+  // Does not switch the quaternion to the sign with w >= 0, so that w2 changes continuously with the velocities, even
+  // beyond half a turn.
   const glm::dvec3 w2 = rotation_vector(exponential(-w3) * turn * exponential(-w1));
   const double left = 1 - share, b1 = 1 - left * left * left, b2 = share * share * (3 - 2 * share),
                b3 = share * share * share;

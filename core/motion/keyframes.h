@@ -2,8 +2,8 @@
 // Keyframes: the rotations that bones take at given frames. They are stored by bone name, so that a change of the rig
 // loses only the keys of removed bones. A bone without a key keeps its motion.
 //
-// A key may have a shape, which says how the bone goes on to the next key and how fast it passes through the key. A key
-// without a shape goes on to the next key at constant speed. core/motion/key_curve.h evaluates the keys.
+// A key may have a shape, which says how the bone moves to the next key and how fast it passes through the key. After a
+// key without a shape the bone moves to the next key at constant speed. core/motion/key_curve.h evaluates the keys.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +16,17 @@
 
 namespace limber {
 
-// How a value goes from a key to the next one: it stays until the next key, goes at constant speed, or follows a cubic
-// Bezier curve with the speeds of the two keys' handles.
+// How a value changes from a key to the next one: it stays until the next key, changes at constant speed, or follows a
+// cubic Bezier curve with the tangents of the two keys.
 enum class Interpolation : std::uint8_t { Constant, Linear, Bezier };
 
-// What gives a key's tangents. Automatic: the neighbouring keys [Catmull & Rom 1974]. Clamped: likewise, but the curve
-// does not overshoot where it turns back. Aligned: the user; both tangents are equal. Free: the user; the tangents are
-// independent. Flat: both tangents are zero.
+// What determines a key's tangents. Automatic: the neighbouring keys [Catmull & Rom 1974]. Clamped: the neighbouring
+// keys, but without overshoot where the curve turns back. Aligned: the user; both tangents are equal. Free: the user;
+// the tangents are independent. Flat: both tangents are zero.
 enum class HandleKind : std::uint8_t { Automatic, Clamped, Aligned, Free, Flat };
 
 struct KeyShape {
-  Interpolation next = Interpolation::Linear;  // from this key to the next one
+  Interpolation next = Interpolation::Linear;  // interpolation from this key to the next one
   HandleKind handles = HandleKind::Clamped;
   // The speeds before and after the key, for aligned and free handles: for a bone a rotation vector in the parent
   // bone's frame, radians per frame; for the body's shift mm per frame.
@@ -40,7 +40,8 @@ struct Keys {
   // For each bone name, the rotation at each keyed frame. Each listed bone has at least one key.
   std::map<std::string, std::map<int, glm::dquat>> bones;
   std::map<int, glm::dvec3> root;  // for each keyed frame, the body's shift from its rest position, mm
-  // The shapes of keys of `bones` and `root`. No listed bone has an empty map, and no listed shape is KeyShape{}.
+  // The shapes of the keys of `bones` and `root`. Keys with the default shape are not stored, nor are bones without
+  // shapes.
   std::map<std::string, KeyShapes> shapes;
   KeyShapes root_shapes;
   // For each constraint's name (core/motion/constraint.h), its weight at each keyed frame, [0, 1], and the shapes of
@@ -59,21 +60,20 @@ KeyShape shape_at(const KeyShapes& shapes, int frame);
 const KeyShapes& shapes_of(const Keys& keys, const std::string& bone);
 void set_shape(Keys& keys, const std::string& bone, int frame, const KeyShape& shape);
 void set_root_shape(Keys& keys, int frame, const KeyShape& shape);
-// Multiplies all tangents by a factor, as when the number of frames per second changes.
+// Multiplies all tangents by a factor, for example when the number of frames per second changes.
 void scale_tangents(Keys& keys, double factor);
 
-// ---- Keys
-// Sets keys of `bones` at a frame, with the rotations that the bones have in the pose. If a root bone is among them,
-// the body's position is keyed too. A key that exists keeps its shape. A new key is interpolated as the key before it
-// is, or as the one after it if there is none before, with clamped handles.
+// ---- Keys Sets keys of `bones` at a frame, with the rotations that the bones have in the pose. If a root bone is
+// among them, the body's position is keyed too. An existing key keeps its shape. A new key gets clamped handles and the
+// interpolation of the key before it, or of the key after it if there is none before.
 void insert_key(Keys& keys, const Armature& armature, const Pose& pose, const std::vector<int>& bones, int frame);
 // Deletes the keys of the bones at a frame. Returns false if there were no such keys.
 bool delete_key(Keys& keys, const Armature& armature, const std::vector<int>& bones, int frame);
 
-// The same for the weight of a constraint.
+// Set or delete a key of a constraint's weight.
 void insert_weight_key(Keys& keys, const std::string& constraint, int frame, double weight);
 bool delete_weight_key(Keys& keys, const std::string& constraint, int frame);
-// Sets how a constraint's weight goes on from each of its keys.
+// Sets the interpolation of all keys of a constraint's weight.
 void set_weight_interpolation(Keys& keys, const std::string& constraint, Interpolation next);
 
 // Delete, move or copy all keys at the given frames, with their shapes. A key moved onto a frame that has a key
@@ -82,7 +82,7 @@ void delete_keys(Keys& keys, const std::set<int>& frames);
 //   frame_of  for each frame whose keys are moved or copied, the new frame; keys at other frames stay
 void move_keys(Keys& keys, const std::map<int, int>& frame_of);
 void copy_keys(Keys& keys, const std::map<int, int>& frame_of);
-// The same for the keys of one bone, and for the keys of the body's shift.
+// Move or delete the keys of one bone, or the keys of the body's shift.
 void move_bone_keys(Keys& keys, const std::string& bone, const std::map<int, int>& frame_of);
 void move_root_keys(Keys& keys, const std::map<int, int>& frame_of);
 void delete_bone_keys(Keys& keys, const std::string& bone, const std::set<int>& frames);

@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1'000'000;
-constexpr double kStill = 0.1;  // degrees per frame; slower bones are not compared
+constexpr double kStill = 0.1;  // degrees per frame; the speeds of slower bones are not compared
 
 void require_loop(std::size_t count, const LoopSettings& settings) {
   const std::int64_t steps = static_cast<std::int64_t>(count) - 1;
@@ -28,7 +28,7 @@ void require_loop(std::size_t count, const LoopSettings& settings) {
                 "choose from 0 to " + std::to_string(steps));
 }
 
-// Takes the travel and the change of heading out of a take, evenly over its frames.
+// Removes the travel and the change of heading from a take, evenly over its frames.
 std::vector<Pose> on_the_spot(const Armature& armature, const std::vector<Pose>& poses) {
   const GroundMove whole = move_to(armature, poses.front(), poses.back());
   std::vector<Pose> still;
@@ -45,18 +45,21 @@ glm::dquat turned_by(const glm::dvec3& turn) {
   return angle > 1e-15 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1, 0, 0, 0);
 }
 
-// What a value lacks at a seam: half of the way to the other side's value, and half of the difference of the speeds.
+// The correction of one value at a seam: half of its difference to the other side's value, and half of the difference
+// of the speeds. Rotation vectors in radians, or shifts in mm; speeds per frame.
 struct Lack {
   glm::dvec3 way{0}, speed{0};
 
-  // The correction at a share of the blended frames of one side, from 0 far from the seam to 1 at it.
+  // Returns the correction at a frame near the seam.
+  //   share   0: at the frame farthest from the seam, 1: at the seam
+  //   frames  number of blended frames on one side
   glm::dvec3 at(double share, double frames) const {
     const double square = share * share;
     return square * (3 - 2 * share) * way + square * (share - 1) * frames * speed;
   }
 };
 
-// A seam: the poses of the take's end and of its beginning, which is moved to where the take ends.
+// A seam: the last two poses of the take and its first two poses, the latter moved to where the take ends.
 struct Seam {
   Pose before, last, first, after;
 
@@ -72,11 +75,11 @@ struct Seam {
 };
 
 // Returns the take with its last and first frames corrected.
-//   move  from the take's beginning to its end
+//   move  ground move from the beginning of the take to its end
 std::vector<Pose> closed(const Armature& armature, std::vector<Pose> poses, const GroundMove& move, int blend) {
   const std::size_t last = poses.size() - 1, root = static_cast<std::size_t>(only_root(armature));
   const Seam seam{poses[last - 1], poses[last], moved(armature, poses[0], move), moved(armature, poses[1], move)};
-  // At least the seam's own pose is corrected, so that the repeats meet.
+  // At least the pose at the seam itself is corrected, so that the repeats join.
   const double frames = std::max(blend / 2.0, 1.0);
   const glm::dquat back = glm::conjugate(move.rotation());
   for (std::size_t step = 0; double(step) < frames; ++step) {
@@ -84,7 +87,8 @@ std::vector<Pose> closed(const Armature& armature, std::vector<Pose> poses, cons
     Pose &end = poses[last - step], &start = poses[step];
     for (std::size_t b = 0; b < end.rotation.size(); ++b) {
       const Lack lack = seam.bone(b);
-      // At the beginning the way leads back to the end's pose; the time runs from the seam.
+      // The first frames need the opposite difference of values. Their difference of speeds keeps its sign, since the
+      // time also counts from the seam.
       const glm::dvec3 ahead = lack.at(share, frames), behind = Lack{-lack.way, lack.speed}.at(share, frames);
       end.rotation[b] = glm::normalize(turned_by(ahead) * end.rotation[b]);
       start.rotation[b] = glm::normalize(turned_by(b == root ? back * behind : behind) * start.rotation[b]);
@@ -96,7 +100,7 @@ std::vector<Pose> closed(const Armature& armature, std::vector<Pose> poses, cons
   return poses;
 }
 
-// The largest turn of a bone from one pose to the next one in the frames near both ends.
+// Returns the largest rotation of a bone from one pose to the next, in degrees, in the frames near both ends.
 double fastest_near_ends(const std::vector<Pose>& poses, std::size_t bone, int frames) {
   double most = 0;
   const int steps = static_cast<int>(poses.size()) - 1;
@@ -131,7 +135,7 @@ LoopedPoses looped(const Armature& armature, const std::vector<Pose>& poses, con
   for (int repeat = 0; repeat < settings.repeats; ++repeat) {
     for (std::size_t f = repeat == 0 ? 0 : 1; f < cycle.size(); ++f)
       out.poses.push_back(moved(armature, cycle[f], so_far));
-    // First the move of one repeat, then those of the repeats before it.
+    // The next repeat is moved by one more cycle: first by `move`, then by the moves of the repeats before it.
     so_far = {so_far.turn + move.turn, move.from, so_far.place(move.to)};
   }
   return out;

@@ -16,7 +16,7 @@ bool lies_along_an_axis(const glm::dvec3& normal) {
   return std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)}) > 1 - 1e-12;
 }
 
-// Replaces clamped handles of the body's shift by aligned ones with the same speeds.
+// Replaces clamped handles of the body's shift by aligned handles with the same tangents.
 void align_root_handles(Clip& clip, const ClipOnRig& on_rig) {
   std::map<int, glm::dvec3> shifts = clip.keys.root;
   if (on_rig.retarget())
@@ -55,7 +55,7 @@ Clip mirrored_clip(const std::shared_ptr<const Clip>& clip, const std::shared_pt
     mirrored.keys.bones[counterpart(name)] = std::move(track);
   }
   for (auto& [name, shapes] : keys.shapes) {
-    // A rotation vector turns the other way in the mirror.
+    // A rotation reverses its sense in a mirror, so its vector is negated after the reflection.
     for (auto& [frame, shape] : shapes)
       for (glm::dvec3* tangent : {&shape.in, &shape.out}) *tangent = -plane.direction(*tangent);
     mirrored.keys.shapes[counterpart(name)] = std::move(shapes);

@@ -8,9 +8,10 @@
 namespace limber {
 
 // Returns the clip that plays flipped(pose) (core/rig/mirror.h) wherever the clip plays `pose` on this rig. The motion
-// stays as it is and is carried over mirrored; keys, their handles and the body's shift are mirrored. Twice gives the
-// first clip back. A clamped key of the shift is clamped axis by axis, so where the mirror plane stands askew to the
-// axes its handles become aligned, with the speeds that they had.
+// file stays as it is and is retargeted mirrored; keys, their handles and the body's shift are mirrored. Mirroring
+// twice gives the original clip. A clamped key of the shift is clamped axis by axis. If the mirror plane is not
+// perpendicular to an axis, this clamping would differ after mirroring, so such handles become aligned, with the
+// tangents that they had.
 Clip mirrored_clip(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature);
 
 }  // namespace limber

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr std::int64_t kMostFrames = 10'000'000;
-constexpr int kFramesAtOnce = 256;  // after so many frames, resampling reports its progress; they take under 10 ms
+constexpr int kFramesAtOnce = 256;  // frames per step of the resampling between two progress reports; under 10 ms
 
 bool is_rotation(BvhChannel channel) { return channel >= BvhChannel::Xrotation; }
 int axis_of(BvhChannel channel) { return static_cast<int>(channel) % 3; }
@@ -86,8 +86,8 @@ glm::dvec3 euler_angles(const glm::dquat& rotation, const std::array<int, 3>& or
   const double sign = (j - i + 3) % 3 == 1 ? 1 : -1;
   const double cosine = std::hypot(R(i, i), R(i, j));
   const double b = std::atan2(sign * R(i, k), cosine);
-  // Gimbal lock: b is a right angle, so a and c rotate about the same axis. Takes c from `near`; a follows from R_i(a)
-  // R_j(b) = rotation * R_k(-c).
+  // Gimbal lock: b is a right angle, so a and c rotate about the same axis. c is taken from `near`; a follows from
+  // R_i(a) R_j(b) = rotation * R_k(-c).
   if (cosine < 1e-9) {
     const glm::dmat3 rest = glm::mat3_cast(rotation * about(k, -near[2]));
     return nearest_turns({std::atan2(sign * rest[j][k], rest[j][j]), b, near[2]}, near);

@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kUnmoved = 1e-6;  // mm; what a rig's file loses by rounding is no move
+constexpr double kUnmoved = 1e-6;  // mm; smaller differences are the rounding of a rig's file, not a move
 
 bool is_moved(const Bone& before, const Bone& after) {
   return glm::distance(before.head, after.head) > kUnmoved || glm::distance(before.tail, after.tail) > kUnmoved;
@@ -19,10 +19,11 @@ std::vector<std::string> moved_targets(const Constraints& constraints, const Arm
                                        const std::vector<int>& from) {
   std::vector<std::string> moved;
   for (const Constraint& constraint : constraints.list) {
-    // Rotations are copied wherever the target is.
+    // Only constraints with a target position are affected. Copied rotations do not depend on where the target bone is.
     if (constraint_rule(constraint.kind).target != ConstraintTarget::Place) continue;
     const auto target = after.find(constraint.target);
-    if (!target) continue;  // a place of the world, or a bone that is gone, which the constraint's problem says
+    if (!target)
+      continue;  // a position in the world, or a bone that no longer exists, which the constraint's problem reports
     const int old = from[static_cast<std::size_t>(*target)];
     if (old < 0 || is_moved(before.bones[old], after.bones[*target])) moved.push_back(constraint.name);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tells which constraints a change of the rig has moved the targets of. The place of a target is fixed to a bone as it
-// is in the rest pose: where that bone gets another head or tail, the place is no longer where the user put it on it.
+// Finds the constraints whose target positions a change of the rig has moved. A target position is fixed to a bone in
+// the rest pose. If this bone gets another head or tail, the position no longer lies where the user set it on the bone.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace limber {
 
-// Returns the names of the constraints that need a place, whose target bone has another head or tail in the new rig.
+// Returns the names of the constraints with a target position whose target bone has another head or tail in the new
+// rig.
 //   from  for each bone of the new rig, its index in the old rig; -1: a new bone
 std::vector<std::string> moved_targets(const Constraints& constraints, const Armature& before, const Armature& after,
                                        const std::vector<int>& from);

@@ -15,10 +15,11 @@ namespace limber {
 
 namespace {
 
-constexpr int kLongestEase = 2000;  // frames
-// The share of its length to which a leg may be stretched. A little is left, so that the knee keeps its direction.
+constexpr int kLongestEase = 2000;  // upper limit of the ease, frames
+// Largest distance from hip to ankle as a share of the leg's length. It is below 1 so that the knee stays slightly bent
+// and its direction defined.
 constexpr double kStretch = 0.999;
-// How far the body sinks at most for a foot's place, as a share of the leg's length.
+// Largest distance that the body may sink so that a foot reaches its position, as a share of the leg's length.
 constexpr double kDeepest = 0.15;
 
 glm::dvec3 joint_of(const PosedRig& rig, const PlantedLimb& limb) {
@@ -31,7 +32,7 @@ glm::dvec3 point_of(const PosedRig& rig, const PlantedLimb& limb, PlantPoint poi
   return point == PlantPoint::Joint ? joint_of(rig, limb) : tip_of(rig, limb);
 }
 
-// The lengths of a limb's two long bones as they count for reaching: from joint to joint, mm.
+// The lengths of a limb's two long bones, measured from joint to joint, mm.
 struct Lengths {
   double upper, lower;
   double both() const { return upper + lower; }
@@ -44,14 +45,14 @@ Lengths lengths_of(const PlantedLimb& limb, const Armature& armature) {
 
 // Bends and turns the limb's two long bones so that its joint comes to `target`, or as near to it as the limb reaches.
 void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature, const glm::dvec3& target) {
-  constexpr double kOfHinge = 0.1;  // how much the hinge counts beside the plane in which the limb is bent already
+  constexpr double kOfHinge = 0.1;  // weight of the hinge relative to the plane in which the limb is already bent
   const Lengths length = lengths_of(limb, armature);
   const glm::dvec3 root = rig.head(limb.upper), upper = rig.head(limb.lower) - root,
                    lower = joint_of(rig, limb) - rig.head(limb.lower);
   const double wanted =
       std::clamp(glm::distance(root, target), std::abs(length.upper - length.lower), kStretch * length.both());
-  // The axis is the one about which the limb is bent already, on the side of its hinge. The plane of a nearly straight
-  // limb, or of one that is bent the wrong way, is chance; there the hinge decides.
+  // The axis is the one about which the limb is already bent, with the sign of the hinge. If the limb is nearly
+  // straight, or is bent the wrong way, its plane is arbitrary, and the hinge gives the axis.
   const glm::dvec3 hinge = rig.turn(limb.upper) * limb.hinge;
   const glm::dvec3 bent = glm::cross(upper, lower) / (length.upper * length.lower);
   const double along = glm::dot(bent, hinge);
@@ -60,8 +61,8 @@ void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature
   rig.turn_by(limb.upper, shortest_turn(joint_of(rig, limb) - root, target - root));
 }
 
-// The axis about which a limb bends at rest: that of its joint's limits, or the one about which a knee bends backwards
-// and an elbow forwards.
+// Returns the axis about which a limb bends at rest: the axis of its joint's limits or, without limits, the axis about
+// which a knee bends backwards and an elbow forwards.
 glm::dvec3 hinge_of(const PlantedLimb& limb, const Armature& armature, const glm::dvec3& back) {
   const JointLimits& limits = armature.bones[limb.lower].limits;
   if (limits.type == JointLimits::Type::Hinge && glm::length(limits.axis) > 0) return glm::normalize(limits.axis);
@@ -72,17 +73,17 @@ glm::dvec3 hinge_of(const PlantedLimb& limb, const Armature& armature, const glm
   return {1, 0, 0};
 }
 
-// How strongly a plant pulls at its point in a frame: 1 in its frames, falling smoothly to 0 within `ease` frames.
+// Returns the weight of a plant at a frame: 1 in its own frames, falling smoothly to 0 within `ease` frames outside.
 double share_of(const Plant& plant, int frame, int ease) {
   const int beyond = std::max({plant.first - frame, frame - plant.last, 0});
   const double t = std::max(0.0, 1 - double(beyond) / (ease + 1));
   return t * t * (3 - 2 * t);
 }
 
-// What the plants of one limb's point ask for in a frame.
+// The combined effect of all plants of one point of a limb in a frame.
 struct Pull {
   double share = 0;
-  glm::dvec3 shift{0};  // from the point's own place, mm; already weighted by the share
+  glm::dvec3 shift{0};  // displacement of the point, mm; already multiplied by the share
 };
 
 class Planter {
@@ -95,10 +96,10 @@ class Planter {
         ease_(ease),
         tracks_(limb_tracks(armature, limbs, poses, progress)) {}
 
-  // Returns how the body should move with its planted feet in a frame, mm: as they are pulled, in the mean of the legs.
-  // The legs then keep their shape.
+  // Returns how far the body should move in a frame, mm: the weighted mean of the displacements of its planted feet. If
+  // the body moves with its feet, the legs change their shape less.
   glm::dvec3 carrying(const Pose& pose, int frame) const {
-    constexpr double kOfFree = 0.1;  // how much it counts that legs without plants stay as they are
+    constexpr double kOfFree = 0.1;  // weight of not moving the body, for the legs without plants
     const PosedRig rig(armature_, pose);
     glm::dvec3 sum(0);
     double weights = kOfFree;
@@ -106,13 +107,14 @@ class Planter {
       if (!limbs_[l].is_leg || !is_pulled(l, frame)) continue;
       const double share =
           std::max(pull_of(rig, l, PlantPoint::Joint, frame).share, pull_of(rig, l, PlantPoint::Tip, frame).share);
-      // A pull that is only coming or going is small already.
+      // The displacement of a plant that eases in or out is already multiplied by its share, so it is divided by it
+      // here.
       sum += share * (target_of(rig, l, frame) - joint_of(rig, limbs_[l])) / std::max(share, 0.05);
       weights += share;
     }
     return sum / std::max(weights, 1.0);
   }
-  // Returns by how much the body must sink in a frame so that its legs reach, mm.
+  // Returns how far the body must sink in a frame so that its legs reach their targets, mm.
   double sinking(const Pose& pose, int frame) const {
     const PosedRig rig(armature_, pose);
     double most = 0;
@@ -145,7 +147,7 @@ class Planter {
         rig.turn_by(limb.end, shortest_turn(tip_of(rig, limb) - rig.head(limb.end), wanted - rig.head(limb.end)));
       }
       if (share >= 1) continue;
-      // A limb that was bent the wrong way, or in another plane, comes to its bend as smoothly as to its place.
+      // While a plant eases in or out, the change of the limb's bending plane is eased as well, not only its position.
       for (const int bone : {limb.upper, limb.lower, limb.end})
         if (bone >= 0) rig.mix_back(bone, before, share);
     }
@@ -158,17 +160,20 @@ class Planter {
       return plant.limb == static_cast<int>(limb) && share_of(plant, frame, ease_) > 0;
     });
   }
-  // Returns where a plant wants its point in a frame. Beside its own frames, the point moves as it did, as far aside as
-  // in the nearest of them: a foot that comes down is not pulled to the ground early.
+  // Returns the position that a plant wants for its point in a frame. In frames outside of the plant, this is the
+  // original path of the point, shifted by the offset at the plant's nearest frame, so that a foot that comes down is
+  // not pulled to the ground early.
   glm::dvec3 goal_of(const Plant& plant, int frame) const {
     const std::vector<glm::dvec3>& track = tracks_[plant.limb][static_cast<int>(plant.point)];
     return plant.place + track[frame] - track[std::clamp(frame, plant.first, plant.last)];
   }
-  // The joint of a limb without foot or hand is its tip.
+  // Returns the combined displacement that the plants want for one point of a limb. If the limb has no foot or hand,
+  // its joint and its tip are the same point.
   Pull pull_of(const PosedRig& rig, std::size_t limb, PlantPoint point, int frame) const {
     const glm::dvec3 own = point_of(rig, limbs_[limb], point);
     Pull pull;
-    // Where one plant follows another closely, both pull. The nearer one counts more, and alone in its own frames.
+    // Where one plant closely follows another, both have an effect. The nearer one has more weight, and within its own
+    // frames it is the only one.
     double weights = 0, free = 1;
     for (const Plant& plant : plants_) {
       if (plant.limb != static_cast<int>(limb) || plant.point != point) continue;
@@ -182,12 +187,13 @@ class Planter {
     pull.shift *= pull.share / weights;
     return pull;
   }
-  // Where the limb's joint has to go: as its own plant says, and where that pulls less than fully, along with the tip.
+  // Returns the target of the limb's joint. It follows the joint's own plant; where this has less than full weight, the
+  // joint moves along with the tip.
   glm::dvec3 target_of(const PosedRig& rig, std::size_t limb, int frame) const {
     const Pull joint = pull_of(rig, limb, PlantPoint::Joint, frame), tip = pull_of(rig, limb, PlantPoint::Tip, frame);
     const glm::dvec3 own = joint_of(rig, limbs_[limb]), target = own + joint.shift + (1 - joint.share) * tip.shift;
     if (limbs_[limb].end < 0) return target;
-    // While the tip is held and the joint comes or goes, the joint moves on a sphere about the tip.
+    // While the tip is planted and the joint's plant eases in or out, the joint moves on a sphere about the tip.
     const Bone& end = armature_.bones[limbs_[limb].end];
     const double of_tip = tip.share * (1 - joint.share), of_joint = joint.share * (1 - tip.share);
     const glm::dvec3 held = tip_of(rig, limbs_[limb]) + tip.shift + (1 - tip.share) * (target - own);
@@ -200,10 +206,10 @@ class Planter {
   const std::vector<PlantedLimb>& limbs_;
   const std::vector<Plant>& plants_;
   const int ease_;
-  const LimbTracks tracks_;  // in the given poses
+  const LimbTracks tracks_;  // positions of joints and tips in the poses that were given
 };
 
-// Returns the values averaged over the frames within `reach`, the near ones more.
+// Returns the values smoothed over the frames up to `reach` before and after, with weights that fall linearly.
 std::vector<glm::dvec3> averaged(const std::vector<glm::dvec3>& values, int reach) {
   const int count = static_cast<int>(values.size());
   std::vector<glm::dvec3> result(values.size());
@@ -219,8 +225,8 @@ std::vector<glm::dvec3> averaged(const std::vector<glm::dvec3>& values, int reac
   return result;
 }
 
-// Returns a smooth curve that is nowhere below the given values: the largest value within `reach` frames, averaged over
-// as many.
+// Returns a smooth curve that is nowhere below the given values: the largest value within `reach` frames, then smoothed
+// over as many frames.
 std::vector<double> smooth_above(const std::vector<double>& values, int reach) {
   const int count = static_cast<int>(values.size());
   std::vector<double> most(count), smooth(count);
@@ -264,7 +270,8 @@ std::vector<PlantedLimb> planted_limbs(const Armature& armature) {
         return bone >= 0;
       };
       if (!hangs_on(limb.lower, limb.upper)) continue;
-      // A foot that hangs elsewhere, as those for inverse kinematics do, cannot be moved by the leg.
+      // If a foot is not a descendant of the shank (as with control bones for inverse kinematics), the leg cannot move
+      // it.
       if (limb.end >= 0 && (!hangs_on(limb.end, limb.lower) ||
                             !(glm::distance(armature.bones[limb.end].head, armature.bones[limb.end].tail) > 0)))
         limb.end = -1;

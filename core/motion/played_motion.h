@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A clip as it plays on a rig, written out frame by frame: with its keys, their curves and the retargeting.
+// Records a clip frame by frame as it plays on a rig, including its keys, curves and retargeting.
 #pragma once
 
 #include "core/base/progress.h"

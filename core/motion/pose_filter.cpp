@@ -13,7 +13,8 @@ namespace limber {
 
 namespace {
 
-// Two passes move the frequency at which half of the power is left; a higher one makes up for it.
+// Returns the cutoff of one pass. Two passes lower the frequency at which half of the power is left, so each pass needs
+// a higher cutoff.
 double of_two_passes(double cutoff) { return cutoff / std::pow(std::numbers::sqrt2 - 1, 0.25); }
 
 // A Butterworth low-pass filter of second order.
@@ -27,7 +28,7 @@ class LowPass {
     twice_before_ = (1 - std::numbers::sqrt2 * k + k * k) * norm;
   }
 
-  // Filters values in place, from the first to the last. Before the first the value was always the same.
+  // Filters values in place, from first to last. The filter starts as if the first value had always been there.
   template <class Iterator>
   void run(Iterator begin, Iterator end) const {
     double x1 = *begin, x2 = *begin, y1 = *begin, y2 = *begin;
@@ -43,9 +44,9 @@ class LowPass {
   double in_, before_, twice_before_;
 };
 
-// Filters the track forwards and backwards. What is filtered is its difference from the straight line between its ends,
-// continued at each end by its own image, turned by half a turn about the end, as often as it takes. So the filter
-// neither flattens the ends nor makes them ring.
+// Filters the track forwards and backwards. First the straight line between the track's ends is subtracted; it is added
+// again afterwards. The remainder is extended beyond each end by point reflection, by `margin` frames. The ends are
+// then neither flattened nor do they ring.
 void filter(std::vector<double>& track, const LowPass& low_pass, std::ptrdiff_t margin) {
   const std::ptrdiff_t count = std::ssize(track), period = 2 * (count - 1);
   const double first = track.front(), slope = (track.back() - first) / double(count - 1);
@@ -80,7 +81,7 @@ std::vector<Pose> smoothed(const std::vector<Pose>& poses, double rate, double c
     for (std::size_t f = 0; f < poses.size(); ++f) result[f].root_translation[axis] = track[f];
   }
   for (std::size_t bone = 0; bone < poses.front().rotation.size(); ++bone) {
-    // q and -q are the same rotation; each frame takes the one nearer to the frame before.
+    // q and -q are the same rotation; each frame uses the sign that is nearer to the frame before.
     std::vector<glm::dquat> turn(poses.size());
     for (std::size_t f = 0; f < poses.size(); ++f) {
       turn[f] = poses[f].rotation[bone];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Takes the tremble out of a take: a low-pass filter over the poses of a motion.
+// Removes jitter from a take by a low-pass filter over its poses.
 #pragma once
 
 #include <vector>

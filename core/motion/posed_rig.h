@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pose of a rig that is changed bone by bone, with the places of its joints in the world.
+// A pose of a rig that is changed bone by bone. It always knows the world positions of its joints.
 #pragma once
 
 #include <vector>
@@ -22,25 +22,25 @@ class PosedRig {
   glm::dquat turn(int bone) const { return posed_[bone].rotation; }
   const RigidTransform& posed(int bone) const { return posed_[bone]; }
 
-  // Turns a bone about its head, in world axes, and all bones that hang on it.
+  // Rotates a bone about its head, in world axes, together with its descendants.
   void turn_by(int bone, const glm::dquat& rotation) { turn_to(bone, rotation * posed_[bone].rotation); }
-  // Gives a bone this rotation from its rest pose, in world axes.
+  // Sets the rotation of a bone from its rest pose, in world axes.
   void turn_to(int bone, const glm::dquat& rotation) {
     const int parent = armature_.bones[bone].parent;
     const glm::dquat above = parent < 0 ? glm::dquat(1, 0, 0, 0) : posed_[parent].rotation;
     set(bone, glm::normalize(glm::conjugate(above) * rotation));
   }
-  // Gives a bone this rotation from its rest pose, relative to its parent bone.
+  // Sets the rotation of a bone from its rest pose, relative to its parent bone.
   void set(int bone, const glm::dquat& rotation) {
     pose_.rotation[bone] = rotation;
     posed_ = posed_from_rest(armature_, pose_);
   }
-  // Gives all bones the rotations of another pose.
+  // Sets the rotations of all bones to those of another pose.
   void set_all(const Pose& pose) {
     pose_ = pose;
     posed_ = posed_from_rest(armature_, pose_);
   }
-  // Goes back towards an earlier pose's rotation of a bone: by all of the way for share 0, not at all for share 1.
+  // Blends a bone's rotation with that of an earlier pose: share 0 gives the earlier rotation, share 1 the current one.
   void mix_back(int bone, const Pose& earlier, double share) {
     pose_.rotation[bone] = glm::normalize(glm::slerp(earlier.rotation[bone], pose_.rotation[bone], share));
   }

@@ -11,9 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr int kSteps = 3;       // steps of Gauss and Newton's method: the fourth changes speeds by less than a percent
-constexpr int kNear = 3;        // keys on either side of a removed key whose speeds are fitted again
-constexpr double kPull = 1e-3;  // weight that holds a speed at the difference of frames where no frame lies in between
+constexpr int kSteps = 3;  // steps of the Gauss-Newton method: a fourth step would change speeds by less than a percent
+constexpr int kNear = 3;   // number of keys on either side of a removed key whose speeds are fitted again
+constexpr double kPull =
+    1e-3;  // weight that keeps a key's speed near the difference of frames if there are no frames between two keys
 
 double size_of_error(const glm::dquat& wanted, const glm::dquat& value) {
   return glm::degrees(glm::length(turn_between(value, wanted)));
@@ -36,11 +37,12 @@ struct SplineKey {
 };
 using Curve = std::vector<SplineKey>;
 
-// A curve through some of the recorded values. Keys are counted by their place in `keys`.
+// Fits a curve through some of the recorded values. Keys are addressed by their index in `keys`.
 template <class Value>
 class Spline {
  public:
-  //   allowed  the largest error at each frame
+  //   recorded  the values at frames 0, 1, ...
+  //   allowed   the largest error at each frame
   Spline(const std::vector<Value>& recorded, const std::vector<double>& allowed, Progress& progress)
       : recorded_(recorded),
         allowed_(allowed),
@@ -64,7 +66,7 @@ class Spline {
     double error = 0;  // as a share of the error that is allowed at the frame
   };
 
-  // Returns the speed at a frame as the difference of the frames beside it.
+  // Returns the speed at a frame as the central difference of the neighbouring frames.
   glm::dvec3 difference_at(int frame) const {
     const int before = std::max(0, frame - 1), after = std::min(static_cast<int>(recorded_.size()) - 1, frame + 1);
     return way_from(recorded_[before], recorded_[after]) / static_cast<double>(after - before);
@@ -86,7 +88,7 @@ class Spline {
     return worst;
   }
 
-  // Inserts a key in each span that is too far from some frame. Returns false if there is none.
+  // Inserts a key at the worst frame of each span whose error is too large. Returns false if no span needs one.
   bool part_spans() {
     Curve parted;
     for (int span = 0; span + 1 < std::ssize(keys_); ++span) {
@@ -100,11 +102,12 @@ class Spline {
     return any;
   }
 
-  // Frames that must be kept more closely count more, so that a span of theirs is not bent by the next one. The others
-  // weigh 1, so that kPull is as little beside them as where all errors are equal.
+  // Returns the weight of a frame in the fit. Frames with a smaller allowed error weigh more, so that the neighbouring
+  // spans do not bend theirs. The frames with the largest allowed error weigh 1, so that kPull stays small beside all
+  // of them.
   double weight_of(int frame) const { return (most_ / allowed_[frame]) * (most_ / allowed_[frame]); }
 
-  // Fits the speeds of the keys `low` to `high` to the frames of the spans beside them. A change of a key's speed moves
+  // Fits the speeds of the keys `low` to `high` to the frames of the adjacent spans. A change of a key's speed moves
   // the curve, to first order, by the cubic Hermite functions of the two spans at the key.
   void fit(Curve& keys, int low, int high) const {
     const int count = high - low + 1;
@@ -146,9 +149,9 @@ class Spline {
     }
   }
 
-  // Removes a key, if `fresh` is empty, or puts the one key of `fresh` in place of it and the next one. Fits the speeds
-  // around again. Returns whether the spans there stay within the error; if not, changes nothing. Works on a copy of
-  // the keys nearby, because a long recording has very many.
+  // Removes the key if `fresh` is empty; else replaces the key and the next one by the one key of `fresh`. Then fits
+  // the speeds of the neighbouring keys again. Returns whether all changed spans stay within the allowed error; if not,
+  // changes nothing. Works on a copy of the neighbouring keys only, because a long recording has very many.
   bool replace(int key, const Curve& fresh) {
     const int last = static_cast<int>(keys_.size()) - 2, low = std::max(0, key - kNear),
               high = std::min(last, key + kNear - 1), begin = std::max(0, low - 1), end = std::min(last, high + 1) + 2;
@@ -163,7 +166,7 @@ class Spline {
     return true;
   }
 
-  // Puts one key between a key and the next one in place of both.
+  // Replaces a key and the next one by one key between them, if the curve then stays within the allowed error.
   bool merge(int key) {
     const SplineKey from = keys_[key], to = keys_[key + 1];
     for (const double share : {0.5, 0.25, 0.75}) {
@@ -174,7 +177,7 @@ class Spline {
     return false;
   }
 
-  // Removes and merges keys for as long as the curve stays within the error.
+  // Removes and merges keys while the curve stays within the allowed error.
   void remove_needless() {
     for (bool any = true; any;) {
       any = false;
@@ -194,7 +197,7 @@ class Spline {
   Curve keys_;
 };
 
-// Returns the keys of the recorded values. A track that is `rest` at every frame has none.
+// Returns the keys of the recorded values. If the value is `rest` at every frame, there are no keys.
 template <class Value>
 ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& rest, int start,
                             const std::vector<double>& allowed, Progress& progress) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Makes few keys of many frames: the poses of a recorded motion become the keys of Bezier curves that stay within a
-// chosen error of every frame, so that the motion can be edited by its curves.
+// given error of every frame, so that the motion can be edited by its curves.
 //
-// Per bone, as for drawn curves [Schneider, An algorithm for automatically fitting digitized curves, Graphics Gems,
-// 1990]: a curve through few keys is fitted to all frames, and each span that is further than the error from some frame
-// gets a key at the worst one, until no span does. Then each key that is not needed goes, and two neighbours become one
-// where one is enough. The times of the frames are given, so only the speeds at the keys are fitted: by least squares
-// over all frames, in the parent's frame [Gauss & Newton's method]. A speed is the same on both sides of its key
-// (aligned handles).
+// The method is that for drawn curves [Schneider, An algorithm for automatically fitting digitized curves, Graphics
+// Gems, 1990], applied to each bone. A curve through few keys is fitted to all frames. Each span with a larger error
+// gets a key at its worst frame, until no span does. Then each key that is not needed is removed, and two neighbouring
+// keys are merged where one suffices. The times of the frames are given, so only the speeds at the keys are fitted, in
+// the parent's frame, by least squares over all frames [Gauss-Newton method]. The speed is the same before and after a
+// key (aligned handles).
 #pragma once
 
 #include "core/base/progress.h"
@@ -28,8 +28,9 @@ struct ReducedKeys {
   std::string worst_bone;   // the bone with the angle most_degrees; "" if none turns
 };
 
-// Returns keys for the poses, which are those of the frames `start`, `start` + 1, ... A bone that stays at rest has no
-// keys, and one that does not turn has one. Throws Error unless both errors are positive, and Cancelled.
+// Returns keys for poses that belong to the frames `start`, `start` + 1, ... A bone that stays at rest gets no keys; a
+// bone with one constant rotation gets one. Throws Error unless both allowed errors are positive. Throws Cancelled when
+// the user stops it.
 ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
                             const ReduceSettings& settings, Progress& progress);
 
@@ -48,20 +49,20 @@ struct ReducedTrack {
   double error = 0;  // largest distance from the recorded values
 };
 
-// Fits keys to the same poses again and again. A bone whose allowed errors are as before is not fitted again.
+// Fits keys to the same poses several times. A bone whose allowed errors have not changed is not fitted again.
 class KeyFitter {
  public:
-  // Keeps references to the rig and the poses, which are those of the frames `start`, `start` + 1, ...
+  // Keeps references to the rig and to the poses. The poses belong to the frames `start`, `start` + 1, ...
   KeyFitter(const Armature& armature, const std::vector<Pose>& poses, int start);
 
-  // Throws Cancelled.
+  // Returns the keys within these errors. Throws Cancelled when the user stops it.
   ReducedKeys fitted(const AllowedErrors& allowed, Progress& progress);
 
  private:
   const Armature& armature_;
   const std::vector<Pose>& poses_;
   const int start_;
-  AllowedErrors allowed_;  // of the tracks; empty: not fitted yet
+  AllowedErrors allowed_;  // errors with which the stored tracks were fitted; empty: not fitted yet
   std::vector<ReducedTrack<glm::dquat>> tracks_;
   ReducedTrack<glm::dvec3> root_;
 };

@@ -11,9 +11,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostRounds = 12;          // each makes the allowed errors smaller by a third at least
-constexpr double kSmallestAngle = 1e-4;  // degrees: moves a foot by microns
-constexpr double kSmallestShift = 1e-3;  // mm
+constexpr int kMostRounds = 12;          // upper limit; each round reduces the allowed errors by at least a third
+constexpr double kSmallestAngle = 1e-4;  // degrees; smallest allowed error of a bone: it moves a foot by microns
+constexpr double kSmallestShift = 1e-3;  // mm; smallest allowed error of the body's shift
 
 // Returns the poses that the keys give at the frames `start` to `start` + `count` - 1.
 std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int start, std::size_t count,
@@ -32,7 +32,7 @@ std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int 
 
 int carrier_of(const PlantedLimb& limb) { return limb.end >= 0 ? limb.end : limb.lower; }
 
-// The largest distance of a plant's point in its frames from where it was recorded.
+// Returns the largest distance, in a plant's frames, of its point from the recorded position, mm.
 double most_off_in(const Plant& plant, const LimbTracks& recorded, const LimbTracks& played) {
   const auto point = static_cast<std::size_t>(plant.point);
   double most = 0;
@@ -41,13 +41,14 @@ double most_off_in(const Plant& plant, const LimbTracks& recorded, const LimbTra
   return most;
 }
 
-// Lowers the errors that are allowed to the bones that carry a plant's point in its frames, and to the shift, to what
-// moves the point by `mm` in all, if the errors have chance directions.
+// Lowers the allowed errors, in the frames of a plant, of the bones from the root to its point and of the body's shift.
+// If the errors have random directions, together they then move the point by about `mm`.
 void tighten(AllowedErrors& allowed, const Plant& plant, const Armature& armature,
              const std::vector<PlantedLimb>& limbs, const Pose& pose, double mm) {
   const glm::dvec3 point = place_of(limbs[plant.limb], plant.point, armature, pose);
   const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
-  std::vector<std::pair<int, double>> carriers;  // with their lever arms, mm
+  std::vector<std::pair<int, double>>
+      carriers;  // bones from the limb up to the root, with their distances from the point (lever arms), mm
   for (int bone = carrier_of(limbs[plant.limb]); bone >= 0; bone = armature.bones[bone].parent) {
     const double arm = glm::distance(posed[bone] * armature.bones[bone].head, point);
     if (arm > 1e-6) carriers.emplace_back(bone, arm);

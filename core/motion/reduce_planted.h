@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes few keys of many frames, and keeps feet and hands where they stay. A small error of each bone on the way from
-// the pelvis to a foot adds up to a centimetre at the foot, so feet that stood would slide again. In the frames in
-// which a foot stands or a hand is held, the bones that carry it are therefore kept more closely, until it is within a
-// distance of its recorded place; elsewhere the errors of reduce_keys.h hold.
+// Makes few keys of many frames, and keeps planted feet and hands in place. Small errors of the bones from the pelvis
+// to a foot add up to a centimetre at the foot, so feet that stood would slide again. In the frames in which a foot
+// stands or a hand is held, the bones above it therefore get smaller allowed errors, until it stays within a given
+// distance of its recorded position. In all other frames the allowed errors of reduce_keys.h apply.
 #pragma once
 
 #include "core/motion/plants.h"
@@ -10,7 +10,7 @@
 
 namespace limber {
 
-// Finds the feet that stand (plants_of_feet()), and the hands that rest at a place (plants_at_rest()).
+// Finds the feet that stand (plants_of_feet()), and the hands that rest at one position (plants_at_rest()).
 std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                                  const std::vector<Pose>& poses, double rate, Progress& progress = no_progress());
 
@@ -19,8 +19,8 @@ struct PlantedKeys {
   double most_off = 0;  // largest distance of a planted point from its recorded place, in the frames of its plant, mm
 };
 
-// Returns keys as reduced_to_keys() does, with the points of the plants within `plant_mm` of where they are in the
-// poses.
+// Returns keys as reduced_to_keys() does. They also keep the points of the plants within `plant_mm` of their positions
+// in the poses.
 //   limbs   from planted_limbs()
 //   plants  with frames counted from the first pose
 PlantedKeys reduced_with_plants(const Armature& armature, const std::vector<PlantedLimb>& limbs,

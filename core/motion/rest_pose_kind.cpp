@@ -13,7 +13,7 @@ namespace {
 // Angle between a limb and its direction in the named rest pose up to which the limb is left as it is: 30 degrees. This
 // tells the poses apart, since their arms differ by 45 degrees or more.
 constexpr double kNear = std::numbers::pi / 6;
-// Slope of the line from the ankle down to the toes of a foot that stands flat, radians.
+// Slope from the ankle down to the toes of a foot that stands flat, radians.
 constexpr double kSole = 0.4;
 
 bool is_finger(BodyPart part) {

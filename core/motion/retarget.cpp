@@ -30,7 +30,8 @@ glm::dquat turn_by(const glm::dvec3& rotation) {
   return angle > 1e-12 ? glm::angleAxis(angle, rotation / angle) : glm::dquat(1, 0, 0, 0);
 }
 
-// Returns the rotation that moves the end of the vector `way` horizontally by `aside`. Its angle is at most kMostTurn.
+// Returns the rotation that moves the end of the vector `way` horizontally by `aside`, mm. Its angle is at most
+// kMostTurn.
 glm::dquat turn_aside(const glm::dvec3& way, const glm::dvec2& aside) {
   const glm::dvec2 flat = glm::dvec2(way) + aside;
   const double squared_height = glm::dot(way, way) - glm::dot(flat, flat);
@@ -103,8 +104,9 @@ class Alignment {
     if (glm::length(here) < 1e-9 || glm::length(there) < 1e-9) return above(bone);
     if (role && role->part == BodyPart::Foot) {
       auto pitch = [](const glm::dvec3& d) { return std::atan2(d.z, std::hypot(d.x, d.y)); };
-      // If both feet are flat on the ground, the bone takes only the heading of the source's foot: the pitches differ
-      // because the ankles' heights above the soles do. Otherwise the bone takes the full direction of that foot.
+      // If both feet are flat on the ground, the bone takes only the heading of the source's foot: their pitches differ
+      // only because the ankles have different heights above the soles. Otherwise the bone takes the full direction of
+      // that foot.
       if (std::abs(pitch(here) - pitch(there)) < 0.6 && std::abs(pitch(there)) < 1 && std::abs(pitch(here)) < 1)
         return heading_turn(here, there);
     }

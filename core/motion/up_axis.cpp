@@ -56,8 +56,8 @@ std::optional<UpAxis> axis_over_frames(const Motion& motion, Skeleton& skeleton)
     along_y += axis == UpAxis::Y;
     along_z += axis == UpAxis::Z;
   }
-  // An actor who lies along z and gets up stands along y in some of the frames, so a few frames along y mean that y is
-  // up.
+  // If an actor who lies along z gets up, the body stands along y in some frames. Even a few frames along y therefore
+  // mean that y is up.
   if (along_z >= kMany * looked_at && along_y < kFew * looked_at && looked_at) return UpAxis::Z;
   return along_y > 0 && along_y >= kFew * looked_at ? std::optional(UpAxis::Y) : std::nullopt;
 }
