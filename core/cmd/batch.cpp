@@ -20,7 +20,7 @@ struct Options {
   RunOptions run;
 };
 
-// Returns the numbers that a list such as "1,5,7-9" names, each once and in order.
+// Returns the cell numbers in a list such as "1,5,7-9", each once, in ascending order.
 std::vector<int> numbers_of(const std::string& text, int cell_count) {
   std::vector<bool> is_named(std::size_t(cell_count) + 1, false);
   const auto refuse = [&] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber clean-motion RIG --motion F.bvh [--smooth HZ] [--plant-feet] [--hold "LIMB[=X,Y,Z]@FIRST-LAST"]...
-// [--mirror] [--speed F] [--loop N [--seam FRAMES] [--on-the-spot]] -o OUT.bvh: a motion on a rig without tremble and
-// sliding feet, and with hands where they should be; then mirrored, faster or slower, and repeated.
+// limber clean-motion RIG --motion F.bvh [--smooth HZ] [--plant-feet] [--hold "LIMB[=X,Y,Z]@FIRST-LAST"]... [--mirror]
+// [--speed F] [--loop N [--seam FRAMES] [--on-the-spot]] -o OUT.bvh: cleans a motion on a rig. Removes jitter and foot
+// sliding and holds hands at given positions; then mirrors the motion, changes its speed and repeats it.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -32,7 +32,8 @@ struct Options {
   std::vector<std::string> holds;
   bool mirror = false, on_the_spot = false;
   double speed = 1;
-  int repeats = 0, seam = -1;  // 0: not repeated; -1: 0.3 seconds
+  int repeats = 0,
+      seam = -1;  // repeats: 0: not repeated; seam: frames over which a seam is blended, -1: those of 0.3 seconds
 
   bool cleans() const { return smooth > 0 || plant_feet || !holds.empty(); }
 };
@@ -52,7 +53,7 @@ std::vector<double> numbers_in(std::string_view text, char between, const std::s
   return numbers;
 }
 
-// Reads a value of --hold. The point that is held is the limb's tip.
+// Reads a value of the option --hold. The limb's tip is the point that is held.
 Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, const Armature& rig,
               const std::vector<Pose>& poses) {
   const std::string where = "--hold \"" + value + "\"";
@@ -83,7 +84,7 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
   const std::vector<double> place = numbers_in(std::string_view(value).substr(equals + 1, at - equals - 1), ',', where);
   if (place.size() != 3) throw Error("a hold is not understood", where, kHoldForm);
   hold.place = {place[0], place[1], place[2]};
-  constexpr double kFarthest = 1e6;  // mm
+  constexpr double kFarthest = 1e6;  // largest coordinate that is accepted, mm
   for (const double one : place)
     if (std::abs(one) > kFarthest)
       throw Error("the place is more than a kilometre away", where, "write it in millimetres of the rig's world");
@@ -102,10 +103,10 @@ void print_plants(const std::vector<Plant>& plants, const Armature& rig, const s
   }
 }
 
-// A warning for each plant that its limb does not reach.
+// Prints a warning for each plant whose position the limb does not reach.
 void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, const std::vector<PlantedLimb>& limbs,
                          const std::vector<Pose>& poses) {
-  constexpr double kOff = 3;  // mm
+  constexpr double kOff = 3;  // mm; smaller distances from the position cause no warning
   for (const Plant& plant : plants)
     if (const PlantError error = error_of(plant, rig, limbs, poses); error.from_place > kOff)
       warn(limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last) +

@@ -41,7 +41,7 @@ void tell_cell(const Study& study, const CellOutcome& outcome, int done, int of,
   tell(line);
 }
 
-// Writes tables, report and what else was asked for, and compares the results with expected ones.
+// Writes tables, report and the requested extra files, and compares the results with expected ones if they are given.
 void write(const Options& options, const Study& study, const std::vector<CellOutcome>& outcomes,
            const std::string& commit, const StartPictures& pictures, Progress& progress) {
   const std::vector<CellResult> cells = read_results(study, outcomes);

@@ -29,7 +29,7 @@ std::vector<std::string> parts_of(const std::string& text, char separator) {
   return parts;
 }
 
-// Returns the numbers of a list such as "1,2,3"; none if it is no such list of one of the given lengths.
+// Returns the numbers of a list such as "1,2,3". Returns nothing if the text is no list with one of the given lengths.
 std::optional<std::vector<double>> list_of(const std::string& text, std::initializer_list<std::size_t> lengths) {
   std::vector<double> numbers;
   for (const std::string& part : parts_of(text, ',')) {
@@ -76,7 +76,7 @@ glm::dmat3 linear_of(const std::vector<double>& matrix) {
   return linear;
 }
 
-// Returns a direction as a unit vector; none for a zero vector.
+// Returns the unit vector with the direction of `v`; nothing for a zero vector.
 std::optional<glm::dvec3> direction_of(const std::vector<double>& v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   if (!(largest > 0)) return std::nullopt;

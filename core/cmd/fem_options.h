@@ -20,21 +20,21 @@ struct FemOptions {
 
 void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& options);
 
-// Returns the name of an option that was given and that only finite elements have; "": none.
+// Returns the name of a given option that only finite elements use; "" if there is none.
 std::string given_fem_option(const FemOptions& options);
 
 // Reads the objects of --obstacle. Each is SHAPE[@PLACE][@from=X,Y,Z|@from=around][@force=NEWTON|@force=weight].
 //   SHAPE   a file of triangles, or box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH, plane:X,Y (mm)
-//   PLACE   X,Y,Z to add to the positions, mm, or the twelve numbers of a matrix, row by row: three of the rotation,
-//           then the motion, for each axis
+//   PLACE   X,Y,Z: a translation, mm; or twelve numbers: the rows of a 3 x 4 matrix, each with three numbers of the
+//           rotation and one of the translation
 // Throws Error for a bad value or file.
 std::vector<FemObject> objects_of(const FemOptions& options);
 
-// Returns the acceleration of gravity, m/s2, of --gravity X,Y,Z: the direction down, of which the length does not
+// Returns the acceleration of gravity, m/s2, in the direction of --gravity X,Y,Z. The length of this vector does not
 // matter.
 glm::dvec3 gravity_of(const FemOptions& options);
 
-// Writes the nodes of the skin that objects press, one row each, to a CSV file.
+// Writes the skin nodes on which objects press to a CSV file, one row for each node.
 void write_pressure(const std::vector<PressedNode>& pressed, const std::vector<ObjectReport>& objects,
                     const Path& path);
 

@@ -78,7 +78,8 @@ void print_table(const Json& joints) {
   }
 }
 
-// Returns the frames by which angles are measured. Throws Error if no bone of the rig is known by its name.
+// Returns the anatomical frames from which joint angles are measured. Throws Error if no bone of the rig is recognised
+// by its name.
 BodyFrames frames_for_angles(const Armature& armature, const std::string& file) {
   BodyFrames frames = body_frames(armature);
   if (joints_known_by_name(frames).empty())
@@ -87,12 +88,14 @@ BodyFrames frames_for_angles(const Armature& armature, const std::string& file) 
   return frames;
 }
 
-// Returns {"left hip": {"flexion": 90.0, ...}, ...}, which a pose file takes as its "angles".
+// Returns {"left hip": {"flexion": 90.0, ...}, ...}, the form of "angles" in a pose file.
 Json json_of(const JointAngles& angles) {
   Json joints = Json::object();
   for (const auto& [joint, motions] : angles)
     for (std::size_t i = 0; i < motions.size(); ++i)
-      if (motions[i]) joints[name_of(joint)][std::string(motion_name(joint.joint, i))] = *motions[i] + 0.0;  // no "-0"
+      if (motions[i])
+        joints[name_of(joint)][std::string(motion_name(joint.joint, i))] =
+            *motions[i] + 0.0;  // adding 0.0 turns -0 into 0
   return joints;
 }
 
@@ -102,7 +105,7 @@ void print_angles(const Armature& armature, const BodyFrames& frames, const Join
     for (std::size_t i = 0; i < motions.size(); ++i) {
       if (!motions[i]) continue;
       const AngleRange range = range_of_motion(armature, frames, joint, i);
-      const double shown = std::abs(*motions[i]) < 0.05 ? 0 : *motions[i];  // not "-0.0"
+      const double shown = std::abs(*motions[i]) < 0.05 ? 0 : *motions[i];  // avoids printing "-0.0"
       const bool beyond = shown < range.low - 0.05 || shown > range.high + 0.05;
       print("%-22s %-22s %9.1f   %.0f to %.0f%s\n", name_of(joint).c_str(),
             std::string(motion_name(joint.joint, i)).c_str(), shown, std::round(range.low) + 0.0,
@@ -123,7 +126,7 @@ void print_joints(const FkOptions& options, const Json& joints) {
   print_json(text_of({{"joints", joints}}) + "\n");
 }
 
-// Prints {"frames": [{"joints": [...]}, ...]}, one line for each frame.
+// Prints {"frames": [{"joints": [...]}, ...]} with one line for each frame.
 void print_frames(int count, const std::function<Json(int)>& frame_at) {
   print("{\"frames\":[");
   for (int frame = 0; frame < count; ++frame) print_json(text_of(frame_at(frame)) + (frame + 1 < count ? ",\n" : ""));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Puts the numbers of a sequence's frames in the place of {frame} in file names.
+// Replaces {frame} in file names by the number of a sequence's frame.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace limber::cmd {
 
 constexpr const char* kFrame = "{frame}";
 
-// Replaces each {frame} in the name by the frame's number with at least four digits.
+// Returns the name with each {frame} replaced by the frame's number, which has at least four digits.
 std::string of_frame(std::string name, int frame);
 
 // Returns the file name for each frame of the request (core/motion/frame_range.h) if `name` contains {frame}; otherwise

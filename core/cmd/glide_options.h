@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The option --glide off|voxel|joint|MM: how far joints may glide so that bones do not enter each other
-// (core/body/glide_poses.h).
-// The default depends on the pose options. Options that give only the angles of joints (--joint, --flex, --pose-name)
-// leave the positions of bones open, so the default is `joint`. A pose file or a motion gives the positions of this
-// rig's bones, and the result should match what the user saw before (in the editor's live view, or feet on the floor),
-// so the default is `voxel`.
+// The option --glide off|voxel|joint|MM: how far joints may glide (translate) so that bones do not enter each other
+// (core/body/glide_poses.h). The default depends on the pose options. If only joint angles are given (--joint, --flex,
+// --pose-name), the positions of bones are open, and the default is `joint`. A pose file or a motion gives the
+// positions of this rig's bones, and the result should match what the user saw before, such as the editor's live view
+// or feet on the floor; so the default is `voxel`.
 #pragma once
 
 #include <string>
@@ -16,8 +15,8 @@ namespace limber::cmd {
 // Adds the option --glide. `glide` must live as long as the command.
 void add_glide_option(CLI::App& command, std::string& glide);
 
-// Returns the value of --glide that applies: off, voxel, joint or a length. If --glide was not given (""), it depends
-// on the pose options.
+// Returns the effective value of --glide: off, voxel, joint or a length. If --glide was not given (""), it depends on
+// the pose options.
 std::string glide_word(const std::string& glide, const PoseOptions& pose);
 
 }  // namespace limber::cmd

@@ -102,8 +102,8 @@ Json describe_obj(const Path& file) {
           {"upper", json_of(obj.upper)}};
 }
 
-// The kind of a JSON file. The value of its key "bones" tells the kind: a list in a rig, an object of rotations in a
-// pose. In a file of another program, it may be an object without rotations.
+// The kind of a JSON file, found from its key "bones": a list in a rig, an object of rotations in a pose. In a file of
+// another program, "bones" may be an object without rotations.
 enum class JsonFile { Rig, Pose, Other };
 
 bool is_rotation(const nlohmann::json& json) {

@@ -30,7 +30,7 @@ using Json = nlohmann::json;
 
 struct JobCommand {
   void (*add)(CLI::App&) = nullptr;
-  std::vector<std::string> places = {"volume"};  // keys whose values are written without an option, in their order
+  std::vector<std::string> places = {"volume"};  // keys whose values are positional arguments, in their order
 };
 const std::map<std::string, JobCommand> kCommands = {{"convert", {add_convert, {"volume", "output"}}},
                                                      {"phantom", {add_phantom, {"subject"}}},
@@ -54,15 +54,15 @@ const std::vector<std::string>& places_of(const Json& job) {
   return kCommands.at(job.at("command").get<std::string>()).places;
 }
 
-// Returns the command-line option that a key of the job stands for. A key may also be spelled as in reports:
-// "pose_name" for --pose-name, "joints" for --joint, "obstacles" for --obstacle.
+// Returns the command-line option for a key of the job. Keys may also be spelled as in reports: "pose_name" for
+// --pose-name, "joints" for --joint, "obstacles" for --obstacle.
 std::string option_of(std::string key) {
   std::replace(key.begin(), key.end(), '_', '-');
-  if (key == "joints" || key == "obstacles") key.pop_back();  // lists have names in the plural
+  if (key == "joints" || key == "obstacles") key.pop_back();  // keys with lists are plural, the option is singular
   return "--" + key;
 }
 
-// Returns the command line, as words, that the job stands for.
+// Returns the words of the command line that is equivalent to the job.
 std::vector<std::string> words_of(const Json& job, const Path& path) {
   std::vector<std::string> words{job.at("command").get<std::string>()};
   const std::vector<std::string>& places = places_of(job);

@@ -3,8 +3,9 @@
 
 namespace limber::cmd {
 
-// The commit that the program was built from, with its date: "727d71c of 2026-11-27". Changed sources are said; "" if
-// the sources are in no repository. The build writes it (program_commit.cmake).
+// The commit that the program was built from, with its date: "727d71c of 2026-11-27". The text also says if sources
+// were changed since that commit. It is "" if the sources are in no repository. The build writes it
+// (program_commit.cmake).
 extern const char* const kProgramCommit;
 
 }  // namespace limber::cmd

@@ -37,7 +37,7 @@ namespace limber::cmd {
 
 namespace {
 
-constexpr int kFarthestFrame = 1 << 28;  // as projects hold them
+constexpr int kFarthestFrame = 1 << 28;  // largest frame number that a project can hold
 
 struct Options {
   std::string file, action = "inspect", part;

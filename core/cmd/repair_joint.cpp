@@ -31,8 +31,8 @@ void print_side(const TurnFigures& figures) {
         static_cast<long long>(figures.overlap_voxels));
 }
 
-// Prints the volume changes of skin, fat and muscle, the sum of their sizes, and the voxels that overlap, before and
-// after, for each turn of the joint.
+// Prints, for each angle of the joint, the volume changes of skin, fat and muscle in percent, the sum of their absolute
+// values, and the number of overlapping voxels, before and after the repair.
 void print_figures(const JointRepair& repair) {
   print("%8s  %-41s  %s\n", "", "before, %", "after, %");
   print("%8s", "degrees");

@@ -104,8 +104,8 @@ FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
   };
 }
 
-// Returns a function that lists the files that an output option writes: for each of `endings` the option's value with
-// this ending; without endings the files of a volume.
+// Returns a function that lists the files that an output option writes: the option's value with each of `endings`, or,
+// if `endings` is empty, the files of a volume.
 FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std::vector<const char*>& endings = {}) {
   return [options, endings](const std::string& value) {
     OptionFiles files;
@@ -240,7 +240,7 @@ TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
   return organ_mesh(shape.V, mesh.T, labels, tissues);
 }
 
-// Adds to the report what only this command knows: the options of the pose and the input files.
+// Adds to the report the pose options and the input files, which only this command knows.
 void describe(Report& report, const Options& options) {
   auto& settings = report.settings;
   if (!options.field.empty()) settings["field_direction"] = options.field_direction;
@@ -350,7 +350,7 @@ bool finish(const Options& options, const Body& body, const BoundBody& bound, co
   return failed_gates(report).empty();
 }
 
-// The requested poses, and for a sequence the number of each one's frame.
+// The requested poses and, for a sequence, the frame number of each pose.
 struct RequestedPoses {
   std::vector<Pose> poses;
   std::vector<int> frames;
@@ -405,7 +405,7 @@ void run(const Options& options) {
       [&](BodyInPose& posed) {
         nothing_is_being_written.reset();
         if (posed.posed.shape && frames.empty()) solve.end(*posed.posed.shape);
-        // What was done once for all frames is among the first frame's times.
+        // Work that was done once for all frames is counted only in the times of the first frame.
         if (posed.index > 0) posed.report.seconds.read = posed.report.seconds.weights = posed.report.seconds.glide = {};
         all_reached &= !posed.posed.report.solve || posed.posed.report.solve->converged;
         all_passed &= finish(frames.empty() ? options : of_frame(options, frames[posed.index]), body, bound, landmarks,

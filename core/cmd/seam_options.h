@@ -13,7 +13,8 @@ namespace limber::cmd {
 // Adds the option --seams. `seams` must live as long as the command.
 void add_seam_option(CLI::App& command, std::string& seams);
 
-// Reads the seams that --seams names. Without the option ("") they are those of given weights, or are found.
+// Reads the seams file that --seams names. Without the option (""), the seams are those of the given weights, or they
+// are found automatically.
 SeamChoice read_seam_choice(const std::string& seams, const LabelVolume& volume, Progress& progress);
 
 }  // namespace limber::cmd

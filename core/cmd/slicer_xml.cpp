@@ -19,7 +19,7 @@ const Element kLabels{"image", R"( type="label")"}, kScalars{"image", ""}, kFiel
 
 Element file_of(const std::string& endings) { return {"file", R"( fileExtensions=")" + endings + '"'}; }
 
-// What options of these names hold. Other outputs are files, other inputs are words and numbers.
+// Returns the kind of content of input options, by name. Other outputs are files, other inputs are texts.
 const std::map<std::string, Element>& inputs() {
   static const std::map<std::string, Element> kInputs = {
       {"VOLUME", kLabels},
@@ -84,7 +84,7 @@ std::string line(int indent, const std::string& tag, const std::string& text) {
   return std::string(static_cast<std::size_t>(2 * indent), ' ') + "<" + tag + ">" + escaped(text) + "</" + tag + ">\n";
 }
 
-// "fit-joints" -> "Fit joints"
+// Makes a title of an option's name: "fit-joints" becomes "Fit joints".
 std::string title_of(std::string words) {
   std::replace(words.begin(), words.end(), '-', ' ');
   if (!words.empty()) words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
@@ -93,14 +93,15 @@ std::string title_of(std::string words) {
 
 bool is_positional(const CLI::Option& option) { return option.get_lnames().empty() && option.get_snames().empty(); }
 
-// The option's name as inputs() and outputs() have it.
+// Returns the option's name in the form of the keys of inputs(), such as "--rig" or "VOLUME".
 std::string name_of(const CLI::Option& option) {
   if (!option.get_lnames().empty()) return "--" + option.get_lnames().front();
   if (!option.get_snames().empty()) return "-" + option.get_snames().front();
   return option.get_name(true);
 }
 
-// Returns the words that an option may have; empty for any. CLI11 describes them as "{heat,geodesic,rigid}".
+// Returns the words that are allowed as the option's value; empty if any value is allowed. CLI11 describes them as
+// "{heat,geodesic,rigid}".
 std::vector<std::string> words_of(CLI::Option& option) {
   for (int at = 0;; ++at) {
     const CLI::Validator* validator = nullptr;
@@ -115,8 +116,8 @@ std::vector<std::string> words_of(CLI::Option& option) {
   }
 }
 
-// Slicer sends every choice and every number that it shows. A choice without a default and all numbers are therefore
-// texts, which Slicer leaves out while they are empty.
+// Slicer passes every choice and every number that its form shows, even one that the user has not set. Numbers, and
+// choices without a default, are therefore described as texts: Slicer omits an empty text.
 Element element_of(CLI::Option& option, const std::string& command) {
   const std::string name = name_of(option);
   if (option.get_expected_max() == 0) return {"boolean", ""};
@@ -168,7 +169,7 @@ std::string slicer_xml(CLI::App& command, const std::string& name) {
   const auto is_shown = [&](const CLI::Option* option) {
     return !option->get_group().empty() && option != command.get_help_ptr() && option != command.get_help_all_ptr();
   };
-  // What must be given comes first, then one group after the other.
+  // Lists the required parameters first, then one group after the other.
   constexpr const char* kNeeded = "Input and output";
   std::vector<std::string> groups{kNeeded};
   std::map<std::string, std::string> parameters;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Describes a command in the XML of the Slicer Execution Model, from the same options as --help. 3D Slicer, MITK and
-// other programs that know it make a form of the description and run the command.
+// Describes a command in the XML of the Slicer Execution Model, made from the same options as --help. 3D Slicer, MITK
+// and other programs show a form for such a description and run the command.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace limber::cmd {
 
-// Returns the description of a command: "<?xml ...><executable> ...".
-//   name  the words of the command, as in "resample"
+// Returns the XML description of a command: "<?xml ...><executable> ...".
+//   name  the words of the command, such as "resample"
 std::string slicer_xml(CLI::App& command, const std::string& name);
 
-// Returns the description that a command line "limber COMMAND --xml" asks for. Empty if it asks for none.
+// Returns the XML description that the command line "limber COMMAND --xml" requests. Empty if it does not request one.
 std::string requested_slicer_xml(CLI::App& app, const std::vector<std::string>& words);
 
 }  // namespace limber::cmd

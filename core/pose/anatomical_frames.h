@@ -28,10 +28,10 @@ namespace limber {
 struct AnatomicalHinge {
   glm::dvec3 axis{0};  // unit vector in the world at rest: a positive turn flexes (toes: extends; ankles: dorsiflexion)
   double at_rest = 0;  // flexion at rest, radians
-  // The knuckle of a finger and the saddle joint of a thumb also spread, about an axis that flexion carries along:
-  // rotation from rest = turn(axis, flexion - at_rest) turn(spread_axis, spread - spread_at_rest).
-  glm::dvec3 spread_axis{0};  // unit vector in the world at rest, square to `axis`; zero: the joint only bends
-  double spread_at_rest = 0;  // radians
+  // Axis about which the knuckle of a finger and the saddle joint of a thumb also spread. Flexion carries this axis
+  // along: rotation from rest = turn(axis, flexion - at_rest) turn(spread_axis, spread - spread_at_rest).
+  glm::dvec3 spread_axis{0};  // unit vector in the world at rest, perpendicular to `axis`; zero: the joint only bends
+  double spread_at_rest = 0;  // spread at rest, radians
 };
 
 struct BoneFrame {
@@ -50,8 +50,8 @@ struct BodyFrames {
   std::vector<BoneFrame> frames;  // one for each bone of the rig
   bool feet_point_back = false;   // true: a foot points backwards, so left and right may be swapped in the bones' names
   int only_root = -1;  // index of the root bone if the rig has only one (its joint turns the whole rig), else -1
-  // Pronation at rest, radians (0: palm forward), and the share of every pronation by which the forearm bone rotates.
-  // The hand bone takes the remaining share.
+  // Pronation at rest, radians (0: palm forward), and the share of the pronation by which the forearm bone rotates. The
+  // hand bone rotates by the remaining share.
   struct Pronation {
     double at_rest = 0, forearm_share = 0;
   };

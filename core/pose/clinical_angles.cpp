@@ -15,10 +15,10 @@ namespace {
 
 using enum BodyJoint;
 
-// Angle, radians, by which a hinge's bone may turn across its axis and still count as turned about it.
+// Largest rotation of a bone across its hinge axis, radians, for which the bone counts as rotated about this axis only.
 constexpr double kAcrossHinge = 0.01 * std::numbers::pi / 180;
 
-// Least pronation that is read, degrees: half a turn from the middle of its usual range, -10 to 175 degrees.
+// Least pronation that is returned, degrees: the middle of the usual range (-10 to 175 degrees) minus half a turn.
 constexpr double kLeastPronation = -97.5;
 
 class Reading {
@@ -57,7 +57,7 @@ class Reading {
     return turn_from_anatomical(frames_, bone, turned_[static_cast<std::size_t>(bone)]);
   }
 
-  // The pronation is what forearm and hand contribute together.
+  // Returns the pronation: the sum of the rotations of the forearm bone and the hand bone about their length.
   JointMotions forearm(const SidedJoint& joint) const {
     const auto hand = pronating_hand(frames_, joint.side);
     const std::vector<int> bones = bones_turned_by(frames_, joint);

@@ -92,7 +92,7 @@ double bend(const glm::dvec3& before, const glm::dvec3& after, const glm::dvec3&
 
 using Hinges = std::vector<std::pair<int, AnatomicalHinge>>;
 
-// Adds to the hinge of a thumb's metacarpal the axis about which it leaves the palm's plane.
+// Sets the spread axis of a thumb's metacarpal: the axis about which it moves out of the palm's plane.
 //   palmar  unit normal of the palm
 void add_abduction(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dvec3& palmar) {
   const glm::dvec3 axis = unit(glm::cross(bone, hinge.axis));
@@ -101,8 +101,9 @@ void add_abduction(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dv
   hinge.spread_at_rest = std::asin(std::clamp(glm::dot(bone, palmar), -1.0, 1.0));
 }
 
-// Adds to the hinge of a finger's first bone the axis about which it spreads towards `towards`.
-//   level  the direction, unit, in which the unspread bone lies at the knuckle's rest flexion: angles count from it
+// Sets the spread axis of a finger's first bone, so that a positive angle moves the bone in the direction `towards`.
+//   level  unit direction of the bone without spread, at the knuckle's flexion at rest; spread angles are measured from
+//   it
 void add_spreading(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dvec3& towards, const glm::dvec3& level) {
   const glm::dvec3 axis = unit(glm::cross(bone, hinge.axis));
   if (axis == glm::dvec3(0) || level == glm::dvec3(0) || towards == glm::dvec3(0)) return;
@@ -137,7 +138,7 @@ FingerAngles finger_angles(const AnatomicalHinge& hinge, const glm::dquat& rotat
   const glm::dquat axes =
       glm::quat_cast(glm::dmat3(hinge.axis, hinge.spread_axis, glm::cross(hinge.axis, hinge.spread_axis)));
   const glm::dvec3 xyz = cardan_xyz(glm::conjugate(axes) * rotation * axes);
-  // Two pairs of angles give the same rotation. The finger is where the smaller ones say.
+  // Two pairs of angles give the same rotation. Returns the pair with the smaller angles.
   constexpr double kPi = std::numbers::pi;
   const auto angles = [&](double bend, double aside) {
     return FingerAngles{std::remainder(hinge.at_rest + bend, 2 * kPi),

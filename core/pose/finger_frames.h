@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds from a hand's bones at rest where it points, where its palm faces, and about which axes its fingers bend and
-// spread.
+// Finds, from the bones of a hand at rest, the direction of the hand, the side to which its palm faces, and the axes
+// about which its fingers bend and spread.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 
 namespace limber {
 
-// The angles of a joint of a finger, radians.
+// The angles of one finger joint, radians.
 struct FingerAngles {
   double flexion = 0, spread = 0;
 };
 
-// Returns the angles that a rotation of a finger's bone, relative to rest and to its parent, gives to its joint. A turn
-// about the finger's length is not an angle of the joint and is left out.
+// Returns the angles of a finger joint for the rotation of its bone, relative to rest and to the parent. Ignores a
+// rotation about the finger's length, which no joint angle describes.
 FingerAngles finger_angles(const AnatomicalHinge& hinge, const glm::dquat& rotation);
-// Returns the rotation, relative to rest and to the parent, of a finger's bone with these angles.
+// Returns the rotation of a finger's bone, relative to rest and to the parent, for the angles of its joint.
 glm::dquat rotation_of_finger(const AnatomicalHinge& hinge, const FingerAngles& angles);
 
 // Returns the vector from the wrist to the middle finger's knuckle. Without this knuckle, the vector ends at the mean
@@ -36,8 +36,8 @@ std::optional<glm::dvec3> across_palm(const Skeleton& skeleton, BodySide side);
 std::optional<bool> is_right_hand(const Skeleton& skeleton);
 
 // Returns the hinge of each finger bone of a hand, with the bone's index. A curled finger bends further in the plane in
-// which it is curled, a straight finger about the line across the palm. A finger spreads from the line of its
-// metacarpal, or of the line from the wrist to its knuckle if the rig has no metacarpal; a thumb out of the palm's
+// which it is curled, a straight finger about the line across the palm. The spread of a finger is measured from its
+// metacarpal, or from the line from wrist to knuckle if the rig has no metacarpal. A thumb spreads out of the palm's
 // plane.
 std::vector<std::pair<int, AnatomicalHinge>> finger_hinges(const Armature& armature, const Skeleton& skeleton,
                                                            BodySide side, bool right);

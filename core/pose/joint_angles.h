@@ -79,8 +79,8 @@ std::string name_of(const SidedJoint& joint);
 // Returns the name of a motion by its index in JointMotions ("internal rotation"). Empty if the joint has no such
 // motion.
 std::string_view motion_name(BodyJoint joint, std::size_t motion);
-// Returns the name of the motion's opposite, for which negative angles stand ("external rotation"). Empty if it has no
-// name of its own, as for the joints of fingers.
+// Returns the name for negative angles of a motion: "external rotation" for internal rotation. Empty if there is no
+// such name, as for the joints of fingers.
 std::string_view opposite_name(BodyJoint joint, std::size_t motion);
 
 // List the words that a request may use: the joints ("spine, neck, shoulder girdle, ...") and the motions of a joint

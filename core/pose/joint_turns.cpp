@@ -22,7 +22,7 @@ const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
 // Cosine of the second rotation below which a rotation counts as locked. At 1e-7, rounding errors of a quaternion
 // already turn the first and the third angle by 1e-9 rad.
 constexpr double kLocked = 1e-7;
-constexpr double kNearLock = 0.05;  // degrees from the lock within which a user is told of it
+constexpr double kNearLock = 0.05;  // degrees; within this distance of a gimbal lock the user is warned
 
 glm::dquat about(const glm::dvec3& axis, double angle) { return glm::angleAxis(angle, axis); }
 
@@ -30,10 +30,11 @@ double radians_of(const JointMotions& motions, std::size_t motion) {
   return motions[motion].value_or(0) * std::numbers::pi / 180;
 }
 
-// Returns by how many degrees an angle exceeds a range.
+// Returns by how many degrees an angle is outside of a range; 0 if it is inside.
 double excess(double angle, const AngleRange& range) { return std::max({range.low - angle, angle - range.high, 0.0}); }
 
-// The signs by which a joint's angles enter X, Y and Z, and how many of its motions they are.
+// The signs of a joint's clinical angles in the Cardan rotations X, Y and Z, and the number of angles that the joint
+// has.
 struct CardanSigns {
   double x = 1, y = 1, z = 1;
   std::size_t motions = 3;
@@ -51,7 +52,7 @@ CardanSigns signs_of(BodyJoint joint) {
   }
 }
 
-// Returns the angle plus or minus 360 degrees if this exceeds the joint's usual range less.
+// Adds or subtracts 360 degrees if this brings the angle nearer to the joint's usual range.
 double unwrapped(double angle, const AngleRange& range) {
   for (const double other : {angle - 360, angle + 360})
     if (excess(other, range) < excess(angle, range) - 1e-9) angle = other;
@@ -63,7 +64,7 @@ struct Candidate {
   double excess = 0;
 };
 
-// Returns a joint's angles, degrees, for Cardan angles, radians.
+// Converts Cardan angles (radians) to the clinical angles of a joint (degrees).
 Candidate candidate_of(BodyJoint joint, const glm::dvec3& xyz) {
   const CardanSigns signs = signs_of(joint);
   const glm::dvec3 degrees = glm::degrees(xyz) * glm::dvec3(signs.x, signs.y, signs.z);
@@ -81,7 +82,7 @@ JointMotions cardan_motions(BodyJoint joint, const glm::dquat& turn) {
   constexpr double kPi = std::numbers::pi;
   const glm::dvec3 xyz = cardan_xyz(turn);
   const Candidate one = candidate_of(joint, xyz), other = candidate_of(joint, {xyz.x + kPi, kPi - xyz.y, xyz.z + kPi});
-  // At the lock, both sets of angles name the same motion; the one that leaves the first angle at zero is taken.
+  // At a gimbal lock both candidates stand for the same rotation. The first one is used, since its first angle is zero.
   const bool locked = std::abs(std::cos(xyz.y)) < kLocked;
   return locked || one.excess <= other.excess + 1e-9 ? one.motions : other.motions;
 }

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The rotation of a joint as a function of its clinical angles (joint_angles.h), its exact inverse, and the bones that
 // a joint turns. Rotations are those of a left joint, from the anatomical position, in the body's axes: x to the left,
-// y to the back, z up. They are written as Cardan rotations about axes that the earlier rotations carry along:
-//   hip, shoulder  X(-flexion) Y(-abduction) Z(-internal rotation)     [Grood & Suntay 1983; Wu et al. 2002]
-//   knee           X(flexion) Y(varus) Z(-internal rotation)           ankle  X(-dorsiflexion) Y(inversion)
-//   Z(-internal) elbow, forearm X(-flexion) Y(-valgus) Z(-pronation of the forearm bone)                          [Wu
-//   et al. 2005] wrist          Z(-pronation of the hand bone) X(-flexion) Y(ulnar deviation) spine, neck    X(flexion)
-//   Y(-right bending) Z(left rotation) girdle         Z(-protraction) Y(-elevation) N(-upward rotation), N: square to
-//   the shoulder blade
-// Every such set of angles has a gimbal lock where its second rotation is 90 degrees (a shoulder's or hip's abduction,
-// a wrist's flexion): there the first and the third angle are one motion. The inverse then gives the whole of this
-// motion to the third angle, and zero to the first. Elsewhere two sets of angles give one rotation: the inverse takes
-// the set that exceeds the usual ranges less, so an arm raised sideways reads 160 degrees of abduction.
+// y to the back, z up. They are products of Cardan rotations, each about an axis that the earlier rotations carry
+// along:
+//   hip, shoulder   X(-flexion) Y(-abduction) Z(-internal rotation)  [Grood & Suntay 1983; Wu et al. 2002]
+//   knee            X(flexion) Y(varus) Z(-internal rotation)
+//   ankle           X(-dorsiflexion) Y(inversion) Z(-internal rotation)
+//   elbow, forearm  X(-flexion) Y(-valgus) Z(-pronation of the forearm bone)  [Wu et al. 2005]
+//   wrist           Z(-pronation of the hand bone) X(-flexion) Y(ulnar deviation)
+//   spine, neck     X(flexion) Y(-right bending) Z(left rotation)
+//   girdle          Z(-protraction) Y(-elevation) N(-upward rotation), N: perpendicular to the shoulder blade
+// Each of these has a gimbal lock where its second rotation is 90 degrees (the abduction of a shoulder or hip, the
+// flexion of a wrist): there the first and the third rotation have the same axis. The inverse then returns zero for the
+// first angle. Elsewhere two sets of angles give the same rotation. The inverse returns the set that exceeds the usual
+// ranges less, so an arm raised sideways has 160 degrees of abduction.
 #pragma once
 
 #include <optional>
@@ -24,37 +26,37 @@
 
 namespace limber {
 
-// The joints in the order of BodyJoint.
+// All joints, in the order of BodyJoint.
 inline constexpr std::array kAllJoints = {BodyJoint::Spine, BodyJoint::Neck,    BodyJoint::Girdle, BodyJoint::Shoulder,
                                           BodyJoint::Elbow, BodyJoint::Forearm, BodyJoint::Wrist,  BodyJoint::Hip,
                                           BodyJoint::Knee,  BodyJoint::Ankle,   BodyJoint::Toes,   BodyJoint::Thumb,
                                           BodyJoint::Index, BodyJoint::Middle,  BodyJoint::Ring,   BodyJoint::Little};
 
-// Returns the rotation of a joint with these angles; angles that are not given count as zero. A forearm's pronation and
-// a finger's angles are not part of it (identity).
+// Returns the rotation of a joint with these angles; angles that are not given count as zero. Returns the identity for
+// forearms and fingers, whose angles are applied elsewhere.
 glm::dquat joint_turn(BodyJoint joint, const JointMotions& motions);
 
-// Returns the angles at which joint_turn() gives this rotation. The angles of a forearm are empty.
-//   turn  rotation of the bone below the joint relative to the bone above. An elbow's turn may contain pronation as its
-//         last factor, a wrist's as its first one; they are left out.
+// Returns the angles for which joint_turn() gives this rotation. The angles of a forearm are empty.
+//   turn  rotation of the bone below the joint relative to the bone above it. Pronation, which is the last factor of an
+//         elbow's rotation and the first factor of a wrist's, is ignored.
 JointMotions joint_motions_of(BodyJoint joint, const glm::dquat& turn);
 
-// Return the angle about z, radians, that pronation contributes to the rotation of a forearm bone (its last factor) and
-// of a hand bone (its first factor).
+// Return the angle of pronation about z, radians, in the rotation of a forearm bone (its last factor) and of a hand
+// bone (its first factor).
 double pronation_in_forearm(const glm::dquat& turn);
 double pronation_in_hand(const glm::dquat& turn);
 
-// The angles about three axes, radians: rotation = X(x) Y(y) Z(z). At the gimbal lock x is 0.
+// Returns the Cardan angles x, y, z, radians: rotation = X(x) Y(y) Z(z). At a gimbal lock x is 0.
 glm::dvec3 cardan_xyz(const glm::dquat& rotation);
 
-// Returns whether the second rotation of a joint is so near to 90 degrees that its first and third angle are one
-// motion.
+// Returns true if the second rotation of a joint is so near to 90 degrees that its first and third rotation have the
+// same axis.
 bool at_gimbal_lock(BodyJoint joint, const JointMotions& motions);
 
 // Returns the angle, degrees, between an arm with these shoulder angles and an arm that hangs down.
 double raise_of_arm(const JointMotions& shoulder);
 // Returns the upward rotation, degrees, that a raised arm adds to the collarbone [Inman, Saunders & Abbott 1944].
-//   raise  raise_of_arm()
+//   raise  angle of the arm, degrees, from raise_of_arm()
 double shoulder_rhythm(double raise);
 
 // Returns the bones that a joint turns, from the trunk outwards. Empty if the rig does not have the joint.

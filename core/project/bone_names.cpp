@@ -78,7 +78,8 @@ void take_list(Clip& clip, Constraints next) {
   else take(clip.constraints, std::move(next));
 }
 
-// A constraint whose bone or target was removed, and whose name another bone has taken, goes.
+// Updates the bone names of constraints. Removes a constraint if its bone or target was removed and another bone has
+// taken the name.
 void follow_constraints(Clip& clip, const Names& names) {
   if (!clip.constraints) return;
   Constraints next;
@@ -124,7 +125,7 @@ void follow_motion(Clip& clip, const Armature& before, const Armature& after, co
   for (const auto& [bone, source] : next.sources) clip.map.sources[bone] = source;
 }
 
-// The mirrored bones without a swapped counterpart.
+// The mirrored bones that did not swap names with a counterpart: each moves to the other side under a new name.
 struct GoneOver {
   std::map<std::string, std::string> names;  // old name -> new name
 
@@ -147,8 +148,8 @@ void carry_constraints(Clip& clip, const Armature& before, const Armature& after
       continue;
     }
     const bool bone_goes = gone_over.names.contains(constraint.bone);
-    // A place goes over with the bone that it is fixed to. One in the world, or on a bone of no side, does with the
-    // constrained bone.
+    // A position is mirrored if the bone that it is fixed to is mirrored. A position in the world, or on a bone without
+    // a side, is mirrored together with the constrained bone.
     const bool place_goes =
         gone_over.names.contains(constraint.target) || (bone_goes && !mirrored_name(constraint.target));
     const Constraint was = constraint;
@@ -210,8 +211,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     pose.rotation[bone] = plane.rotation(pose.rotation[bone]);
     document.pose = std::make_shared<const Pose>(std::move(pose));
   }
-  // What a removed bone left under a name that a mirrored bone takes is dropped, or the bone would inherit a part of
-  // it.
+  // Drops data of a removed bone whose name a mirrored bone takes; else the mirrored bone would inherit these data.
   const auto carry = [&](auto& by_bone, const auto& in_the_mirror) {
     std::remove_reference_t<decltype(by_bone)> next;
     for (const auto& [bone, value] : by_bone) {
@@ -228,7 +228,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
       return track;
     });
     carry(clip.keys.shapes, [&](KeyShapes shapes) {
-      // A rotation vector turns the other way in the mirror.
+      // A rotation reverses its sense in a mirror, so its vector is negated after the reflection.
       for (auto& [frame, shape] : shapes)
         for (glm::dvec3* tangent : {&shape.in, &shape.out}) *tangent = -plane.direction(*tangent);
       return shapes;

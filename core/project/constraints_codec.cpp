@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFrame = 1 << 28;  // as for all frames of a project
-constexpr int kLongestChain = 4096;           // a rig has no more bones
-constexpr std::size_t kFewestBytes = 138;     // of a constraint with empty names
+constexpr std::int64_t kMostFrame = 1 << 28;  // largest frame number in a project
+constexpr int kLongestChain = 4096;           // largest number of bones in a chain; a rig has no more bones
+constexpr std::size_t kFewestBytes = 138;     // size of a stored constraint with empty names
 constexpr double kWidestLimit = 2 * std::numbers::pi;
 
 double get_within(ByteReader& in, double low, double high) {

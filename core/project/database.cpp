@@ -235,7 +235,7 @@ Transaction::~Transaction() {
   if (done_) return;
   try {
     database_.run("ROLLBACK");
-  } catch (const std::exception&) {  // SQLite has rolled back already, or will when the file is opened again
+  } catch (const std::exception&) {  // ignored: SQLite has already rolled back, or will when the file is opened again
   }
 }
 

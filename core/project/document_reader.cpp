@@ -206,7 +206,7 @@ void get(ByteReader& in, BoneMap& map) {
 }
 
 void get(ByteReader& in, Measurements& measurements) {
-  constexpr double kFarthest = 1e6;  // mm from the origin of the world
+  constexpr double kFarthest = 1e6;  // largest coordinate that is accepted, mm
   measurements.resize(in.count(13));
   std::set<std::string> names;
   for (Measurement& one : measurements) {
@@ -258,7 +258,7 @@ void get(ByteReader& in, RetargetMap& map) {
 void get(ByteReader& in, Clip& clip) {
   clip.name = in.text();
   clip.rate = in.get<double>();
-  in.require(clip.rate >= 0.01 && clip.rate <= 10'000);  // as clip_of() has them
+  in.require(clip.rate >= 0.01 && clip.rate <= 10'000);  // the range of rates that clip_of() accepts, frames per second
   for (int* number : {&clip.start, &clip.first, &clip.last, &clip.range_start, &clip.range_end})
     *number = get_frame(in);
   in.require(clip.first >= 0 && clip.first <= clip.last &&

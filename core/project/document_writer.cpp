@@ -489,7 +489,7 @@ class DocumentWriter::Writing {
   ChunkSink& sink_;
   const Packing packing_;
   Progress& progress_;
-  int role_ = 0;  // whose weights are written: 0 the blend, 1 the base, 2... the layers from bottom to top
+  int role_ = 0;  // which weights are written: 0 the blend, 1 the base, 2, 3, ... the layers from bottom to top
 };
 
 ChunkHash DocumentWriter::write(const Document& document, ChunkSink& sink, Packing packing, Progress& progress) {

@@ -39,7 +39,7 @@ std::int64_t own_bytes(const Armature& armature) {
   for (const Bone& bone : armature.bones) bytes += heap_bytes(bone.name);
   return bytes;
 }
-std::int64_t own_bytes(const SkinWeights& weights) {  // without its chunks, which are counted separately
+std::int64_t own_bytes(const SkinWeights& weights) {  // size without its chunks, which are counted separately
   std::int64_t bytes = kBlock + weights.chunk_count() * std::int64_t{sizeof(std::shared_ptr<const SkinWeights::Chunk>)};
   for (const std::string& bone : weights.bones()) bytes += heap_bytes(bone) + std::int64_t{sizeof bone};
   return bytes;
@@ -58,7 +58,7 @@ std::int64_t own_bytes(const NamedPose& pose) {
     bytes += kBlock + std::int64_t{sizeof(std::pair<std::string, glm::dquat>)} + 32 + heap_bytes(bone);
   return bytes;
 }
-std::int64_t own_bytes(const Clip& clip) {     // without its motion, which is counted separately
+std::int64_t own_bytes(const Clip& clip) {     // size without its motion, which is counted separately
   constexpr std::int64_t kNode = kBlock + 48;  // overhead of a map's node, bytes
   std::int64_t bytes = heap_bytes(clip.name) + heap_bytes(clip.markers) + kNode * std::ssize(clip.keys.root);
   for (const auto& [bone, source] : clip.map.sources)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Undo and redo: a list of documents, each with the label of the edit that made it. Documents share their parts, so a
-// step costs only what it changed. Memory is bounded: when the distinct parts of all steps (weights by brick, a volume
-// once) exceed the limit, label volumes of other steps are first packed to what edits changed (packed_volumes.h). If
-// that is not enough, the oldest steps are dropped, and note() says so. The current document counts too, but the
-// other steps may always use half of the limit, so that a large volume does not disable undo.
+// step costs only what it changed. Memory is limited: when the distinct parts of all steps (weights by brick, a volume
+// once) exceed the limit, the label volumes of other steps are first replaced by the differences that edits made
+// (packed_volumes.h). If that is not enough, the oldest steps are dropped, and note() says so. The current document
+// counts too, but the other steps may always use half of the limit, so that a large volume does not disable undo.
 //
 // Only one thread may use a History.
 #pragma once

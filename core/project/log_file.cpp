@@ -14,12 +14,12 @@ class SystemLogFile final : public LogFile {
     std::filesystem::remove(path, error);
     file_ = OpenFile(path, Opening::NewLog, error);
     require_success(error);
-    file_.lock();  // succeeds on a new file where the file system has locks
+    file_.lock();  // succeeds on a new file, if the file system supports locks
   }
 
   void append(std::string_view bytes) override { require_success(file_.write(bytes)); }
   void sync() override { require_success(file_.flush_bytes()); }
-  void cut(std::int64_t size) override { file_.cut(size); }  // readers skip an incomplete record that remains
+  void cut(std::int64_t size) override { file_.cut(size); }  // may fail: readers skip an incomplete record that remains
 
  private:
   void require_success(const std::error_code& error) const {
@@ -41,7 +41,8 @@ bool same_file(const OpenFile& file, const Path& path) {
 std::unique_ptr<LogFile> open_log(const Path& path) { return std::make_unique<SystemLogFile>(path); }
 
 FileLock::FileLock(const Path& path) {
-  constexpr int kAttempts = 100;  // upper limit on attempts: the file may be replaced just before it is locked
+  constexpr int kAttempts =
+      100;  // upper limit on attempts; an attempt fails if the file is replaced just before it is locked
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::error_code error;
     OpenFile file(path, Opening::Read, error);

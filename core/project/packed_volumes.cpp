@@ -13,7 +13,7 @@ std::int64_t bytes_of(const LabelVolume& volume) {
 
 }  // namespace
 
-// Returns whether a step of the group of `step`, not before `first` and at most `step`, has its volume.
+// Returns whether any step from `first` to `step` that is linked to `step` without a gap has its volume unpacked.
 bool PackedVolumes::has_volume_left(std::int64_t step, std::int64_t first) const {
   for (;; --step) {
     if (!packed_[static_cast<std::size_t>(step)]) return true;
@@ -21,7 +21,7 @@ bool PackedVolumes::has_volume_left(std::int64_t step, std::int64_t first) const
   }
 }
 
-// The same for steps from `step` to end - 1.
+// Returns whether any step from `step` to end - 1 that is linked to `step` without a gap has its volume unpacked.
 bool PackedVolumes::has_volume_right(std::int64_t step, std::int64_t end) const {
   for (;; ++step) {
     if (!packed_[static_cast<std::size_t>(step)]) return true;
@@ -54,7 +54,7 @@ void PackedVolumes::unlink(Steps& steps, std::int64_t step, const SetVolume& set
   if (!last) links_[static_cast<std::size_t>(step) + 1] = {};
 }
 
-// Links a step with the step before it. Returns false if that is impossible.
+// Stores how a step's volume differs from that of the step before. Returns false if the difference is not known.
 bool PackedVolumes::link(const Steps& steps, std::int64_t step) {
   Link& link = links_[static_cast<std::size_t>(step)];
   if (link.linked()) return true;
@@ -81,7 +81,8 @@ bool PackedVolumes::pack(Steps& steps, std::int64_t current, const SetVolume& se
       if (!document.volume || bytes_of(*document.volume) < kLeastBytes) continue;
       if (!link(steps, step < current ? step + 1 : step)) continue;
       packed_[static_cast<std::size_t>(step)] = Packed{document.volume};
-      if (!has_volume_left(step, 0) && !has_volume_right(step, count)) {  // it is the last volume of its group
+      if (!has_volume_left(step, 0) &&
+          !has_volume_right(step, count)) {  // the last unpacked volume of its group must stay
         packed_[static_cast<std::size_t>(step)].reset();
         continue;
       }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps the label volumes of an undo history in memory that grows with what edits changed. Each stroke of a label brush
-// makes a whole new volume; of a body at 2 mm, a handful would fill the memory for undo. So a step's volume may be
-// packed: the step's document has no volume then, and only the voxels that differ from the neighbouring step's are kept
-// (LabelChange). Unpacking gives the same labels bit for bit, and the same object as long as something else holds it.
+// Stores the label volumes of an undo history compactly. Each stroke of a label brush makes a whole new volume; at a
+// spacing of 2 mm, a handful of whole-body volumes would fill the memory for undo. So a step's volume may be packed:
+// the step's document then has no volume, and only the voxels that differ from the volume of a neighbouring step are
+// stored (LabelChange). Unpacking gives the same labels bit for bit, and the same object if something else still holds
+// it.
 //
-// Steps whose volumes are the same or differ by a known change are linked. Of each group of linked steps, at least one
-// has its volume.
+// Two neighbouring steps are linked if their volumes are equal or differ by a known change. In each group of linked
+// steps at least one step keeps its volume, from which the others are computed.
 #pragma once
 
 #include <functional>
@@ -21,28 +22,29 @@ namespace limber {
 class PackedVolumes {
  public:
   using Steps = std::vector<History::Step>;
-  // Replaces the volume of a step's document, and counts the document's memory again.
+  // Sets the volume of a step's document and updates the count of the document's memory.
   using SetVolume = std::function<void(Document& document, std::shared_ptr<const LabelVolume> volume)>;
 
-  // Volumes smaller than this are not worth packing, bytes.
+  // Smallest volume that is packed, bytes; smaller ones save too little.
   static constexpr std::int64_t kLeastBytes = std::int64_t{1} << 20;
 
-  // Forgets the last steps so that `count` are left, or knows of new steps at the end. What stays linked has a volume.
+  // Changes the number of steps to `count`: removes steps at the end, or adds new ones there. First unpacks a volume if
+  // the remaining steps need it.
   void resize(Steps& steps, std::int64_t count, const SetVolume& set);
-  // Forgets the first steps.
+  // Removes the first `count` steps. First unpacks a volume if the remaining steps need it.
   void erase_front(Steps& steps, std::int64_t count, const SetVolume& set);
-  // The volume of a step is about to be replaced by another one.
+  // Removes the links of a step to its neighbours. Call this before the step's volume is replaced.
   void unlink(Steps& steps, std::int64_t step, const SetVolume& set);
 
-  // Packs one more volume: that of the step farthest from the current one. Returns false if no other can be packed.
+  // Packs the volume of the step farthest from the current one. Returns false if no further volume can be packed.
   bool pack(Steps& steps, std::int64_t current, const SetVolume& set);
-  // Gives a step's document its volume back.
+  // Computes the volume of a packed step and puts it back into the step's document.
   void unpack(Steps& steps, std::int64_t step, const SetVolume& set);
 
-  std::int64_t bytes() const;  // of the changes kept
+  std::int64_t bytes() const;  // size of the stored changes
 
  private:
-  // How the volume of a step follows from that of the step before.
+  // How the volume of a step differs from that of the step before.
   struct Link {
     bool same = false;
     std::shared_ptr<const LabelChange> change;

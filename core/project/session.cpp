@@ -419,7 +419,7 @@ void Session::discard() {
   if (leftover_ || !journal_) return;
   try {
     if (base_) return begin_journal(nullptr, "");
-  } catch (const Error&) {  // no room even for an empty journal, so the journal is removed below
+  } catch (const Error&) {  // there is no space even for an empty journal, so the journal is removed below
   }
   journal_.reset();
   remove_journal(journal_path_);

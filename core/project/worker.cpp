@@ -33,8 +33,8 @@ constexpr std::size_t kMostOutput = std::size_t{16} << 20;
 constexpr std::size_t kLongestLine = std::size_t{1} << 16;
 constexpr std::size_t kMostWarnings = 1000;
 constexpr auto kBeat = std::chrono::seconds(1);
-// Processor time that a worker must use between two heartbeats to count as working, seconds. A heartbeat itself uses
-// about a tenth of it.
+// Processor time that a worker must use between two heartbeats to count as working, seconds. Writing a heartbeat itself
+// uses about a tenth of this time.
 constexpr double kLeastWork = .001;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }

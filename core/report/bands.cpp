@@ -15,7 +15,7 @@ namespace {
 // Two posed neighbours count as neighbours at rest if they were closer there than this, in voxel edges of the posed
 // grid.
 constexpr double kNeighbours = 3;
-// A bone 1 m away from tissue must fit the tissue's motion by this many metres better than a bone in it.
+// Weight of the distance from a bone at rest, mm, relative to the error of its motion, mm, in bone_that_carries().
 constexpr double kShareOfDistance = 0.05;
 constexpr int kArcSteps = 16;  // number of steps in which a joint's arc (its turn from rest to the pose) is sampled
 
@@ -76,15 +76,15 @@ double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::
   return glm::distance(p, squared > 0 ? a + glm::clamp(glm::dot(p - a, d) / squared, 0.0, 1.0) * d : a);
 }
 
-// Returns true if the joint explains where stretched tissue moved. The tissue must be near the joint at rest. Its posed
-// position must be near the arc, or the straight chord, between the two positions to which the joint's two bones would
-// move it.
+// Returns true if the rotation of the joint explains where stretched tissue moved. The tissue must be near the joint at
+// rest. Its posed position must be near the arc, or the straight chord, between the positions to which the joint's two
+// bones would move the tissue.
 bool explains(const Joint& joint, const glm::dvec3& rest, const glm::dvec3& posed, const BandLimits& limits) {
   if (glm::distance(rest, joint.head) > joint.reach) return false;
   const double within = limits.off_arc * joint.reach;
   glm::dvec3 before = joint.on_the_way[0] * rest;
   if (distance_to_segment(posed, before, joint.on_the_way[kArcSteps] * rest) <= within)
-    return true;  // linear blend skinning may leave tissue anywhere on the chord of the arc
+    return true;  // linear blend skinning may move tissue anywhere along the chord of the arc
   for (int k = 1; k <= kArcSteps; ++k) {
     const glm::dvec3 next = joint.on_the_way[k] * rest;
     if (distance_to_segment(posed, before, next) <= within) return true;

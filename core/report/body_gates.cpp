@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Smallest tear of a bone that counts, in voxel edges. Smaller tears do not show in a voxel volume.
+// Smallest tear of a bone that counts, in voxel edges. A smaller tear cannot be seen in a voxel volume.
 constexpr double kTear = 0.5;
 
 void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {

@@ -157,9 +157,9 @@ void count_surface(const LabelVolume& volume, int z, const Slice& slice, std::ve
 
 double percent_change(double before, double after) { return before > 0 ? 100 * (after - before) / before : 0; }
 
-// Returns the number of large components of a label (kSmallest voxels or more) minus `before`, but at least 0.
-// Components count as connected across small gaps, which are no tears: in another position on the grid, a thin part may
-// have a gap of one voxel, and a gap that one thick slice bridged at rest may appear.
+// Returns the number of components of a label with at least kSmallest voxels, minus `before`, but at least 0.
+// Components with a small gap between them count as connected, since such gaps are no tears: a thin part at another
+// position on the grid may get a gap of one voxel, and a gap that one thick slice bridged at rest may become visible.
 int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
   if (touching <= before) return 0;
   std::vector<std::int64_t> voxels;

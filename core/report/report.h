@@ -54,11 +54,13 @@ struct Report {
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   std::vector<TurnedJoint> joints;
-  std::optional<std::vector<GlidedJoint>> glide;  // joints whose bones would overlap; none: joints do not glide
+  std::optional<std::vector<GlidedJoint>>
+      glide;  // joints that were translated so that their bones do not overlap; none: joints do not glide
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
-  std::optional<std::vector<std::string>> doubts;  // why inputs may not match (input_doubts.h); none: unchecked
-  std::optional<bool> whole_body;                  // true: the rig has legs, and arms or a head; none: no rig
+  std::optional<std::vector<std::string>>
+      doubts;  // reasons why the input files may not belong together (input_doubts.h); none: not checked
+  std::optional<bool> whole_body;  // true: the rig has legs, and arms or a head; none: no rig
   PosedBoneMeasures posed_bones;
   std::optional<Exposure> exposure;
   std::optional<WorstPlace> air_pocket;  // the largest pocket of air that the pose encloses; none: no such air

@@ -23,8 +23,8 @@ std::vector<std::vector<std::int64_t>> pieces_of(const Grid& grid, const std::ve
     a = root_of(parent, a), b = root_of(parent, b);
     parent[std::max(a, b)] = std::min(a, b);
   };
-  // Joins each voxel with the earlier voxels of the list within reach, row by row: the voxels of a row are adjacent in
-  // the list.
+  // Unites each voxel with the earlier voxels of the list that are within reach, one row of the grid after the other:
+  // the voxels of a row are adjacent in the list.
   std::vector<std::array<int, 2>> rows;  // offsets of the neighbouring rows in y and z
   for (int z = -reach.z; z <= 0; ++z)
     for (int y = -reach.y; y <= (z < 0 ? reach.y : 0); ++y) rows.push_back({y, z});

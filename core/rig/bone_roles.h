@@ -14,7 +14,7 @@ using BoneRoles = std::vector<std::optional<JointRole>>;  // one for each bone o
 
 // Returns the role of each bone; nothing for a bone whose name is not recognized.
 BoneRoles bone_roles(const Armature& armature);
-// The same, but a bone whose name is not recognized has its parent's role.
+// Returns the role of each bone; a bone whose name is not recognized gets its parent's role.
 BoneRoles inherited_bone_roles(const Armature& armature);
 
 }  // namespace limber

@@ -166,8 +166,8 @@ Armature without_bones(const Armature& armature, const std::vector<int>& bones) 
 Armature dissolved(const Armature& armature, const std::vector<int>& bones) {
   const std::vector<bool> marks = marked(armature, bones);
   Armature next = armature;
-  // Goes from children to parents. If several bones in a row are removed, the last one's tail is thereby passed on to
-  // the bone that stays.
+  // Goes from children to parents, so that if several connected bones are removed, the tail of the last one becomes the
+  // tail of the bone that stays.
   for (int bone = static_cast<int>(marks.size()); bone-- > 0;) {
     if (!marks[bone] || !is_connected(armature, bone)) continue;
     const int parent = armature.bones[bone].parent;

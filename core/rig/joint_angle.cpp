@@ -38,7 +38,8 @@ std::optional<JointReading> read_joint(const Bone& bone, const glm::dquat& rotat
       if (2 * along * along > 1)
         return JointReading{JointReading::Kind::Twist, parts.twist, limits.twist_minimum, limits.twist_maximum,
                             along < 0 ? -1.0 : 1.0};
-      // The cone limits the whole swing. The swing about the other axis therefore reduces the range of this angle.
+      // The cone limits the length of the whole swing vector. Its component about the other axis therefore reduces the
+      // range of this angle.
       const double angle = glm::dot(parts.swing, axis), rest = glm::length(parts.swing - angle * axis);
       const double room = std::sqrt(std::max(0.0, limits.cone * limits.cone - rest * rest));
       const double zero = glm::dot(at_rest, axis);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// For a user who rotates a bone about an axis: finds which angle of the joint changes, its value, and the range that
-// the joint's limits allow. A hinge has one angle. A ball joint has a twist about the bone and a swing across it; the
-// axis decides which of them is read. Angles are relative to the anatomical position if the caller gives the joint's
-// angle at rest (anatomical_position.h), else relative to the rest pose. Angles are in radians; axes and rotations are
-// those of joint_limits.h.
+// Finds which angle of a joint changes when a user rotates its bone about an axis, the value of this angle, and the
+// range that the joint's limits allow. A hinge has one angle. A ball joint has a twist about the bone and a swing
+// across it; the rotation axis decides which of them is returned. Angles are relative to the anatomical position if the
+// caller gives the joint's angle at rest (anatomical_position.h), else relative to the rest pose. Angles are in
+// radians; axes and rotations are those of joint_limits.h.
 #pragma once
 
 #include <optional>

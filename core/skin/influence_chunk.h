@@ -96,7 +96,7 @@ class InfluenceChunk {
     return number;
   }
 
-  // First the sets of bones, then one record for each voxel, then kBehind unused bytes.
+  // Holds the sets of bones, then one record for each voxel, then kBehind unused bytes.
   std::unique_ptr<const std::uint8_t[]> bytes_;
   std::uint32_t records_ = 0;  // byte offset of the first record
   std::uint16_t count_ = 0;

@@ -343,7 +343,7 @@ WeightChange WeightRules::set(Influence& influence, std::span<const int> group, 
   else entries.scale(Part::Group, now);
   entries.drop_empty();
   if (entries.count > 4) {
-    // With the fallback bone the voxel has five bones, so the smallest unlocked entry is removed.
+    // After the fallback bone was added, the voxel has five bones, so the smallest unlocked entry is removed.
     const int painted_least = entries.smallest(Part::Group), fallback_bone = entries.smallest(Part::Other);
     entries.give_up(entries.entry[fallback_bone].weight < entries.entry[painted_least].weight ? fallback_bone
                                                                                               : painted_least);

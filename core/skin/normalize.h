@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Changes the weights of one voxel and normalizes them: they stay whole numbers whose sum is exactly kFullWeight.
 //
-// The weight that a bone gains is taken from the other unlocked bones in proportion to their weights. The weight that
-// a bone loses is given to them in the same proportion. The weight of a locked bone never changes by one bit. A voxel
-// has at most four bones, so a fifth bone replaces the unlocked bone with the smallest weight. When a bone loses weight
-// and no other unlocked bone has any, its fallback bone takes the weight: the nearest unlocked bone along the bone tree
-// (its parent, else a child, else a bone further away), else the bone with the most weight nearby. If no bone can take
-// the weight, nothing changes, and the result names the locked bone that prevents the change.
+// The weight that a bone gains is taken from the other unlocked bones in proportion to their weights. The weight that a
+// bone loses is given to them in the same proportion. The weight of a locked bone never changes. A voxel has at most
+// four bones, so a fifth bone replaces the unlocked bone with the smallest weight. When a bone loses weight and no
+// other unlocked bone has any, its fallback bone takes the weight: the nearest unlocked bone along the bone tree (its
+// parent, else a child, else a bone further away), else the bone with the most weight nearby. If no bone can take the
+// weight, nothing changes, and the result names the locked bone that prevents the change.
 #pragma once
 
 #include <span>

@@ -150,15 +150,14 @@ LIMBER_INLINE void set_group(Influence* influences, std::int32_t bone_key, std::
   for (int i = 0; i < 4; ++i) rest[i] = voxels.weight(i) & ~own[i];
   const Lanes others = kFullWeight - now, sum = rest[0] + rest[1] + rest[2] + rest[3];
   const Numbers factor = __builtin_convertvector(others, Numbers) / __builtin_convertvector(sum - (sum == 0), Numbers);
-  // Of the other bones' weights the largest is not rounded: it gets what the at most two remaining ones leave. That is
-  // never negative, since rounding raises each of those by at most half a unit.
+  // Scales the other bones' weights. All but the largest of them are rounded; the largest gets what remains of the sum.
+  // The remainder is never negative, since at most two weights are rounded up, each by at most half a unit.
   Lanes made[4] = {Lanes{}, scaled<Width>(rest[1] & ~own[0], factor), scaled<Width>(rest[2], factor),
                    scaled<Width>(rest[3], factor)};
   const Lanes left = others - made[1] - made[2] - made[3];
   made[0] = left & ~own[0];
   made[1] |= left & own[0];
-  // Where the painted bone had all the weight, it is the first influence. Its fallback bone then becomes the second
-  // influence.
+  // If the painted bone had all the weight, it is the first influence. Its fallback bone then becomes the second one.
   const Lanes nobody = sum == 0;
   voxels.key[1] = (voxels.key[1] & ~nobody) | (heir_key & nobody);
   for (int i = 0; i < 4; ++i) {

@@ -50,9 +50,9 @@ class Sampler {
     return weights_.chunk(brick)[tissue_.index_of(v) - tissue_.bricks()[brick].first];
   }
 
-  // Returns the tissue voxel nearest to a point. Searches larger and larger cubes around it. After the first hit the
-  // search goes on to about twice that cube's size, since the hit may lie in a corner and a larger cube may have a
-  // nearer voxel.
+  // Returns the tissue voxel nearest to a point. Searches larger and larger cubes around the point. After the first hit
+  // the search continues up to about twice that cube's size: the hit may be in a corner of the cube, and a larger cube
+  // may contain a nearer voxel.
   glm::ivec3 nearest_tissue(const glm::dvec3& voxel) const {
     const glm::ivec3 size = volume_.grid.size,
                      centre = glm::clamp(glm::ivec3(glm::round(voxel)), glm::ivec3(0), size - 1);

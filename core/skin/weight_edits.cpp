@@ -249,7 +249,7 @@ WeightEdit smoothed(const WeightedBody& body, const SkinWeights& weights, int pa
         edited_voxels(body, all.weights, scope, towards_mean, {double(pass) / passes, double(pass + 1) / passes});
     all = std::move(once);
   }
-  // Counts the voxels that differ from the original weights, since the last pass has counted only its own changes.
+  // Counts the voxels that differ from the original weights, since the last pass counted only its own changes.
   all.changed = 0;
   for (std::int64_t b = 0; b < weights.chunk_count(); ++b)
     if (weights.shared_chunk(b) != all.weights.shared_chunk(b))

@@ -49,8 +49,8 @@ SkinWeights composed(const WeightLayers& layers);
 // Returns the bricks whose composed weights may differ between `layers` and `before`, two states of the layers of one
 // body. A brick whose chunks and masks are shared by the two states does not differ.
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before);
-// Returns composed(layers), but computes only the bricks that changed_bricks() returns. The other bricks are taken from
-// `came_out`, which must be composed(before).
+// Returns composed(layers), but computes only the bricks that changed_bricks() returns. The other bricks are copied
+// from `came_out`, which must be composed(before).
 SkinWeights recomposed(const WeightLayers& layers, const WeightLayers& before, const SkinWeights& came_out);
 
 // Returns the weights that a stroke on this layer starts from. Bricks that the layer covers completely share the

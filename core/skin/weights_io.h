@@ -33,7 +33,7 @@ struct WeightsFile {
 // does not have.
 WeightsFile read_weights(const Path& path, const LabelVolume& volume, const TissueVoxels& tissue,
                          const Armature& armature);
-// Throws Error when no weights can be written under this name.
+// Throws Error when no weights can be written to this path.
 void check_weights_writable(const Path& path);
 // Whether the weights were computed with the seams of `tissue`. The file stores seams only for OfTissue.
 enum class SeamsOfWeights { Unknown, OfTissue };

@@ -10,8 +10,8 @@ namespace {
 
 double squared(double value) { return value * value; }
 
-// The ordinal distance of scores c and k, squared: the number of scores given from c to k, of which c and k themselves
-// count half.
+// Returns the squared ordinal distance of the scores c and k: the number of scores with a value from c to k, where
+// those equal to c or k count half.
 double ordinal_distance(const std::map<int, double>& given, int c, int k) {
   double between = 0;
   for (auto at = given.lower_bound(std::min(c, k)); at != given.end() && at->first <= std::max(c, k); ++at)
@@ -22,7 +22,8 @@ double ordinal_distance(const std::map<int, double>& given, int c, int k) {
 }  // namespace
 
 std::optional<double> krippendorff_alpha(const ScoreTable& scores) {
-  // The coincidences of c and k: in each picture with m scores, each ordered pair of them counts 1 / (m - 1).
+  // Number of coincidences of the values c and k: in a picture with m scores, each ordered pair of scores adds 1 / (m -
+  // 1).
   std::map<std::pair<int, int>, double> coincidences;
   std::map<int, double> given;
   double all = 0;

@@ -24,7 +24,7 @@ constexpr char kSchema[] = "limber-expected/1";
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
 constexpr std::size_t kToldDifferences = 3;
 
-// The input files of a study, each with its name in a bundle. Files of one name in different folders get numbers.
+// Gives each input file of a study a name in the bundle. Files with equal names from different folders get numbers.
 class InputNames {
  public:
   explicit InputNames(const Study& study) {
@@ -61,8 +61,8 @@ class InputNames {
   std::vector<Input> inputs_;
 };
 
-// Returns the SHA-256 of the labels of all voxels of a cell's posed volume, as values in files, and of its grid.
-// Compression does not count.
+// Returns the SHA-256 of a cell's posed volume: of its grid, and of the labels of all voxels as values in files. The
+// hash does not depend on the file's compression.
 std::string voxels_hash(const CellResult& cell, Progress& progress) {
   const VolumeFile file = read_volume(cell.folder / "posed.nrrd", progress);
   std::vector<double> value_of(65536, 0);
@@ -82,7 +82,7 @@ std::string voxels_hash(const CellResult& cell, Progress& progress) {
   return sha256_of_bytes(text.data(), text.size());
 }
 
-// Returns a cell's figures without those that differ from run to run and from folder to folder.
+// Returns a cell's figures without those that depend on the run or on the folder, such as times and paths.
 Json figures_of(const CellResult& cell) {
   Json report = Json::parse(cell.report);
   for (const char* key : {"seconds", "peak_memory_mb", "inputs", "version", "warnings"}) report.erase(key);

@@ -265,7 +265,7 @@ class Maker {
   StudyFigures figures_;
   std::vector<const CellResult*> shown_;
   const JointFigures* furthest_ = nullptr;  // the joint that turns the furthest; null: no joint turns
-  std::optional<glm::dvec3> middle_;        // of the first body's grid, world space
+  std::optional<glm::dvec3> middle_;        // middle of the first body's grid, world space, mm
   PictureMaker draw_body_;
   Box box_;
   double body_height_ = 1;

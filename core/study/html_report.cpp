@@ -128,7 +128,8 @@ class Page {
              ". " + program() + ", written " + escaped(facts_.date) + ".</p></header>\n";
   }
 
-  // The value with the largest magnitude among all poses of one technique at the finest spacing, and where it occurs.
+  // The value with the largest magnitude among all poses of one technique at the finest spacing, and its pose and
+  // tissue.
   struct Extreme {
     double value = 0;
     const CellResult* cell = nullptr;

@@ -8,9 +8,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kTurn = 35 * M_PI / 180;  // angle between the joint's axis and the view of the fold
-constexpr double kStraight = 0.1;          // two bones whose directions add up to less than this form a straight joint
-constexpr double kOff_mm = 50;             // a joint this far along its axis from the body's middle has an outer side
+constexpr double kTurn =
+    35 * M_PI / 180;  // angle between the joint's axis and the direction from which the fold is viewed, radians
+constexpr double kStraight = 0.1;  // a joint is straight if the sum of its bones' unit directions is shorter than this
+constexpr double kOff_mm = 50;  // mm; a joint that is this far along its axis from the body's middle has an outer side
 
 glm::dvec3 across(const glm::dvec3& axis, const glm::dvec3& v) { return v - axis * glm::dot(v, axis); }
 
@@ -19,7 +20,7 @@ glm::dvec3 direction(const glm::dvec3& v) {
   return length > 1e-9 ? v / length : glm::dvec3(0);
 }
 
-// Returns the direction across the axis that is up in a picture.
+// Returns the upward direction of a picture that is seen along `axis`: a unit vector perpendicular to the axis.
 glm::dvec3 up_across(const glm::dvec3& axis, const JointFigures& joint) {
   glm::dvec3 up = across(axis, {0, 0, 1});
   if (glm::length(up) < 0.3) up = across(axis, joint.parent_head - joint.head);

@@ -82,9 +82,9 @@ class MethodsWriter {
   }
 
  private:
-  // Marks a reference. Escaped text has no control characters, so it has no such marks.
+  // Marks a reference to a paper by control characters, which escaped text does not contain.
   static std::string cite(const std::string& paper) { return "\1" + paper + "\2"; }
-  // Replaces the marks by "[3]", and lists the papers. They are numbered in the order of the text.
+  // Replaces the marked references by numbers such as "[3]", in the order of the text, and lists the papers.
   static MethodsText cited(const std::string& text) {
     MethodsText result;
     std::map<std::string, int> numbers;
@@ -115,7 +115,7 @@ class MethodsWriter {
     return text;
   }
 
-  // Returns the values that the reports have under a path, as text: "8", or "6.2 to 8" for several numbers.
+  // Returns the values at a path of the cells' reports as text: "8", or "6.2 to 8" if the reports differ.
   std::string used(const std::string& path) const {
     std::set<double> numbers;
     std::set<std::string> words;
@@ -195,7 +195,7 @@ class MethodsWriter {
   std::string finite_elements() {
     if (!uses([](const Technique& technique) { return technique.is_fem(); })) return "";
     const std::string tet = used("/solve/parameters/tet_mm"), finest = used("/solve/parameters/finest_tet_mm");
-    if (tet.empty()) return "";  // only rest poses, which are not solved
+    if (tet.empty()) return "";  // there are only rest poses, which are not solved
     const auto parameter = [&](const char* name) { return used(std::string("/solve/parameters/") + name); };
     std::string text = "Finite elements: the tissue that a pose bends was meshed with tetrahedra, with nodes about " +
                        mm(tet) + (finest == tet ? "" : " (" + mm(finest) + " around joints)") + " apart (quality " +

@@ -8,7 +8,8 @@ namespace limber {
 
 namespace {
 
-// A font of the page. A page without it, from an incomplete installation, falls back to the reader's fonts.
+// Returns the CSS of a font. If the font's file is missing, as in an incomplete installation, browsers use another
+// font.
 std::string font_face(const char* family, const char* weight, const char* file) {
   const auto path = find_asset(std::string("fonts/") + file);
   if (!path) return "";

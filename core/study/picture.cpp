@@ -120,7 +120,8 @@ std::string png_of(const Picture& picture) {
   const std::size_t row = std::size_t(picture.size.x) * 3;
   std::string line(row + 1, '\0');
   for (int y = 0; y < picture.size.y; ++y) {
-    // Uses PNG's filter 2, which stores each row as differences from the row above. They compress better than colours.
+    // Uses PNG's filter 2, which stores each row as differences from the row above, since these compress better than
+    // colours.
     line[0] = 2;
     for (std::size_t i = 0; i < row; ++i)
       line[i + 1] = static_cast<char>(picture.rgb[y * row + i] - (y ? picture.rgb[(y - 1) * row + i] : 0));
@@ -140,7 +141,7 @@ std::optional<WorstRegion> worst_region(const LabelVolume& codes) {
   };
   const Grid& grid = codes.grid;
   const glm::ivec3 step = glm::max(glm::ivec3(glm::round(glm::dvec3(kBlock_mm) / grid.spacing)), glm::ivec3(1));
-  std::map<std::tuple<int, int, int>, Block> blocks;  // blocks that contain tissue, by their index (z, y, x)
+  std::map<std::tuple<int, int, int>, Block> blocks;  // the blocks that contain tissue, by their index (z, y, x)
   std::int64_t i = 0;
   glm::ivec3 v;
   for (v.z = 0; v.z < grid.size.z; ++v.z)

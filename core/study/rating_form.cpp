@@ -18,7 +18,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kCodeDigits = 7;
 
-// The code begins with a letter, so that no spreadsheet takes it for a number.
+// Returns the code of a picture. It begins with a letter, so that spreadsheets do not read it as a number.
 std::string code_of(const CellResult& cell) {
   const Json json = Json::parse(sound_json(cell.cell_json), nullptr, false);
   const std::string key = "picture " + (json.is_object() ? json.value("key", "") : "");
@@ -187,7 +187,7 @@ std::string rating_form(const Study& study, const std::vector<RatedPicture>& pic
   for (const RatedPicture& picture : pictures)
     list.push_back({{"code", picture.code}, {"body", base64(picture.body)}, {"slice", base64(picture.slice)}});
   const std::string name = "Score the pictures: " + study.name;
-  // In a script, "</" would end it.
+  // Escapes "<", since the characters "</" in a string would end the script.
   std::string quoted = Json(study.name).dump(-1, ' ', true, Json::error_handler_t::replace);
   for (std::size_t at = 0; (at = quoted.find('<', at)) != std::string::npos;) quoted.replace(at, 1, "\\u003c");
   return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "

@@ -45,7 +45,7 @@ struct Study {
   std::vector<double> bones;
   std::string weights = "heat", quality = "normal";
   bool fit_joints = false, nearest = false;
-  int repeats = 1;                              // how often each cell is computed, for its time
+  int repeats = 1;  // how many times each cell is computed, to measure the spread of its time
   std::vector<std::optional<double>> spacings;  // voxel spacings, mm; an empty entry: the volume's own spacing
   std::vector<DescribedPose> poses;
   std::vector<Technique> techniques;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Writes the results of a study: cells.csv, cells.json, observations.csv, times.csv and report.html. The page also
-// shows the SAR values of OUT/sar.json. If they are asked for, it also writes the form on which raters score the
-// pictures without knowing whose they are (rating.html, with its key rating_key.csv), and the scores that they gave
-// (scores.csv, and a section of the page).
+// shows the SAR values of OUT/sar.json. On request, also writes the form on which raters score pictures without knowing
+// their technique (rating.html, with its key rating_key.csv), and the scores that raters gave (scores.csv, and a
+// section of the page).
 #pragma once
 
 #include <string>

@@ -27,7 +27,7 @@ Json gates_json(const CellResult& cell) {
   return rows;
 }
 
-// The gates of all labels that are large enough for one.
+// Returns, as JSON, the gates of all labels that are large enough to be judged.
 Json label_gates_json(const CellResult& cell, const QualityLimits& limits) {
   Json rows = Json::array();
   for (const TissueFigures& tissue : cell.tissues)
@@ -125,7 +125,7 @@ std::string cells_csv(const Study& study, const std::vector<CellResult>& cells) 
     std::vector<std::string> order;
     Row row;
     flatten(json, "", order, row);
-    // Adds columns that earlier rows lack. Each is inserted after the column that precedes it in this row.
+    // Adds the columns that earlier rows lack. Each is inserted after the column that precedes it in this row.
     std::size_t at = 0;
     for (const std::string& name : order) {
       const auto found = std::find(columns.begin(), columns.end(), name);

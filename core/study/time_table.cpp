@@ -29,7 +29,7 @@ std::vector<const CellResult*> bent_cells(const std::vector<CellResult>& cells, 
 
 int decimals_of(double value) { return value < 1 ? 2 : value < 100 ? 1 : 0; }
 
-// Returns two cells of a table: the median, and the range.
+// Returns two HTML table cells: the median, and the range from least to largest value.
 std::string spread_cells(const std::optional<Spread>& spread) {
   if (!spread) return "<td class=\"none\">–</td><td class=\"none\">–</td>";
   const auto text = [&](double value) { return fixed(value, decimals_of(spread->median)); };

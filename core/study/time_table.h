@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tabulates how long the techniques of a study take, and how many times as long as linear blend.
+// Makes a table of the times of a study's techniques, in seconds and relative to linear blend skinning.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace limber {
 
-// The median, least and largest of some values.
+// The median, the least and the largest of some values.
 struct Spread {
   double median = 0, least = 0, most = 0;
 };
 std::optional<Spread> spread_of(std::vector<double> values);  // nothing if there are no values
 
-// The times of one technique at one spacing, over its bent poses (over all poses, if none is bent).
+// The times of one technique at one spacing, over its bent poses; over all poses if none is bent.
 struct TechniqueTime {
-  std::optional<Spread> seconds;    // of all repeats of all poses
-  std::optional<Spread> of_linear;  // the time of a pose divided by linear blend's for this pose; empty: not computed
+  std::optional<Spread> seconds;    // seconds of all repeats of all poses
+  std::optional<Spread> of_linear;  // time of each pose divided by that of linear blend skinning; empty: not computed
 };
 TechniqueTime time_of(const Study& study, const std::vector<CellResult>& cells, int spacing, int technique);
 

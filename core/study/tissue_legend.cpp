@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSparse = 4;
 
-// The first label that a ray meets. 0: only air.
+// Returns the first label along a ray that is not air; 0: the ray meets only air.
 Label first_label(const LabelVolume& volume, const glm::dvec3& from, const glm::dvec3& step, int steps) {
   for (int i = 0; i < steps; ++i) {
     const glm::ivec3 voxel(glm::floor(from + step * double(i) + 0.5));
@@ -29,7 +29,7 @@ void add_shown(const LabelVolume& volume, const TissueTable& tissues, PictureFra
   frame.size = glm::max(frame.size / kSparse, glm::ivec2(1));
   const Grid& grid = volume.grid;
   const AffineTransform to_voxel = voxel_from_world(grid);
-  // A ray has half a voxel's steps, and passes the whole body.
+  // Rays advance by half a voxel per step, over a distance in which they pass the whole body.
   const double reach = glm::length(glm::dvec3(grid.size) * grid.spacing),
                step_mm = 0.5 * std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   const glm::dvec3 ahead = -frame.towards_eye() * step_mm;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds which tissues a picture shows, for the legend that says which colour is which tissue.
+// Finds which tissues a picture shows, for the legend of colours.
 #pragma once
 
 #include <map>
@@ -23,7 +23,7 @@ using TissueLegend = std::map<double, ShownTissue>;
 // the surface that remains when all tissue between viewer and plane is removed.
 enum class ShownPart { Slice, Surface, CutSurface };
 
-// Adds the tissues that the picture shows. One pixel in four is looked at, in both directions.
+// Adds the tissues that the picture shows. To save time, only every fourth pixel in each direction is examined.
 void add_shown(const LabelVolume& volume, const TissueTable& tissues, PictureFrame frame, ShownPart part,
                TissueLegend& legend);
 

@@ -44,7 +44,7 @@ std::vector<Number> numbers_in(const Fields& fields, std::initializer_list<std::
   if (!numbers || numbers->size() < count)
     throw Error(std::string(*names.begin()) + " is " + in_quotes(*text), where,
                 "this needs " + std::to_string(count) + " numbers; correct the header");
-  // The header of a 2-D image may list a third number, which is ignored.
+  // Takes only the first `count` numbers: the header of a 2-D image may list a third one.
   return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};
 }
 
@@ -196,7 +196,7 @@ std::string meta_header(const Voxels& voxels, const std::string& data_name, cons
 }
 
 void write_meta(const Voxels& voxels, const Path& path) {
-  constexpr int kDigits = 15;  // blanks in the header, filled with the compressed size once it is known
+  constexpr int kDigits = 15;  // blanks written in the header, replaced by the compressed size once that is known
   write_atomically(path, [&](const Path& temporary) {
     OutputFile out(temporary);
     const std::string header = meta_header(voxels, "LOCAL", std::string(kDigits, ' '));

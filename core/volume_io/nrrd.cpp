@@ -410,8 +410,8 @@ class NrrdReader {
     if (!name) {
       if (!text_.ended) throw Error("no empty line ends the header", where_, "the file is cut off; export it again");
       if (header_.byte_skip >= 0) header_.byte_skip += static_cast<std::int64_t>(text_.end);
-      // `line skip` is an error for data in the header's own file, because byte_skip is already counted from the end of
-      // the header.
+      // Throws Error if `line skip` is set: data in the header's own file begin at byte_skip, which is already counted
+      // from the end of the header.
       attached_line_skip();
       return;
     }

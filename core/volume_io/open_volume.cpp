@@ -101,7 +101,7 @@ std::vector<Path> files_of_volume(const Path& path) {
     files.push_back(header);
     for (const std::string& name : opened.header.data_names) files.push_back(header.parent_path() / name);
   } catch (const Error&) {
-    // The Error is ignored here, since reading the volume throws it again.
+    // Ignores the Error, since reading the volume will throw it again.
   }
   return files;
 }

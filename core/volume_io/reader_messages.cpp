@@ -89,7 +89,7 @@ TissueTable table_of(ByteReader& in) {
 // Repeats the checks of the parsers and throws when the header fails one. The checks may correct a grid, so a header
 // whose grid they would change was never checked and fails too.
 void check(const VolumeHeader& header, const std::string& where, const ByteReader& in) {
-  // A header's format is the name of a known volume format, plus at most two characters: "NIfTI-1" is a NIfTI format.
+  // The format in a header is the name of a known volume format, followed by at most two characters, as in "NIfTI-1".
   const auto formats = volume_formats();
   in.require(std::any_of(formats.begin(), formats.end(), [&](const VolumeFormat& format) {
     return header.format.starts_with(format.name) && header.format.size() <= format.name.size() + 2;

@@ -30,8 +30,8 @@ enum class Message : std::uint32_t {
   // End.
   Hello,  // kMessageVersion and the Protection in force
   Header,
-  Voxels,  // the next voxels' bytes, in storage order: their number, 64 bits, and they themselves (sparse_bytes.h)
-  // Where the next voxels' bytes lie in the file of the last Opened message: FileBytes. The program reads them itself.
+  Voxels,  // the next voxels in storage order: their number of bytes, 64 bits, then the packed bytes (sparse_bytes.h)
+  // FileBytes: where the next voxels are stored in the file of the last Opened message. The program reads them itself.
   PlainVoxels,
   End,     // the reader's warnings
   Failed,  // an Error's text

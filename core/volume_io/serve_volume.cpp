@@ -19,7 +19,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kChunk = 1 << 18;  // voxel bytes of one message, so few that they stay in a cache
+constexpr std::size_t kChunk = 1 << 18;  // bytes of voxels in one message; small enough to stay in a processor cache
 
 // Ends this process. It is called when the channel to the program is closed, since nobody then reads an answer.
 [[noreturn]] void leave() { std::_Exit(1); }

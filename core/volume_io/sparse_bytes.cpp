@@ -10,14 +10,14 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kBlock = 256;  // bytes that count as zero only if all of them are
+constexpr std::size_t kBlock = 256;  // bytes; a block counts as zero only if all its bytes are zero
 
 void append_number(std::string& text, std::size_t number) {
   const auto short_number = static_cast<std::uint32_t>(number);
   text.append(reinterpret_cast<const char*>(&short_number), sizeof short_number);
 }
 
-// Returns the first position from `at` on, in steps of a block, at which the bytes are zero or not, as `zero` says.
+// Returns the end of the run of blocks from `at` on that are all zero (if `zero`) or all not zero (if not).
 std::size_t end_of_blocks(std::string_view bytes, std::size_t at, bool zero) {
   while (at < bytes.size() && is_all_zero(&bytes[at], std::min(kBlock, bytes.size() - at)) == zero) at += kBlock;
   return std::min(at, bytes.size());

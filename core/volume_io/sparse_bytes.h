@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Packs bytes of which many are zero: the voxels of a body's grid are mostly air. Packed bytes are spans. A span is the
-// number of its zeros, the number of the other bytes that follow them, and these bytes.
+// Packs bytes of which many are zero, since most voxels of a body's grid are air. The packed bytes are a list of spans.
+// Each span has the number of zeros, the number of other bytes that follow, and these other bytes.
 #pragma once
 
 #include <cstddef>

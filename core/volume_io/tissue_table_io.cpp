@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads and writes label tables in three formats. Limber's JSON is {"17": {"name", "kind" or "class", ...}} or
-// {"17": "name"}. 3D Slicer's colour tables have lines `value name r g b a`, colours 0 to 255, as FreeSurfer's do.
+// Reads and writes label tables in three formats. Limber's JSON is {"17": {"name", "kind" or "class", ...}} or {"17":
+// "name"}. 3D Slicer's and FreeSurfer's colour tables have lines `value name r g b a` with colours from 0 to 255.
 // ITK-SNAP's label descriptions have lines `value r g b a visible meshed "name"`. An entry for value 0 is ignored,
 // because 0 is air.
 #include <algorithm>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The table of volume file formats. The table is used to read and write volumes, to filter lists of files and to name
-// the formats that can be read. A new format needs one source file with its table entry, and a line in
-// volume_format.cpp.
+// The table of volume file formats. It is used to read and write volumes, to filter lists of files and to name the
+// formats that can be read. A new format needs one source file with its table entry, and a line in volume_format.cpp.
 #pragma once
 
 #include <memory>
@@ -16,7 +15,7 @@
 namespace limber {
 
 struct VolumeFormat {
-  std::string name;                  // as in "NRRD"; FileType::format begins with it
+  std::string name;                  // for example "NRRD"; FileType::format begins with this name
   std::vector<std::string> endings;  // file name endings of this format, headers first: ".nhdr"
 
   // Returns true if a file has this format, judging by its lower-case name and its first bytes. Null for DICOM, which

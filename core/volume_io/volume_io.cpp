@@ -111,8 +111,8 @@ VolumeFile read_volume(const Path& path, Progress& progress) {
         const auto problem = decoder.decode(from, some, header.voxel_type, header.slope, header.intercept, to);
         if (problem != LabelDecoder::Problem::None) throw no_label(problem, decoder.bad_value(), path);
       };
-      // When all stored bytes of a page are zero, all its voxels have one label. If that label is air, the page is not
-      // written, because the new volume is already all air and pages that are never written use no memory.
+      // If all stored bytes of a page are zero, all its voxels have one label. If that label is air, the page is not
+      // written: the new volume is already all air, and a page that is never written takes no memory.
       Label first_label = 1;
       if (is_all_zero(from, page * voxel_bytes)) decode(1, &first_label);
       if (first_label != 0) decode(page, &voxels[static_cast<std::size_t>(first) + done]);

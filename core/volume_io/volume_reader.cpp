@@ -23,7 +23,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kAskMilliseconds = 20;  // milliseconds between two checks whether the user has cancelled
-constexpr int kPipeBytes = 1 << 20;   // requested pipe buffer, bytes: the largest that the kernel usually grants
+constexpr int kPipeBytes =
+    1 << 20;  // requested size of the pipe's buffer, bytes: the largest that the kernel usually grants
 constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a header with all its keys
 constexpr int kNotLoaded = 127;                      // exit code of a process that lacks a shared library
 constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
@@ -35,7 +36,7 @@ Error error_from(const std::string& text, const std::string& where) {
   return {text.substr(0, first), text.substr(first + 2, last - first - 2), text.substr(last + 2)};
 }
 
-// Throws Error unless a part of the reader's process was made.
+// Throws Error if `error` says that a part of the reader's process could not be made.
 void require_reader(const std::error_code& error, const Path& program) {
   if (error) throw Error("the reader of volumes cannot be started", program.string(), error.message());
 }
@@ -342,9 +343,9 @@ class ReaderVoxels final : public VoxelSource {
   Conversation talk_;
   std::int64_t promised_ = 0;        // voxel bytes that the header promised and no Voxels message has announced yet
   std::size_t left_ = 0;             // bytes not yet read of the current Voxels or PlainVoxels message
-  SparseBytes packed_;               // with Voxels: the message's voxels
-  std::optional<PlainFile> opened_;  // the file that was sent last
-  std::optional<std::int64_t> plain_at_;  // with PlainVoxels: offset of the next byte in opened_
+  SparseBytes packed_;               // the voxels of the current Voxels message
+  std::optional<PlainFile> opened_;  // the file that was sent to the reader last
+  std::optional<std::int64_t> plain_at_;  // after a PlainVoxels message: offset of the next byte in opened_
 };
 
 }  // namespace

@@ -9,8 +9,8 @@
 //   volume, and sends it open         File ->
 //   checks header and sizes again     <- Header, voxels, End or an Error's text
 //
-// Of voxels that are stored as they are, without an encoding, the reader only tells where they lie in the file that it
-// was sent last. The program checks that the file has these bytes, and reads them itself.
+// If voxels are stored without an encoding, the reader only says where they are in the file that it received last. The
+// program checks that the file has these bytes, and reads them itself.
 //
 // Other voxels come through a pipe of 1 MB, so that the volume is in memory only once and decoding runs in parallel
 // with the program's own work. The program checks at least every 20 ms whether the user has cancelled. It kills a

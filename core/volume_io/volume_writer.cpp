@@ -26,8 +26,8 @@ const VolumeFormat::Written& writer_of(const Path& path) {
 
 void write(const Voxels& voxels, const Path& path) { writer_of(path).write(voxels, path); }
 
-// Calls body(labels, count, is_air) for one short stretch of labels after the other. Most of a body's grid is air,
-// which need not be looked at voxel by voxel. A stretch with is_air has only air.
+// Calls body(labels, count, is_air) for one short run of labels after the other. If is_air is true, all labels of the
+// run are air, so the body need not look at each voxel: most of a body's grid is air.
 template <class Body>
 void in_stretches(const Label* labels, std::size_t count, const Body& body) {
   constexpr std::size_t kStretch = 64;

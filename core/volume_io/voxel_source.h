@@ -15,7 +15,7 @@
 
 namespace limber {
 
-// Bytes of a file: `bytes` of them, from `offset` on.
+// A range of bytes in a file: `bytes` bytes, beginning at `offset`.
 struct FileBytes {
   std::int64_t offset = 0, bytes = 0;
 };
@@ -28,8 +28,8 @@ class VoxelSource {
   // or are damaged.
   virtual void read(void* to, std::size_t bytes) = 0;
 
-  // Where the next voxels lie in a file as read() returns them, passes over them and returns their bytes in the data
-  // file that was opened last. Returns nothing where voxels have to be decoded.
+  // If the next voxels are stored in the file exactly as read() returns them, skips them and returns their range in the
+  // data file that was opened last. Returns nothing if voxels have to be decoded.
   virtual std::optional<FileBytes> pass_plain() { return std::nullopt; }
 
   // Verifies checksums; call it after the last voxel was read. Returns warnings, one line each: for data beyond what

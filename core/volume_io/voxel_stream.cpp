@@ -206,7 +206,7 @@ class AsciiDecoder final : public Decoder {
   template <class T>
   void store_as(std::string_view text) {
     auto value = number_of<T>(text);
-    if (!value && std::is_integral_v<T>)  // accepts text as "3.0"
+    if (!value && std::is_integral_v<T>)  // also accepts a whole number with decimals, such as "3.0"
       if (const auto real = number_of<double>(text);
           real && *real == static_cast<double>(static_cast<std::int32_t>(std::clamp(*real, -2e9, 2e9))))
         if (const auto whole = static_cast<std::int64_t>(*real);

@@ -66,7 +66,7 @@ void write_detached(const Voxels& voxels, const Path& header_path, const std::st
                     Deflater::Wrap wrap,
                     const std::function<std::string(const std::string& data_name, std::int64_t bytes)>& header);
 
-// Returns the three numbers as text, as in "1 2 3".
+// Returns the three numbers as text, for example "1 2 3".
 std::string joined(const glm::dvec3& v, const char* between = " ");
 std::string sizes_text(const Grid& grid);
 
