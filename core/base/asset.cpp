@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 std::optional<Path> find_asset(const std::string& name) {
   std::error_code failed;
   const Path program = running_program_path();
-  // Searches beside the shared object that holds this code, in the installation of the running program, in the source
-  // tree, then where Limber was installed. The last folder serves another program that uses Limber as a library.
+  // Searches beside the shared object that contains this code, in the installation of the running program, in the
+  // source tree, then where Limber was installed. The last folder is for other programs that use Limber as a library.
   std::vector<Path> folders = {program.parent_path().parent_path() / "share/limber", Path(LIMBER_SOURCE_ASSETS),
                                Path(LIMBER_INSTALLED_IN) / "share/limber"};
   if (const Path own = own_shared_object(); !own.empty()) folders.insert(folders.begin(), own.parent_path() / "assets");

@@ -82,8 +82,7 @@ void write_atomically(const Path& path, const std::function<void(const Path&)>& 
   check_place(target);
   const Path folder = target.has_parent_path() ? target.parent_path() : Path(".");
   const Path name = temporary_name(target);
-  // A file that will replace another one is private at first, so that nobody can read it who may not read the other
-  // one.
+  // A file that will replace another one is private at first. Else users who may not read the other file could read it.
   std::error_code error;
   const OpeningRules rules{.is_private = fs::exists(target, error)};
   if (OpenFile nameless = OpenFile::nameless(folder, rules); nameless.is_open()) {
@@ -91,7 +90,7 @@ void write_atomically(const Path& path, const std::function<void(const Path&)>& 
     error = nameless.give_name(target);
     if (!error) return;
     if (error != std::errc::file_exists) throw not_written(path, error);
-    // A nameless file cannot replace an existing one. So it gets a temporary name first and is then renamed.
+    // A nameless file cannot take the name of an existing file. So it first gets a temporary name and is then renamed.
     const Unfinished unfinished(name);
     error = nameless.give_name(name);
     if (error) throw not_written(path, error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Parses small texts such as file headers. No function throws, and none allocates more memory than its input has. A
-// text that has more characters than one number needs gives no number.
+// Parses small texts such as file headers. No function throws, and none allocates more memory than the length of its
+// input. A text with further characters after a number is not accepted as a number.
 #pragma once
 
 #include <algorithm>

@@ -73,7 +73,7 @@ class ZeroedVector {
   void resize(std::size_t count) {
     if (count > capacity_) grow(count);
     else if (count > size_)
-      // earlier, larger contents may have left values here
+      // This memory may still contain values of an earlier, larger size.
       std::memset(static_cast<void*>(end()), 0, (count - size_) * sizeof(T));
     size_ = count;
   }
@@ -104,7 +104,7 @@ class ZeroedVector {
  private:
   struct Delete {
     std::size_t bytes = 0;
-    std::shared_ptr<const void> owner{};  // keeps the values; null: they are this vector's own
+    std::shared_ptr<const void> owner{};  // keeps the memory of the values alive; null: this vector owns it
     void operator()(T* values) const {
       if (!owner) delete_zeros(values, bytes);
     }

@@ -337,7 +337,7 @@ void BrushReach::keep_shallow(std::span<const int> bricks) {
   }
 }
 
-// ---- The voxels in sight: a straight line through tissue connects each of them to the start voxel.
+// ---- The voxels in sight: the straight line between each of them and the start voxel lies in tissue.
 
 void BrushReach::gather_tissue() {
   x0_ = low_.x & ~(kBrick - 1);
@@ -421,8 +421,8 @@ void BrushReach::see_row(int side, int y, int z) {
     return;
   }
   const int near_y = y == 0 ? 0 : y > 0 ? y - 1 : y + 1, near_z = z == 0 ? 0 : z > 0 ? z - 1 : z + 1;
-  // The rows of seen voxels one step nearer to the start in y, in z, and in both. In the planes y = 0 and z = 0 through
-  // the start, one of these rows does not exist; another one then takes its place.
+  // The rows of seen voxels that are one step nearer to the start in y, in z, and in both. In the planes y = 0 and z =
+  // 0 through the start, one of these rows does not exist, so another one of them is used instead.
   const std::uint64_t* in_y = &half_seen_[y == 0 ? row_of(y, near_z) : row_of(near_y, z)];
   const std::uint64_t* in_z = &half_seen_[z == 0 ? row_of(near_y, z) : row_of(y, near_z)];
   const std::uint64_t* in_both = &half_seen_[row_of(near_y, near_z)];
@@ -540,7 +540,7 @@ bool BrushReach::is_joined(const glm::ivec3& cell, int axis, int step) const {
   return is_set(tissue_rows_, next) && !(seams_ && seams_->is_cut_towards(low_ + cell, 2 * axis + (step > 0)));
 }
 
-// ---- The voxels out of sight: shortest paths lead to them around corners.
+// ---- The voxels out of sight: shortest paths lead to them around corners of the tissue.
 
 bool BrushReach::is_set(const std::vector<std::uint64_t>& rows, const glm::ivec3& cell) const {
   if (cell.x < 0 || cell.y < 0 || cell.z < 0 || cell.x >= size_.x || cell.y >= size_.y || cell.z >= size_.z)
@@ -647,8 +647,8 @@ void BrushReach::offer(const glm::ivec3& cell, float distance, float before, con
   if (distance + 1e-5f * distance >= far_distance_[rank]) return;
   far_distance_[rank] = distance;
   far_corner_[rank] = {before, glm::i16vec3(corner)};
-  // The path to a voxel can be shorter than the path to the voxel from which it is reached, if the path's last bend is
-  // nearer to it. Such a voxel goes into the bucket being processed, since earlier buckets are not processed again.
+  // A voxel's path can be shorter than the path of the voxel from which it is reached, if the last bend is nearer to
+  // it. Such a voxel is added to the bucket that is being processed, since earlier buckets are not processed again.
   bucket_[std::max(static_cast<std::size_t>(distance * per_bucket_), this_bucket_)].push_back(
       {distance, rank, glm::i16vec3(cell)});
 }

@@ -64,11 +64,11 @@ struct BrushView {
   std::function<InfluenceView(int brick)> weights;  // returns a brick's weights as they are before the dab
 };
 
-// One dab, as the brush sees it.
+// One dab, as a brush receives it.
 struct DabView {
   const Reached& reached;
   glm::dvec3 centre;  // world, mm
-  glm::dvec3 way;     // shift from the last dab's centre, mm; 0 for the first dab
+  glm::dvec3 way;     // vector from the last dab's centre to this one's, mm; 0 for the first dab
   float strength;     // cover at the dab's centre, [0, 1]
 };
 
@@ -97,8 +97,8 @@ class BrushSide {
 
 struct BrushRule {
   BrushKind kind = {};      // the brush's index in the table
-  std::string id;           // as in "add"; the brush's operator is then "skin.brush_add"
-  std::string name;         // as in "Add"
+  std::string id;           // for example "add"; the brush's operator is then "skin.brush_add"
+  std::string name;         // for example "Add"
   std::string description;  // explanation for the user
   bool takes_value = false;
   bool looks_around = false;

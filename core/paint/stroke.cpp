@@ -91,7 +91,7 @@ class Stroke::Work {
     std::vector<std::pair<int, std::int64_t>> by;
     Brick* brick = nullptr;  // brick of the voxel that is being painted; `at` is the voxel's index in it
     int at = 0;
-    void add(int bone);  // counts this voxel for the locked bone, at most once in a stroke
+    void add(int bone);  // counts this voxel for the locked bone, at most once per stroke
   };
 
   BrushFilter filter_of(const WeightedBody& body, const StrokeSettings& settings) const;

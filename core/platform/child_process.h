@@ -22,11 +22,11 @@ struct ChildLimits {
 
 struct ChildAnswer {
   std::optional<std::string> sent;  // the bytes that the child sent; none when it failed
-  std::string failure;              // why the work failed, as in "it crashed (signal 11)"; empty when it did not fail
-  bool cancelled = false;           // the work was ended because the user had cancelled it
+  std::string failure;     // why the work failed, for example "it crashed (signal 11)"; empty when it did not fail
+  bool cancelled = false;  // true: the work was ended because the user had cancelled it
 };
 
-// Returns true when the user has cancelled the work; asked about every 20 ms.
+// Returns true when the user has cancelled the work. It is called about every 20 ms.
 using AskCancelled = std::function<bool()>;
 
 // Runs `work` in a child process and returns the bytes that the child sent. Returns no bytes but the reason when `work`

@@ -98,7 +98,7 @@ ChildProgram::~ChildProgram() {
   }
 }
 
-// A negative id means the whole process group.
+// Sends the signal to the whole process group, which a negative id selects.
 void ChildProgram::ask_to_end() const {
   if (!ended_) ::kill(static_cast<pid_t>(-id_), SIGTERM);
 }

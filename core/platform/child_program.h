@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// The new program's standard streams; nullptr: nothing to read, and nobody who reads what is written.
+// The new program's standard streams. nullptr: the input is empty, or the output is discarded.
 struct Streams {
   const Handle *in = nullptr, *out = nullptr, *err = nullptr;
 };
@@ -26,7 +26,7 @@ struct ProgramEnd {
   bool by_signal() const { return signal != 0; }
   bool was_killed() const;          // by kill(), or by the system for lack of memory
   bool took_too_much_time() const;  // it exceeded its limit of processor time
-  std::string signal_text() const;  // as in "Segmentation fault"
+  std::string signal_text() const;  // for example "Segmentation fault"
 };
 
 // A program that this process started. The program is the leader of its own process group. So Ctrl+C at the terminal

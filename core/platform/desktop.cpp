@@ -51,7 +51,7 @@ std::vector<Path> mounted_folders() {
   return folders;
 }
 
-// Opens the file by a shell that exits at once, so that the opened program is no child of this process.
+// Starts the program by a shell that exits at once, so that the program is no child of this process.
 bool open_in_default_program(const Path& path) {
   const auto opener = find_program("xdg-open");
   if (!opener) return false;

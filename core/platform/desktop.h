@@ -19,8 +19,8 @@ Path home_folder();  // "/" when there is none
 // Returns the folders at which the desktop has mounted disks and memory sticks.
 std::vector<Path> mounted_folders();
 
-// Opens the file by the program that the desktop has for its kind. This process neither waits for the program nor ends
-// it. Returns false when the desktop has no way to open files.
+// Opens the file in the desktop's default program for this kind of file. This process neither waits for that program
+// nor ends it. Returns false when the desktop cannot open files.
 bool open_in_default_program(const Path& path);
 
 }  // namespace limber

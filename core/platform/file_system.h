@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What std::filesystem does not tell of files, and what it cannot do with folders.
+// Functions for files and folders that std::filesystem lacks.
 #pragma once
 
 #include <cstdint>
@@ -33,10 +33,10 @@ std::optional<FileStatus> status_of_open_file(const Handle& file);
 // Returns true if this process may write to the file, or make files in the folder.
 bool is_writable(const Path& path);
 
-// Returns true for a write that failed because the disk, the user's share of it or the file is full.
+// Returns true if a write failed because the disk or the user's quota is full, or because the file is too large.
 bool is_disk_full(const std::error_code& error);
 
-// Creates a folder with a new name that begins with `prefix`, for the user alone, and returns its path.
+// Creates a folder with a new name that begins with `prefix`, accessible to the user only, and returns its path.
 Path make_unique_folder(const Path& prefix, std::error_code& error);
 
 // Flushes the folder to the disk, so that files created, renamed or removed in it remain so after a power cut.

@@ -6,7 +6,7 @@
 
 namespace limber {
 
-// A refusal by the system is ignored: it only leaves the memory taken.
+// Ignores an error of the system: the only consequence is that the memory stays in use.
 void give_back_pages(void* begin, std::int64_t bytes) {
   static const std::uintptr_t page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
   const std::uintptr_t from = reinterpret_cast<std::uintptr_t>(begin), first = (from + page - 1) / page * page,

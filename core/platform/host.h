@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The machine and the system that run this process.
+// Describes the machine and the system that run this process.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 namespace limber {
 
 struct SystemName {
-  std::string name, release, architecture;  // as in "Linux", "6.1.0-18-amd64", "x86_64"
+  std::string name, release, architecture;  // for example "Linux", "6.1.0-18-amd64", "x86_64"
 };
 SystemName system_name();
 

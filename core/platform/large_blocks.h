@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Sets how a program that works on whole bodies allocates memory. Most of that memory is a few blocks of many megabytes
-// with one value per voxel. The default allocator keeps freed blocks, and blocks of other sizes do not fit into them:
-// it holds half as much memory again as is in use. It also takes memory in pages of 4 KB, whose page faults take more
-// time than filling the pages.
+// with one value per voxel. The default allocator keeps freed blocks, and blocks of other sizes do not fit into them,
+// so that it takes 1.5 times the memory in use. It also uses pages of 4 KB, whose page faults take more time than
+// filling the pages.
 #pragma once
 
 namespace limber {
@@ -12,7 +12,7 @@ namespace limber {
 // global operator new.
 void use_large_blocks();
 
-// Gives memory back to the system that was freed but that the allocator still holds.
+// Returns memory to the system that the program has freed but the allocator still keeps.
 void return_free_memory();
 
 }  // namespace limber

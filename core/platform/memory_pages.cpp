@@ -26,13 +26,13 @@ Pages pages_of(void* begin, std::int64_t bytes) {
 
 }  // namespace
 
-// A refusal by the system is ignored, because it only costs speed.
+// Ignores an error of the system, because it only costs speed.
 void want_large_pages(void* begin, std::int64_t bytes) {
   if (const Pages pages = pages_of(begin, bytes); pages.bytes) madvise(pages.begin, pages.bytes, MADV_HUGEPAGE);
 }
 
 namespace {
-// Size in bytes (1 GB) from which on a block is mapped without a reservation of memory for all of it.
+// Size in bytes (1 GB) from which a block is mapped without reserving physical memory for all of it.
 constexpr std::size_t kUnreserved = std::size_t{1} << 30;
 
 void* map_unreserved(std::size_t bytes) {

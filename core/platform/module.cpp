@@ -13,9 +13,9 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-// Returns the folders that may hold Limber's modules and helper programs: the folder of the shared object that holds
-// this code, the folder of the running program, ../lib/limber relative to it, and where Limber was installed. The last
-// one serves another program that uses Limber as a library.
+// Returns the folders that may contain Limber's modules and helper programs: the folder of the shared object with this
+// code, the folder of the running program, ../lib/limber relative to it, and where Limber was installed. The last
+// folder is for other programs that use Limber as a library.
 std::vector<Path> own_folders() {
   const Path folder = running_program_path().parent_path();
   if (folder.empty()) return {};

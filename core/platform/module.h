@@ -11,8 +11,8 @@
 
 namespace limber {
 
-// Returns the path of the shared object that holds this code, as in a Python module. Empty in a program, which holds
-// the code itself.
+// Returns the path of the shared object that contains this code, for example of a Python module. Empty if the program
+// itself contains the code.
 Path own_shared_object();
 
 // Opens the module NAME.so, a shared library. Searches the folder of own_shared_object(), the program's folder,
@@ -30,7 +30,7 @@ std::optional<Path> find_program(const std::string& name);
 // Returns the path of the running program; empty where the system does not tell it.
 Path running_program_path();
 
-// Returns a path that starts the running program again, even when another version has replaced its file meanwhile.
+// Returns a path that starts the running program again, even if another version has replaced its file in the meantime.
 Path running_program();
 
 // Returns the address of a C function of an open module, or nullptr.

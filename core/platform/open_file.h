@@ -15,8 +15,8 @@
 
 namespace limber {
 
-// Owns what the system calls an open file: a file, a folder, or an end of a pipe or socket. The programs that this
-// process starts do not inherit it.
+// Owns an open file descriptor: of a file, a folder, or an end of a pipe or socket. The programs that this process
+// starts do not inherit it.
 class Handle {
  public:
   using Native = int;
@@ -30,9 +30,9 @@ class Handle {
   ~Handle() { close(); }
 
   bool is_open() const { return native_ != kNone; }
-  // Closes the handle, if it is open. The error tells that the last bytes could not be written.
+  // Closes the handle, if it is open. Returns an error if the last bytes could not be written.
   std::error_code close();
-  // The system's own name of the open file. Only core/platform calls this.
+  // Returns the system's own identifier of the open file. Only core/platform calls this.
   Native native() const { return native_; }
 
  private:
@@ -42,10 +42,10 @@ class Handle {
 
 enum class Opening {
   Read,       // an existing file; opening does not wait for a writer of a pipe
-  Folder,     // an existing folder, to lock it or to flush it to the disk
+  Folder,     // an existing folder, to be locked or flushed to the disk
   Overwrite,  // writes only; an existing file is emptied
   New,        // reads and writes; fails when the name exists, even as a link
-  NewLog,     // as New; each write appends to the file
+  NewLog,     // like New, but each write appends to the file
 };
 
 struct OpeningRules {
@@ -77,14 +77,15 @@ class OpenFile {
   std::error_code write_at(std::int64_t offset, std::string_view bytes);
   std::error_code cut(std::int64_t size);  // shortens the file to `size` bytes
   std::error_code close() { return handle_.close(); }
-  // Return when the file is on the disk: with its times and permissions, or only its bytes and size.
+  // flush() returns when the file's bytes, times and permissions are on the disk; flush_bytes() only waits for bytes
+  // and size.
   std::error_code flush();
   std::error_code flush_bytes();
 
-  // Tries to lock the file for this open file alone. The lock ends when the file is closed, or with the process.
+  // Tries to lock the file exclusively. The lock ends when the file is closed or the process ends.
   Lock lock();
 
-  // For a nameless file: a path that other code can open while this file is open.
+  // Returns, for a nameless file, a path by which other code can open it while this file is open.
   Path path_while_open() const;
   // Gives the nameless file a name. Fails with std::errc::file_exists when the name exists.
   std::error_code give_name(const Path& path);

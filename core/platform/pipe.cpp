@@ -19,7 +19,7 @@ constexpr int kOrders = STDIN_FILENO, kAnswers = STDOUT_FILENO;
 
 std::error_code last_error() { return {errno, std::generic_category()}; }
 
-// A message of one part, with room for one open file.
+// A message with one block of bytes and room for one file descriptor.
 struct FileMessage {
   iovec part;
   alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int))> room{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The room of everything that depends on the operating system. The headers of this room speak plain C++; the sources
-// are written for Linux. No other source includes a header that only POSIX has, calls such a function, or names a path
-// of one system (tests/layers). The room includes no other room.
+// Everything that depends on the operating system is in this folder. Its headers use only standard C++; its sources are
+// written for Linux. No source outside of this folder includes a header that only POSIX has, calls such a function, or
+// contains a path of one system (tests/layers checks this). The folder includes no other folder of core.
 //
 // This page lists what Limber would need on Windows and on macOS. "The same" means that the source compiles and works
 // as it is.
@@ -41,7 +41,7 @@
 //   path              Windows: paths are wide strings. Path::string() must return UTF-8, which needs the program's
 //                     manifest to choose the UTF-8 code page. macOS: the same.
 //
-// Outside this room:
+// Outside this folder:
 //   CMakeLists.txt             the suffix of modules, $ORIGIN in paths of libraries, LINKER:--as-needed, libdl
 //   render/gl/egl_context      a context without a window: WGL with a hidden window, or CGL; macOS has OpenGL 4.1 only
 //   core/cmd/progress.cpp      no SIGTERM reaches a program on Windows; SIGINT (Ctrl+C) does

@@ -14,7 +14,7 @@
 namespace limber {
 
 namespace {
-// Nice value of a background thread (0: normal, 19: lowest priority).
+// Nice values of a background thread and of a worker process (0: normal, 19: lowest priority).
 constexpr int kYielding = 10, kLowest = 19;
 
 double seconds_of(clockid_t clock) {
@@ -34,7 +34,7 @@ std::int64_t process_id() { return ::getpid(); }
 
 bool end_with_parent(std::int64_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  return ::getppid() == parent;  // else the parent ended before prctl() was called
+  return ::getppid() == parent;  // false: the parent ended before prctl() was called
 }
 
 void close_inherited_files() { ::closefrom(STDERR_FILENO + 1); }

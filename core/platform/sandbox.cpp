@@ -29,7 +29,7 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
 #elif defined(__aarch64__)
 constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #else
-constexpr std::uint32_t kArchitecture = 0;  // 0: no system call filter on this processor architecture
+constexpr std::uint32_t kArchitecture = 0;  // no system call filter is written for this processor architecture
 #endif
 
 // Upper limit on memory, bytes: half of a process's address space, so that sums with this limit cannot overflow.
@@ -44,7 +44,8 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
 }
 
 #ifdef LIMBER_SANITIZED
-constexpr bool kLimitsMemory = false;  // AddressSanitizer takes several times the memory that it is asked for
+constexpr bool kLimitsMemory =
+    false;  // false: AddressSanitizer needs several times the memory that the program requests
 #else
 constexpr bool kLimitsMemory = true;
 #endif
@@ -149,7 +150,7 @@ bool enter_seccomp() {
         SYS_clock_gettime, SYS_getrandom,  SYS_getpid,       SYS_gettid,         SYS_sched_yield})
     filter.allow(call);
 #ifdef LIMBER_SANITIZED
-  filter.allow(SYS_sigaltstack);  // AddressSanitizer asks for the stack's place whenever an exception is thrown
+  filter.allow(SYS_sigaltstack);  // AddressSanitizer asks for the stack's position whenever an exception is thrown
 #endif
   filter.allow_without(SYS_mmap, 2, PROT_EXEC);
   filter.allow_without(SYS_mprotect, 2, PROT_EXEC);

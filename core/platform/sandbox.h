@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Takes rights away from this process before it parses a file from a stranger. Four protections work independently:
-// where one has a gap or the kernel lacks it, the others remain.
+// Takes rights away from this process before it parses a file from a stranger. Four protections work independently: if
+// one has a gap, or the kernel lacks it, the others still work.
 //   system calls  seccomp allows calls that compute, allocate memory and use open files. It refuses every other one
 //                 with EPERM: open, socket, fork, exec, ptrace and executable memory.
 //   files         Landlock refuses every path, TCP, and signals and sockets to other processes.
@@ -14,12 +14,12 @@
 namespace limber {
 
 struct SandboxSettings {
-  // Limit beyond what the process has mapped at entry; see allow_memory().
+  // Memory that the process may map in addition to what it has mapped on entry, bytes; see allow_memory().
   std::size_t memory_bytes = std::size_t{256} << 20;
-  // Largest limit that allow_memory() may set, in bytes beyond what the process has mapped at entry.
+  // Upper limit on the bytes that allow_memory() adds.
   std::size_t most_memory = std::size_t{256} << 20;
   double processor_seconds = 600;
-  // false: without this protection; a test switches one off to test the other alone
+  // False switches the protection off. Tests do so to test the other protections alone.
   bool system_calls = true, files = true;
 };
 
@@ -34,7 +34,7 @@ struct Protection {
 
 struct Sandbox {
   Protection protection;
-  // Address space at entry, bytes; recorded because no file can be opened later to find it out.
+  // Size of the address space on entry, bytes. It is stored because the file that tells it cannot be opened later.
   std::size_t mapped_bytes = 0;
 };
 

@@ -15,8 +15,8 @@ bool write_error_stream(std::string_view text) {
 }
 
 void keep_standard_streams() {
-  // open() returns the lowest free descriptor, so it opens the missing stream itself. The stream is read-only, so that
-  // writing to it fails and the failure is reported.
+  // open() returns the lowest free descriptor, so it takes the place of the missing stream. The stream is read-only, so
+  // that writing to it fails and the failure is reported.
   for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
     if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", O_RDONLY);
 }

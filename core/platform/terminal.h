@@ -9,8 +9,8 @@ namespace limber {
 // Returns true if the error stream is shown on a terminal.
 bool error_stream_is_terminal();
 
-// Writes text to the error stream with one system call and not through a stream: a child of this process may hold the
-// stream's lock. Returns false when nobody can read it any more.
+// Writes text to the error stream by one system call instead of stdio, whose lock a forked child may hold. Returns
+// false when nobody reads the stream any more.
 bool write_error_stream(std::string_view text);
 
 // Opens a read-only stream for each of stdin, stdout and stderr that is missing when the program starts. Otherwise the

@@ -80,7 +80,7 @@ Components connected_components(const LabelView& volume, const RowSet* in_rows, 
     for (std::int64_t z = begin; z < end; ++z) {
       of_slice[z] =
           runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), expected, &result.first_run[1 + z * size.y]);
-      // The next slice probably has about as many runs; a quarter more are expected to be on the safe side.
+      // Expects a quarter more runs than in this slice for the next one, to be on the safe side.
       expected = of_slice[z].size() + of_slice[z].size() / 4;
     }
   });
@@ -100,7 +100,7 @@ Components connected_components(const LabelView& volume, const RowSet* in_rows, 
     const std::int64_t a_end = result.first_run[row + 1], b_end = result.first_run[other + 1];
     const auto join_touching = [&](std::int64_t i, std::int64_t k) {
       const Run &first = result.runs[i], &second = result.runs[k];
-      // The comparisons are <= because runs that meet only at a corner touch too: one ends where the other begins.
+      // The comparisons are <= because runs that meet only at a corner touch too: one begins where the other ends.
       if (first.label == second.label && first.begin <= second.end && second.begin <= first.end)
         join(result.runs, static_cast<std::int32_t>(i), static_cast<std::int32_t>(k));
     };

@@ -37,8 +37,8 @@ GreyLevels grey_levels(const Grid& grid, std::span<const float> values);
 // Returns the image at half its resolution: each voxel has the mean of 2^3 voxels, fewer at the image's upper faces.
 GreyLevels halved(const GreyLevels& image);
 
-// The window that shows most of an image: its lower end is the 1 % quantile of the values, its upper end the 99 %
-// quantile. Returned as {level, width}: the middle and the size of the window.
+// Returns {level, width}, the middle and the size of the window that shows most of an image: from the 1 % quantile to
+// the 99 % quantile of the values.
 std::array<double, 2> usual_window(const GreyLevels& image);
 
 }  // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads and writes the labels of a volume, whether they lie in rows (LabelVolume) or in tiles (TiledLabels). What
-// repairs a posed body takes views, so that it works on both.
+// Reads and writes the labels of a volume that is stored in rows (LabelVolume) or in tiles (TiledLabels). Functions
+// that repair a posed body use these views, so that they work on both.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace limber {
 
-// A view of labels to read. The volume must outlive it.
+// A read-only view of labels. The volume must outlive it.
 class LabelView {
  public:
   LabelView(const LabelVolume& volume) : grid(volume.grid), first_(volume.voxels.data()) {}
@@ -23,7 +23,7 @@ class LabelView {
   // Returns the label of a voxel, and air outside the grid.
   Label at_or_air(const glm::ivec3& v) const { return grid.contains(v) ? at(v) : Label{0}; }
 
-  // Returns the labels of row (y, z). Copies them into `room` if they do not lie in one piece.
+  // Returns the labels of row (y, z). Copies them into `room` if they are not contiguous in memory.
   const Label* row(int y, int z, std::vector<Label>& room) const {
     if (!tiles_) return first_ + grid.index({0, y, z});
     room.resize(grid.size.x);
@@ -31,10 +31,10 @@ class LabelView {
     return room.data();
   }
 
-  // A voxel whose 26 neighbours lie at fixed distances from it in memory; `at` is null for any other voxel.
+  // A voxel whose 26 neighbours are at fixed offsets from it in memory; `at` is null for any other voxel.
   struct Centre {
     const Label* at;
-    std::int64_t row, slice;  // distance to the next voxel along y, along z
+    std::int64_t row, slice;  // offset in memory to the next voxel along y, along z
   };
   Centre centre(const glm::ivec3& v) const {
     const glm::ivec3 in = tiles_ ? v & (TiledLabels::kTile - 1) : v, size = tiles_ ? TiledLabels::kTile : grid.size;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tells the air around a body from the air inside it.
+// Distinguishes the air around a body from the air inside it.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Functions for 16-bit whole numbers of several lines of voxels at once, with eight of them in a SIMD register. They do
-// what the functions of float_lanes.h do for floats. A sum above 65 535 becomes 65 535.
+// Functions for 16-bit whole numbers of several lines of voxels at once, with eight of them in a SIMD register. They
+// correspond to the functions for floats in float_lanes.h. A sum above 65 535 becomes 65 535.
 #pragma once
 
 #include <array>
@@ -26,12 +26,13 @@ inline EightSteps raised(const EightSteps& steps, std::uint16_t rise) {
   return reinterpret_cast<EightSteps>(
       _mm_adds_epu16(reinterpret_cast<__m128i>(steps), reinterpret_cast<__m128i>(EightSteps{} + rise)));
 #else
-  const EightSteps sum = steps + rise, is_beyond = sum < steps;  // all bits of `is_beyond` are set where it holds
+  const EightSteps sum = steps + rise,
+                   is_beyond = sum < steps;  // all bits of an element of `is_beyond` are set if its sum has overflowed
   return sum | is_beyond;
 #endif
 }
 
-// Returns by how much `steps` are above `limits`, 0 where they are not.
+// Returns the amounts by which `steps` exceed `limits`, 0 where they do not.
 inline EightSteps excess(const EightSteps& steps, const EightSteps& limits) {
 #ifdef __SSE2__
   return reinterpret_cast<EightSteps>(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Holds one value per voxel in tiles of 16 x 16 x 8 voxels. A page of memory (4 KB) belongs to one tile, and takes
-// memory only once it is written. So memory grows with the tissue. In rows, a page holds a stretch across the whole
-// grid, most of which is air where a page holds any tissue at all: the labels of a body of 0.5 mm take 2.4 GB in rows
-// (LabelVolume) and 1 GB in tiles, its bones 1.4 GB and 0.15 GB.
+// Holds one value per voxel in tiles of 16 x 16 x 8 voxels. A memory page (4 KB) belongs to one tile, and takes memory
+// only once it is written. So memory grows with the amount of tissue. If values are stored in rows, a page extends
+// across the whole grid and contains mostly air even where it contains tissue. The labels of a body of 0.5 mm take 2.4
+// GB in rows (LabelVolume) and 1 GB in tiles, those of its bones alone 1.4 GB and 0.15 GB.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,9 @@ class TiledValues {
     pages_.resize(std::int64_t{tiles_.x} * tiles_.y * tiles_.z * kTileVoxels + kTileVoxels);
     constexpr std::uintptr_t kPage = 4096;
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(pages_.data());
-    const std::uintptr_t before = (kPage - begin % kPage) % kPage;  // large memory begins with a page
+    const std::uintptr_t before =
+        (kPage - begin % kPage) %
+        kPage;  // bytes from the start of the memory to its first page, at which the values begin
     if (before % sizeof(Value) == 0) first_ = static_cast<std::int64_t>(before / sizeof(Value));
   }
 
@@ -62,7 +64,7 @@ class TiledValues {
 using TiledLabels = TiledValues<Label>;
 using TiledVectors = TiledValues<glm::vec3>;
 
-// Returns the same labels in rows. The memory of the tiles is given back while the rows are written.
+// Returns the same labels in rows. Releases the memory of the tiles while the rows are written.
 LabelVolume in_rows(TiledLabels tiles);
 
 }  // namespace limber

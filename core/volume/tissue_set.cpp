@@ -10,7 +10,7 @@ using Brick = std::array<std::uint64_t, 8>;
 constexpr std::uint64_t kLowestX = 0x0101010101010101, kHighestX = kLowestX << 7;
 constexpr std::uint64_t kLowestY = 0xff, kHighestY = kLowestY << 56;
 
-// Adds all voxels of `within` to `reached` that are connected to it through voxel faces inside this brick.
+// Adds all voxels of `within` to `reached` that are connected to `reached` through voxel faces inside this brick.
 void spread_inside(Brick& reached, const Brick& within) {
   for (bool grows = true; grows;) {
     grows = false;

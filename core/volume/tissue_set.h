@@ -21,7 +21,7 @@ class TissueSet {
   bool contains(const glm::ivec3& voxel) const { return slice(voxel) & bit(voxel); }
 
   // Adds all voxels of `within` that can be reached from voxels of this set, from voxel to voxel of `within` through
-  // their faces. Seams do not stop this.
+  // their faces. Paths may cross seams.
   //   within  a set over the same TissueVoxels list
   void spread(const TissueSet& within);
 

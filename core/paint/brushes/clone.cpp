@@ -21,7 +21,7 @@ class CloneSide final : public BrushSide {
     shift_ = voxel_from_world_.linear * (dab.centre - from);
   }
 
-  // Computes the weights to copy. Returns false when there is air where the weights would come from.
+  // Computes the weights to copy. Returns false when there is air at the position to copy from.
   bool target_at(const VoxelView& at, WeightSum& target) const override {
     nearby_.add_between(glm::dvec3(at.voxel) - *shift_, target);
     return !target.empty();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Implements the brush that drags weights along the stroke. Each voxel gets the weights of the position that lies one
-// dab movement behind it. When air lies on the way to that position, the voxel gets the weights of the last tissue
+// Implements the brush that drags weights along the stroke. Each voxel gets the weights from the position that is one
+// dab movement behind it. If the path to that position leads through air, the voxel gets the weights of the last tissue
 // voxel before the air.
 #include <algorithm>
 #include <cmath>
