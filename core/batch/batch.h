@@ -30,8 +30,8 @@ namespace limber {
 
 // A file in another format, made of the posed volume of each cell.
 struct BatchExport {
-  std::string ending;    // ".stl": the format, as `limber convert` knows it
-  double frequency = 0;  // of the field to simulate, Hz; 0: none
+  std::string ending;    // file ending that selects the format, as in `limber convert`: ".stl"
+  double frequency = 0;  // frequency of the field to simulate, Hz; 0: none
   Path properties;       // table of the tissues' dielectric properties; empty: the program's own
 };
 

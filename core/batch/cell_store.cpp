@@ -76,8 +76,8 @@ std::string content_hash(const Path& file) {
   return sha256_of_bytes(bytes.data(), bytes.size());
 }
 
-// Returns the hashes of what a job has written into its folder, by the names of the files. Times and memory in the
-// report do not count.
+// Returns the hash of each file that a job has written into its folder, by file name. Times and memory in the report
+// are not hashed.
 std::map<std::string, std::string> hashes_of(const WorkFolder& into,
                                              const std::map<std::string, std::string>& outputs) {
   std::map<std::string, std::string> hashes;
@@ -112,7 +112,7 @@ bool is_done(const Path& folder, const std::string& key) {
   if (!fs::exists(folder / "cell.json")) return false;
   const Json json = read_facts(folder / "cell.json");
   if (!json.is_object() || json.value("key", "") != key) return false;
-  // An export names no files, since some formats write one for each tissue.
+  // An export lists no files in cell.json, since some formats write one file for each tissue.
   return !json.contains("files") || std::all_of(json["files"].begin(), json["files"].end(), [&](const Json& name) {
     std::error_code unreadable;
     return name.is_string() && fs::exists(folder / name.get<std::string>(), unreadable);
@@ -124,11 +124,11 @@ StoredCell found(const Path& folder, const std::string& key) {
 }
 }  // namespace
 
-// What a store knows of the inputs and bodies that its cells use.
+// The inputs and bodies of a store's cells, as far as they are already in the store.
 struct CellStore::Parts {
   struct Body {
     std::string name, key;  // the folder's name, and the hash of everything that the body depends on
-    std::string failure;    // why volume or weights could not be computed; empty: not tried, or there
+    std::string failure;    // why volume or weights could not be computed; empty: not tried, or computed
   };
 
   Path folder;
@@ -179,7 +179,8 @@ struct CellStore::Parts {
     return at->second;
   }
 
-  // Adds the options of a job that name the body's files. `where` is the body's folder, as seen from the job's.
+  // Adds the options of a job that name the body's files. `where` is the path of the body's folder from the job's
+  // folder.
   void add_body_options(Json& job, const DescribedBody& body, const Path& where) {
     const bool is_phantom = !body.phantom.empty();
     job["volume"] = (where / ("volume" + (is_phantom ? ".nrrd" : volume_ending(body.volume)))).string();
@@ -202,12 +203,12 @@ struct CellStore::Parts {
     return output;
   }
 
-  // Runs `work` in the working folder, and returns its failure, or nothing. Throws Error if the disk is full.
+  // Runs `work` in the working folder. Returns why it failed; "" if it did not. Throws Error if the disk is full.
   std::string failure_of(const WorkFolder& into, const Path& place, const std::function<void()>& work) const {
     try {
       work();
     } catch (const Error& error) {
-      if (fs::exists(place)) return {};  // another machine was faster
+      if (fs::exists(place)) return {};  // another program has computed it in the meantime
       if (!into.has_room())
         throw Error("the results cannot be written", folder.string(), "make room on the disk, then run the same again");
       return error.what();
@@ -240,8 +241,8 @@ struct CellStore::Parts {
     into.commit();
   }
 
-  // Makes the body's folder unless it is there. Returns false if another program is making it. A body that failed is
-  // not tried again for its other cells.
+  // Makes the body's folder unless it exists. Returns false if another program is making it. A body that failed is not
+  // tried again for its other cells.
   bool provide_body(const DescribedBody& described, IfBusy if_busy, Progress& progress) {
     Body& mine = body(described);
     const Path place = folder / "bodies" / mine.name;
@@ -293,7 +294,7 @@ struct CellStore::Parts {
     return hash_of(json);
   }
 
-  // Computes a cell into its working folder and puts that in its place.
+  // Computes a cell in its working folder and then renames that folder to the cell's folder.
   void make_cell(WorkFolder& into, const CellRequest& request, const Json& job, const std::string& key,
                  const std::function<void(const WorkFolder&)>& finish, Progress& progress) const {
     std::vector<double> cpu, wall;

@@ -24,12 +24,12 @@
 
 namespace limber {
 
-// What all cells of a run have in common.
+// Settings that all cells of a run share.
 struct CellSettings {
-  std::string quality = "normal";  // of solves by finite elements
-  std::string glide;               // as for `limber resample --glide`; empty: its default
+  std::string quality = "normal";  // quality of solves by finite elements: draft, normal or fine
+  std::string glide;               // value of the option --glide of `limber resample`; empty: its default
   bool fit_joints = false, nearest = false;
-  int repeats = 1;  // how often a cell is computed, for its time; its results must be the same
+  int repeats = 1;  // how many times a cell is computed, to measure its time; all runs must give the same result
   // The file names of a cell's outputs, by the option of `limber resample` that names them: {"output", "posed.nrrd"}.
   std::map<std::string, std::string> outputs;
   std::string mesh;  // file name of the mesh of a solve by finite elements; empty: none
@@ -54,7 +54,7 @@ struct StoredCell {
 
 class CellStore {
  public:
-  // Makes the folder and its parts.
+  // Creates the folder and its subfolders.
   //   threads  number of threads of each worker process; 0: all cores
   CellStore(const Path& folder, int threads);
   ~CellStore();
@@ -65,20 +65,22 @@ class CellStore {
 
   // Looks for the cell in the store without computing anything. The state is WasThere or Missing.
   StoredCell find(const CellRequest& request);
-  // Computes the cell, and before it the volume and weights of its body, unless they are there. With IfBusy::Leave the
-  // state is Busy if another program computes one of them. Throws Error if no other cell could be computed either,
-  // because the disk is full, and Cancelled if the user cancels.
-  //   finish  is called with the cell's working folder after the job, to add files made from the job's outputs
+  // Computes the cell and, if they are not in the store, the volume and weights of its body. With IfBusy::Leave the
+  // state is Busy if another program is computing one of them. Throws Error if the disk is full, since then no other
+  // cell could be computed either. Throws Cancelled if the user cancels.
+  //   finish  called with the cell's working folder after the job, to add files made from the job's outputs
   StoredCell compute(const CellRequest& request, IfBusy if_busy, Progress& progress,
                      const std::function<void(const WorkFolder&)>& finish = {});
-  // The folder of an export of a cell (a file of another format, made of its posed volume), in exports/. The job is a
-  // JSON object for `limber job` with the names of files in the export's folder; its input is the cell's posed volume.
+  // find_export() looks for an export of a cell (a file of another format, made from its posed volume) in exports/; the
+  // other function computes it.
+  //   job  JSON object for `limber job`, with file names in the export's folder; its input is the cell's posed volume
   StoredCell find_export(const StoredCell& cell, const std::string& name, const std::string& job) const;
   StoredCell compute_export(const StoredCell& cell, const std::string& name, const std::string& job, IfBusy if_busy,
                             Progress& progress) const;
 
-  // Copies an input file into the store, so that jobs can be run again after the store has moved, and returns its path
-  // from the folder of a cell. A .gltf file is not copied, since it refers to other files by their paths.
+  // An input file that take() has copied into the store, so that jobs can be run again after the store has moved: its
+  // path relative to a cell's folder, and its hash. A .gltf file is not copied, since it refers to other files by their
+  // paths.
   struct Input {
     Path path;
     std::string sha256;
@@ -94,7 +96,7 @@ class CellStore {
 // Returns the wall-clock seconds that computing a cell took. Returns 0 if its cell.json does not say.
 double wall_seconds_of(const Path& cell_folder);
 
-// Returns the text with only those characters that are safe in a file name, at most 60 of them.
+// Returns the text with only those characters that are safe in a file name, and at most 60 of them.
 std::string file_word(const std::string& text);
 
 }  // namespace limber

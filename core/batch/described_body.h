@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One body of a study or batch, as its description gives it.
+// One body of a study or batch, as the description file states it.
 #pragma once
 
 #include <optional>
@@ -17,9 +17,9 @@ struct DescribedBody {
   std::vector<double> bones;      // labels of bone, as values in the volume's file; empty: the tissue table's
   std::optional<double> spacing;  // voxel spacing to resample the volume to, mm; empty: the volume's own
   std::string weights = "heat";   // how skin weights are computed: a word of binding_words()
-  Path weights_file;              // skin weights that are there already; empty: they are computed
-  bool no_seams = false;          // true: what touches in the volume is connected
-  Path grey, landmarks;           // a grey volume and a list of landmarks that move with the body; empty: none
+  Path weights_file;              // file with existing skin weights; empty: they are computed
+  bool no_seams = false;          // true: tissue that touches in the volume counts as connected
+  Path grey, landmarks;           // files of a grey volume and of landmarks that are posed with the body; empty: none
 };
 
 }  // namespace limber

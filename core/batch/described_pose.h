@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One pose of a study or batch, as its description gives it. A description writes a pose as
+// One pose of a study or batch, as the description file states it:
 //   {"name": "+45", "flex": ["Forearm=45"]}
 //   {"name": "seated", "pose_name": "sit", "joints": ["left elbow flexion=30"]}
 //   {"name": "mine", "pose": "p.json"}
 //   {"name": "curl", "motion": "curl.bvh", "frame": 12, "map"?, "up"?}
 //   {"name": "walk", "motion": "walk.bvh", "frames": "0:60:5", "map"?, "up"?}
-// The last one stands for a pose of each of these frames, 60 included: "walk 0000", "walk 0005", ...
+// The last form stands for one pose for each of these frames, 60 included: "walk 0000", "walk 0005", ...
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct DescribedPose {
   Path pose, motion, map;         // pose file, motion file and retarget map; empty: no such file
   std::optional<int> frame;
   std::string up;
-  std::string sequence;  // the name without the frame's number, for a pose of "frames"; empty: a pose of its own
+  std::string sequence;  // for a pose of "frames": the name without the frame's number; empty: a single pose
 
   bool is_rest() const { return flex.empty() && body.empty() && pose.empty() && motion.empty(); }
 };

@@ -103,7 +103,7 @@ Path Description::file(const std::string& key) const {
   const std::string name = text(key);
   if (name.empty()) return {};
   const Path file = file_->path.parent_path() / name;
-  std::error_code unreadable;  // a name that is too long, for example, is that of no file
+  std::error_code unreadable;  // set for a name that no file can have, such as one that is too long
   if (!std::filesystem::exists(file, unreadable))
     refuse("the file does not exist", key + ": " + file.string(), "paths are relative to the description");
   return file;

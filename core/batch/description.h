@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the values of the JSON file that describes a study or batch. Paths in it are relative to the file's folder.
-// Every function throws Error for a wrong value, with the file and the place in it in the message.
+// Reads the values of the JSON file that describes a study or batch. Paths are relative to the file's folder. Every
+// function throws Error for a wrong value; the message contains the file and the position of the value.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,8 @@ class Description {
 
   // Throws Error unless all keys of the object are among these.
   void check_keys(const std::set<std::string>& known) const;
-  // Returns the text under a key, or `otherwise` if the key is absent. With `words`, the text must be one of them.
+  // Returns the text under a key, or `otherwise` if the key is absent. Unless `words` is empty, the text must be one of
+  // them.
   std::string text(const std::string& key, const std::string& otherwise = "",
                    const std::set<std::string>& words = {}) const;
   // Returns the path under a key, or an empty path if the key is absent. The file must exist.
@@ -44,12 +45,12 @@ class Description {
   // Returns the object under a key.
   Description object(const std::string& key) const;
 
-  // The value itself.
+  // Return this value itself.
   std::string as_text() const;
   double as_number(double least, double most) const;
 
   [[noreturn]] void refuse(const std::string& what, const std::string& what_to_do) const;
-  // Refuses the value under a key.
+  // Throws Error for the value under a key.
   [[noreturn]] void refuse(const std::string& what, const std::string& key, const std::string& what_to_do) const;
   std::string where(const std::string& key = "") const;  // "FILE, poses, number 1, flex": for messages
 
@@ -61,7 +62,7 @@ class Description {
 
   std::shared_ptr<const File> file_;
   const void* value_;  // the part's JSON value in the file
-  std::string place_;  // where it is in the file: "poses, number 1"; "" for the whole
+  std::string place_;  // position of the part in the file: "poses, number 1"; "" for the whole file
 };
 
 // Returns the poses under the key "poses" of a study or batch, with one pose for each frame of a sequence. Their names

@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// Parts of a report that are no figures of the result, or differ from run to run.
+// Keys of a report that are left out: they contain no figures of the result, or differ from run to run.
 const std::set<std::string> kLeftOut = {"schema", "version", "method",         "settings",
                                         "inputs", "seconds", "peak_memory_mb", "warnings"};
 
@@ -42,7 +42,7 @@ std::string value_text(const Json& value) {
   return value.is_null() ? "" : value.dump();
 }
 
-// Returns what an object in a list is about: its name, bone, id or label.
+// Returns the name of the thing that an object in a list describes: its name, bone, id or label.
 std::string item_of(const Json& object) {
   for (const char* key : {"name", "bone", "id"})
     if (object.contains(key) && object[key].is_string()) return object[key].get<std::string>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reports the progress of one cell as the part [begin, end] of the progress of a whole study or batch.
+// Maps the progress of one cell to the interval [begin, end] of the progress of a whole study or batch.
 #pragma once
 
 #include <algorithm>

@@ -16,7 +16,8 @@ namespace limber {
 namespace {
 using Json = nlohmann::ordered_json;
 
-constexpr auto kPause = std::chrono::milliseconds(200);  // between two looks at cells that other programs compute
+// Interval between two checks for cells that other programs compute.
+constexpr auto kPause = std::chrono::milliseconds(200);
 
 class BatchStore {
  public:

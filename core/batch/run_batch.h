@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes the cells of a batch (batch.h) and stores them in a folder (cell_store.h), with the exports of each cell in
-// exports/. Any number of programs on any number of machines may compute one batch into one shared folder at a time.
-// Each takes cells that no other is computing. When all cells are there, the figures of all reports are collected in
-// cells.csv and times.csv (observations.h).
+// exports/. Any number of programs on any number of machines may compute one batch into one shared folder at the same
+// time: each skips cells that another program is computing. When all cells are computed, the figures of all reports are
+// written to cells.csv and times.csv (observations.h).
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ namespace limber {
 
 struct BatchOutcome {
   BatchCell cell;
-  int number = 0;  // of the cell, from 1
+  int number = 0;  // number of the cell, from 1
   StoredCell stored;
   std::vector<StoredCell> exports;  // in the order of the batch's exports; empty if the cell is missing or failed
 
@@ -28,11 +28,11 @@ struct BatchRun {
   Path out;
   std::vector<int> numbers;  // the cells to compute, counted from 1; empty: all
   int threads = 0;           // number of threads of each worker process; 0: all cores
-  // Called when a cell is done. `done` of `of` cells are done.
+  // Called when a cell is done, with the number of cells that are done and the number of all cells.
   std::function<void(const BatchOutcome&, int done, int of)> on_cell;
 };
 
-// Looks which cells of the batch are in the store. Computes nothing.
+// Finds which cells of the batch are in the store, without computing anything.
 std::vector<BatchOutcome> find_batch(const Batch& batch, const Path& out);
 
 // Computes the cells and returns their outcomes, in the order of their numbers. A cell that fails does not stop the

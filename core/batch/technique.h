@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The ways of posing that studies and batches compare, and their names.
+// The techniques (ways of posing) that studies and batches compare, and their names.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 
 namespace limber {
 
-// A technique: one of the ways of posing that a study or batch compares. It is a deformation method
-// (resample/deformation_method.h), and for finite elements says whether contact is simulated. A method followed by the
-// correction that makes masses exact is a technique of its own, so that reports tell the two apart.
+// A technique (way of posing) that a study or batch compares. It is a deformation method
+// (resample/deformation_method.h) and, for finite elements, says whether contact is simulated. A method followed by the
+// correction that makes masses exact is a technique of its own, so that reports distinguish the two.
 struct Technique {
   std::string method;    // "dqs": a word of deformation_methods()
   bool contact = false;  // true: contact is simulated; only for finite elements
@@ -23,9 +23,9 @@ struct Technique {
 };
 std::vector<Technique>
 plain_techniques();             // all techniques without the correction that keeps the volume of each soft tissue
-std::string technique_words();  // the words of these: "mix, lbs, dqs, fem, fem-contact"
+std::string technique_words();  // the words of these techniques: "mix, lbs, dqs, fem, fem-contact"
 std::string word_of(
-    const Technique& technique);  // "fem-contact", "fem-mass-exact": in descriptions, folders and tables
+    const Technique& technique);  // "fem-contact", "fem-mass-exact": the word in descriptions, folder names and tables
 std::string title_of(const Technique& technique);  // "FEM with contact", "FEM, mass-exact"
 // Returns the techniques with the given words ("lbs", "fem-contact"). Throws Error for a word that is unknown or occurs
 // twice; `where` names the source of the words in the message.

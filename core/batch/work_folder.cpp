@@ -37,8 +37,8 @@ WorkFolder::WorkFolder(const Path& place, Progress& progress, IfBusy if_busy)
   }
 }
 
-// Locks the lock's folder, and makes the working folder. The lock belongs to the open file, so the system
-// releases it when the program is killed. Returns false if another program has the lock.
+// Locks the lock folder and makes the working folder. The lock belongs to the open folder, so the system releases it
+// when the program is killed. Returns false if another program has the lock.
 bool WorkFolder::claim() {
   if (fs::exists(place_)) return made_ = true;
   std::error_code error;
@@ -49,11 +49,12 @@ bool WorkFolder::claim() {
   if (error && error != std::errc::no_such_file_or_directory)
     throw Error("the folder cannot be opened", lock_.string(), error.message());
   if (!opened.is_open() || opened.lock() != OpenFile::Lock::Taken) return false;
-  // The program that had the lock may just have finished and removed the opened folder. Checks that it is still there.
+  // The program that had the lock may have removed the folder after it was opened here. Checks that the folder still
+  // exists.
   const auto mine = opened.status(), there = status_of_file(lock_);
   if (!mine || !there || mine->number != there->number) return false;
   locked_ = std::move(opened);
-  if (fs::exists(place_)) {  // made between the first look and the lock
+  if (fs::exists(place_)) {  // another program made it before this one got the lock
     release();
     return made_ = true;
   }
@@ -65,9 +66,9 @@ bool WorkFolder::claim() {
   return true;
 }
 
-// The lock's folder holds a file for each working folder, with its name without the dot. Removes those of this machine:
-// as this program has the lock, the programs that made them are dead. A program on another machine may yet be alive,
-// where the disk does not carry locks.
+// The lock folder contains one file for each working folder, with its name without the dot. Removes the working folders
+// that programs of this machine made: these programs are dead, since this program has the lock. Programs of other
+// machines may still be alive, because some shared disks do not pass on locks.
 void WorkFolder::remove_leftovers() const {
   const std::string start = place_.filename().string() + "." + machine_prefix();
   for (const auto& entry : fs::directory_iterator(lock_)) {
@@ -78,10 +79,10 @@ void WorkFolder::remove_leftovers() const {
   }
 }
 
-// Removes the lock's folder, and with it the lock.
+// Removes the lock folder, which also removes the lock.
 void WorkFolder::release() {
   std::error_code ignored;
-  if (made_ || fs::exists(place_, ignored)) {  // nobody needs the other working folders any more
+  if (made_ || fs::exists(place_, ignored)) {  // the other working folders are no longer needed
     for (const auto& entry : fs::directory_iterator(lock_, ignored))
       fs::remove_all(place_.parent_path() / ("." + entry.path().filename().string()), ignored);
     fs::remove_all(lock_, ignored);

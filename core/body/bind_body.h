@@ -21,21 +21,23 @@ enum class Binding { Heat, Geodesic, Rigid };
 std::vector<std::string> binding_words();                                    // "heat", "geodesic", "rigid"
 Binding require_binding(const std::string& word, const std::string& where);  // throws Error for an unknown word
 
-// Where tissue touches without being connected. Empty: it is found from the body. Null: nowhere.
+// The seams of a body: voxel faces at which tissue touches without being connected. Empty: they are found
+// automatically; null: there are none.
 using SeamChoice = std::optional<std::shared_ptr<const Seams>>;
 
 struct BoundBody {
-  TissueVoxels tissue;  // with its seams
+  TissueVoxels tissue;  // the tissue voxels, with the seams
   SkinWeights weights;
   std::optional<BoneParts> parts;  // see parts_of()
-  WeightsReport solve;             // of Binding::Heat
+  WeightsReport solve;             // report on the solve of Binding::Heat
   bool is_from_file = false;       // true: the weights were read, so they may be of another rig or program
   std::vector<std::string> warnings;
 };
 
-// Computes the weights of a body. Throws Error if the body has nothing to follow, or a solve fails.
+// Computes the weights of a body. Throws Error if the body has no bones to follow, or if a solve fails.
 BoundBody bind_body(const Body& body, Binding binding, const SeamChoice& seams, Progress& progress);
-// Reads the weights of a body from a file or a folder. Without a choice, the seams are those of the file, or are found.
+// Reads the weights of a body from a file or a folder. If `seams` is empty, uses the seams that the file names, else
+// finds them.
 BoundBody read_bound_body(const Body& body, const Path& weights, const SeamChoice& seams, Progress& progress);
 
 // Returns the parts into which the body's bone tissue is split. They are computed at the first call, since splitting

@@ -42,7 +42,8 @@ std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, cons
     pose = std::move(glided.pose);
     joints.push_back(std::move(glided.joints));
   }
-  return_free_memory();  // lists of all bone voxels, which would stay with the process while it poses the body
+  return_free_memory();  // releases the lists of all bone voxels, whose memory would else stay allocated while the body
+                         // is posed
   return joints;
 }
 

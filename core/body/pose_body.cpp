@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-// Adds warnings to a report, and tells them at once.
+// Adds warnings to a report and immediately passes them to the caller as well.
 class Warnings {
  public:
   Warnings(Report& report, const PosingEvents& events) : report_(report), events_(events) {}
@@ -107,7 +107,7 @@ void describe(const PosingSettings& asked, const Armature& rig, const Pose& pose
   report.joints = turned_joints(rig, pose);
 }
 
-// Fills in the times, and warns of what differs from the request.
+// Completes the times of a report, and adds warnings where the result differs from the request.
 void note_results(const Body& body, const BoundBody& bound, const PosingSettings& settings, const PosingEvents& events,
                   BodyInPose& posed) {
   const DeformReport& deform = posed.posed.report;
@@ -140,7 +140,7 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
   const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), "glide " + settings.glide);
   Report base = report;
   Armature rig = body.rig;
-  // The motions of each requested pose, by the body's rig: fitting and gliding change the poses and the rig.
+  // The bones' motions in each requested pose, with the body's original rig: fitting and gliding change poses and rig.
   std::vector<std::vector<RigidTransform>> asked;
   for (const Pose& pose : poses) asked.push_back(posed_from_rest(rig, pose));
   if (settings.fit_joints) {
@@ -151,7 +151,7 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
     poses[0] = std::move(fitted.pose);
     base.seconds.weights = base.seconds.weights.value_or(0) + fitting.seconds();
   }
-  std::vector<std::vector<GlidedJoint>> glided;  // the shifted joints of each pose; empty where joints do not glide
+  std::vector<std::vector<GlidedJoint>> glided;  // the shifted joints of each pose; empty if joints do not glide
   SkinWeights weights = bound.weights;
   if (glide) {
     const Stopwatch gliding;

@@ -20,19 +20,19 @@ namespace limber {
 
 struct PosingSettings {
   std::string method = deformation_methods().front().word;  // a word of deformation_methods()
-  bool contact = false;                                     // fem: skin touches skin instead of passing through
+  bool contact = false;            // fem: true: skin touches skin instead of passing through it
   std::string quality, mesher;     // fem: draft, normal or fine; lattice or tetgen. "": normal, lattice
-  bool estimates_error = false;    // fem: a second solve with larger tets tells how large the error is
+  bool estimates_error = false;    // fem: true: a second solve with larger tets estimates the error
   std::vector<FemObject> objects;  // fem: rigid objects that press on the body
-  glm::dvec3 gravity{0};           // fem: m/s2
+  glm::dvec3 gravity{0};           // fem: acceleration of gravity, m/s2
   std::string glide = "joint";     // a word of glide_poses.h
   bool fit_joints = false;         // fits the axes of joints to the bones around them first; only for one pose
-  ResampleSettings resample;       // its seams are those of the bound body
+  ResampleSettings resample;       // settings of resampling; its seams are those of the bound body
 
-  bool has_contact() const { return contact || !objects.empty(); }  // objects press only where there is contact
+  bool has_contact() const { return contact || !objects.empty(); }  // objects press only if contact is simulated
 };
 
-// Called during the work; each may be empty.
+// Functions that are called during the work; each may be empty.
 struct PosingEvents {
   std::function<void(const std::string&)> on_warning;
   std::function<void(const Armature& rig, const Pose& pose)> on_pose;  // before each pose is computed
@@ -42,24 +42,24 @@ struct PosingEvents {
 
 // The body in one pose of a sequence.
 struct BodyInPose {
-  std::size_t index = 0;              // of the pose in the sequence
-  const Armature& rig;                // the body's rig, with joints fitted to the pose if that was asked for
+  std::size_t index = 0;              // index of the pose in the sequence
+  const Armature& rig;                // the body's rig; its joints are fitted to the pose if that was requested
   const Pose& pose;                   // the pose after joints were fitted and shifted
-  std::vector<RigidTransform> asked;  // #bones: motions from rest to the requested pose, by the body's rig
-  const SkinWeights& weights;         // as bound
+  std::vector<RigidTransform> asked;  // #bones: motions from rest to the requested pose, with the body's original rig
+  const SkinWeights& weights;         // the weights of the bound body
   Posed posed;
   Report report;  // warnings, shifted joints and times; see measure_posed_body()
 };
 
 // Computes each pose of a sequence and calls on_posed for it. With finite elements, each solve starts from the shape
-// that the one before reached. Throws Error for a bad setting, and as resample() does.
-//   report  what the report of each pose starts from
+// that the previous solve reached. Throws Error for a bad setting, and as resample() does.
+//   report  initial contents of the report of each pose
 void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, const PosingSettings& settings,
                const Report& report, const PosingEvents& events, const std::function<void(BodyInPose&)>& on_posed,
                Progress& progress);
 
-// Fills the report: settings, turned joints, measures and gates. Call it once, after posed.volume and its displacement
-// were used: it takes posed.report.
+// Completes the report of a posed body: settings, turned joints, measures and gates. Call it once, after the last use
+// of posed.volume and its displacement: it moves posed.report.
 void measure_posed_body(const Body& body, const PosingSettings& settings, BodyInPose& posed);
 
 }  // namespace limber

@@ -32,8 +32,8 @@ struct Options {
   std::vector<std::string> holds;
   bool mirror = false, on_the_spot = false;
   double speed = 1;
-  int repeats = 0,
-      seam = -1;  // repeats: 0: not repeated; seam: frames over which a seam is blended, -1: those of 0.3 seconds
+  // Number of repeats (0: not repeated), and frames over which a seam is blended (-1: as many as in 0.3 seconds).
+  int repeats = 0, seam = -1;
 
   bool cleans() const { return smooth > 0 || plant_feet || !holds.empty(); }
 };

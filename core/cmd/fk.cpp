@@ -93,9 +93,8 @@ Json json_of(const JointAngles& angles) {
   Json joints = Json::object();
   for (const auto& [joint, motions] : angles)
     for (std::size_t i = 0; i < motions.size(); ++i)
-      if (motions[i])
-        joints[name_of(joint)][std::string(motion_name(joint.joint, i))] =
-            *motions[i] + 0.0;  // adding 0.0 turns -0 into 0
+      // Adding 0.0 turns -0 into 0.
+      if (motions[i]) joints[name_of(joint)][std::string(motion_name(joint.joint, i))] = *motions[i] + 0.0;
   return joints;
 }
 

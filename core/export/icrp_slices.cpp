@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-constexpr int kNumbersALine = 16;  // organ numbers per line, as in the files of ICRP Publication 110
+constexpr int kNumbersALine = 16;  // organ numbers per line, as in ICRP Publication 110
 
 std::string organs_text(const LabelVolume& volume, const TissueTable& tissues, const std::vector<int>& medium) {
   const Grid& grid = volume.grid;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Which voxels an edit of labels may change: only those of some labels, and only those whose value in a grey image (CT,
-// MR) lies in a window. Painting bone over air and soft tissue where the CT is denser than 200 HU is such an edit.
+// Selects the voxels that an edit of labels may change: only those with certain labels, and only those whose value in a
+// grey image (CT, MR) lies in a window. For example, bone may be painted only where the CT is denser than 200 HU.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,14 @@ namespace limber {
 struct EditMask {
   // One byte for each label 0 .. 65535, air included: not 0 for labels whose voxels may change. Empty: all labels.
   std::vector<std::uint8_t> labels;
-  // Only voxels may change whose value in this image lies in [low, high]; null: all. The image may have another grid:
-  // a voxel has the value of the image's voxel nearest to its centre, and none outside the image.
+  // If set, only voxels whose value in this image lies in [low, high] may change; null: all may. The image may have
+  // another grid. A voxel has the value of the image voxel nearest to its centre, and may not change outside of the
+  // image.
   std::shared_ptr<const GreyLevels> image;
   double low = 0, high = 0;
 };
 
-// Answers for the voxels of one grid whether a mask allows their change.
+// Applies a mask to the voxels of one grid: tells which of them may change.
 class MaskedGrid {
  public:
   MaskedGrid(const EditMask& mask, const Grid& grid);

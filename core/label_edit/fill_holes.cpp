@@ -9,14 +9,14 @@ namespace limber {
 
 namespace {
 
-// A stretch of voxels along x that do not have the label, and the group of connected stretches that it belongs to.
+// A run of voxels along x that do not have the label, and the group of connected runs to which it belongs.
 struct Run {
-  std::int32_t begin, end;  // relative to the box
+  std::int32_t begin, end;  // positions along x, relative to the box
   std::int64_t group;
-  bool tissue;  // true: some of the voxels are tissue
+  bool tissue;  // true: at least one of the voxels is tissue
 };
 
-// Groups that touch are merged; a group is known by its smallest run.
+// Union-find over runs: groups that touch are merged. A group is identified by its run with the smallest index.
 class Groups {
  public:
   void add() { parent_.push_back(std::ssize(parent_)); }

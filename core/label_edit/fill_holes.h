@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fills holes of a label: voxels of other labels that the label encloses. Enclosed are the voxels from which no path
-// through faces of voxels without the label leads out of the box around the label. A gap in the label that is closed
-// only by edges or corners lets no path through.
+// Fills the holes of a label: voxels of other labels that the label encloses. A voxel is enclosed if no path through
+// the faces of voxels without the label leads from it out of the label's bounding box. Voxels of the label that meet
+// only at an edge or a corner already block such paths.
 #pragma once
 
 #include "core/label_edit/edit_mask.h"
@@ -10,13 +10,13 @@
 namespace limber {
 
 struct HolesToFill {
-  double largest_volume = 0;  // mm3; larger holes stay; 0: no limit
-  bool only_air = false;      // true: holes that have any tissue in them stay
+  double largest_volume = 0;  // mm3; larger holes are not filled; 0: no limit
+  bool only_air = false;      // true: holes that contain any tissue are not filled
 };
 
 struct FilledHoles {
   LabelChange change;
-  int filled = 0, left = 0;  // numbers of holes
+  int filled = 0, left = 0;  // number of holes that were filled, and of those that were not
 };
 FilledHoles fill_holes(const LabelVolume& volume, Label label, const HolesToFill& holes);
 

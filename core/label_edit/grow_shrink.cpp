@@ -10,10 +10,11 @@ namespace limber {
 
 namespace {
 
-// A squared distance at the limit counts as within it, whatever its rounding (distance_transform.h: 1e-6).
+// Returns the squared distance, slightly enlarged, so that distances at the limit count as within it in spite of
+// rounding errors (distance_transform.h: 1e-6).
 float squared_limit(double mm) { return static_cast<float>(mm * mm * (1 + 4e-6)); }
 
-// Returns for each voxel of the box whether it has the label (`has` 1) or another one (`has` 0).
+// Returns one byte for each voxel of the box, 1 if the voxel has the label (`has` 1) or another label (`has` 0).
 std::vector<std::uint8_t> voxels_with(const LabelVolume& volume, Label label, const VoxelBox& box, int has) {
   std::vector<std::uint8_t> marked(static_cast<std::size_t>(box.voxel_count()));
   parallel_for(box.size.z, 1, [&](std::int64_t begin, std::int64_t end) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Grows and shrinks a label by a distance in mm, the same in all directions whatever the spacing. Distances are those
-// between voxel centres, exact and Euclidean (core/volume/distance_transform.h), so a distance shorter than the
-// smallest spacing changes nothing.
+// Grows and shrinks a label by a distance in mm, which is equal in all directions at any spacing. Distances are exact
+// Euclidean distances between voxel centres (core/volume/distance_transform.h), so a distance shorter than the smallest
+// spacing changes nothing.
 #pragma once
 
 #include "core/base/progress.h"
@@ -10,11 +10,11 @@
 
 namespace limber {
 
-// Gives the label to the voxels within `mm` of one of its voxels, as far as the mask allows.
+// Gives the label to all voxels at most `mm` from a voxel with the label, if the mask allows their change.
 LabelChange grown_label(const LabelVolume& volume, Label label, double mm, const EditMask& mask,
                         Progress& progress = no_progress());
-// Takes the label from its voxels within `mm` of a voxel of another label. What lies beyond the grid is unknown, so the
-// label does not shrink from there.
+// Removes the label from its voxels that are at most `mm` from a voxel of another label. The grid's border counts as no
+// other label, so the label does not shrink from it.
 LabelChange shrunk_label(const LabelVolume& volume, Label label, double mm, Erased erased,
                          Progress& progress = no_progress());
 

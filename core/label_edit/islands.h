@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Removes islands: pieces of a label that are separate from its rest. Voxels that share a face, an edge or a corner
-// belong to one piece (core/volume/connected_components.h).
+// Removes islands: connected components of a label that are separate from the rest of the label. Voxels that share a
+// face, an edge or a corner are connected (core/volume/connected_components.h).
 #pragma once
 
 #include "core/label_edit/surroundings.h"
@@ -8,17 +8,18 @@
 namespace limber {
 
 struct KeptIslands {
-  int largest = 1;          // the number of largest pieces that stay; 0: no limit
-  double least_volume = 0;  // mm3; smaller pieces are removed, even if they are among the largest
+  int largest = 1;          // number of components to keep, the largest first; 0: no limit
+  double least_volume = 0;  // mm3; smaller components are removed, even if they are among the largest
   Erased erased = Erased::Surroundings;
 };
 
 struct RemovedIslands {
   LabelChange change;
-  int removed = 0, kept = 0;  // numbers of pieces
+  int removed = 0, kept = 0;  // number of components that were removed, and of those that were kept
 };
 
-// Of pieces with equally many voxels, those with the earlier first voxel count as larger.
+// Removes the components that `kept` does not keep. Of components with equally many voxels, the one with the earlier
+// first voxel counts as larger.
 RemovedIslands remove_islands(const LabelVolume& volume, Label label, const KeptIslands& kept);
 
 }  // namespace limber

@@ -24,13 +24,15 @@ LabelStroke::LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeS
   if (!(settings_.radius > 0)) throw std::logic_error("a brush needs a positive radius");
 }
 
-// Returns the voxels that the brush changes on its way, ascending, and the box of voxels in its reach.
+// Returns the voxels that the brush changes between two positions, in ascending order, and the box of voxels in its
+// reach.
 std::vector<std::int64_t> LabelStroke::reached(const glm::dvec3& from, const glm::dvec3& to, VoxelBox& box) const {
   const Grid& grid = painted_->grid;
   const AffineTransform to_voxel = voxel_from_world(grid);
   const glm::dmat3 world = world_from_voxel(grid).linear;
   const double radius = settings_.radius;
-  // How far the ball reaches along each voxel axis: the lengths of the rows of the inverse map, times the radius.
+  // The distance in voxels that the ball reaches along each voxel axis: the length of each row of the inverse map,
+  // times the radius.
   const glm::dmat3 rows = glm::transpose(to_voxel.linear);
   const glm::dvec3 reach = radius * glm::dvec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
   const glm::dvec3 a = to_voxel * from, b = to_voxel * to;
@@ -41,7 +43,7 @@ std::vector<std::int64_t> LabelStroke::reached(const glm::dvec3& from, const glm
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(glm::dot(grid.direction[axis], *settings_.flat)) > 1 - 1e-9) {
         const int layer = static_cast<int>(std::floor(a[axis] + 0.5));
-        // The brush paints this layer even where its centre lies further from the layer than the radius.
+        // A flat brush paints this layer even if its centre is further from the layer than the radius.
         if (layer < 0 || layer >= grid.size[axis]) return box = {}, std::vector<std::int64_t>();
         low[axis] = high[axis] = layer;
         slab = false;
@@ -52,9 +54,9 @@ std::vector<std::int64_t> LabelStroke::reached(const glm::dvec3& from, const glm
   box = {low, high - low + 1};
 
   const glm::dvec3 way = to - from;
-  const double squared_way = glm::dot(way, way),
-               most = radius * radius * (1 + 1e-9);  // a voxel at the rim is in, whatever the rounding
-  double half = 0;                                   // half the thickness of a flat brush, mm
+  // The squared radius is slightly enlarged, so that voxels at the rim count in spite of rounding.
+  const double squared_way = glm::dot(way, way), most = radius * radius * (1 + 1e-9);
+  double half = 0;  // half the thickness of a flat brush, mm
   if (settings_.flat)
     for (int axis = 0; axis < 3; ++axis) half = std::max(half, std::abs(glm::dot(world[axis], *settings_.flat)) / 2);
   for (int z = low.z; z <= high.z; ++z)

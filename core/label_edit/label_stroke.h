@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A stroke of a brush that paints or erases a label. The brush is a ball; along the stroke it sweeps a capsule, so that
-// a fast stroke has no gaps, and its border does not depend on how often the pointer was asked. A flat brush is the
-// disc of the ball in one plane, for work slice by slice. A voxel changes when its centre lies in the brush.
+// A stroke of a brush that paints or erases a label. The brush is a ball. Along the stroke it sweeps capsules, so that
+// a fast stroke has no gaps and its border does not depend on how often the pointer's position was read. A flat brush
+// is the disc of the ball in one plane, for painting slice by slice. A voxel changes when its centre is inside the
+// brush.
 //
 //   LabelStroke stroke(volume, settings);
 //   stroke.to(cursor);  ...                        at each movement; show stroke.volume() in stroke.last_box()
@@ -21,9 +22,9 @@ struct LabelStrokeSettings {
   bool erases = false;  // true: voxels of `label` lose it
   Erased erased = Erased::Surroundings;
   double radius = 5;  // mm, positive
-  // The unit normal of the plane in which a flat brush paints, world; empty: the brush is a ball. Where the plane is
-  // parallel to layers of voxels, the brush paints the layer that holds its centre; else, the voxels whose centres lie
-  // at most half a voxel beside the plane.
+  // Unit normal of the plane in which a flat brush paints, world; empty: the brush is a ball. If the plane is parallel
+  // to layers of voxels, the brush paints the layer that contains its centre. Otherwise it paints the voxels whose
+  // centres are at most half a voxel from the plane.
   std::optional<glm::dvec3> flat;
   EditMask mask;
 };
@@ -31,9 +32,8 @@ struct LabelStrokeSettings {
 class LabelStroke {
  public:
   // Paints on a copy of the volume, which must not be null. Throws std::logic_error for a radius that is not positive.
-  //   copy  a copy made earlier, because copying a body takes longer than a dab, and that nobody else changes; null:
-  //   the
-  //         volume is copied now
+  //   copy  a copy of the volume that was made earlier, since copying a body takes longer than a dab; nobody else may
+  //         change it. null: the volume is copied now
   LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeSettings settings,
               std::shared_ptr<LabelVolume> copy = nullptr);
 
@@ -42,10 +42,10 @@ class LabelStroke {
   void to(const glm::dvec3& point);
   void lift() { last_.reset(); }
 
-  // The volume with all that was painted so far. It changes with every call of to().
+  // Returns the volume with everything painted so far. It changes with every call of to().
   const std::shared_ptr<const LabelVolume>& volume() const { return shown_; }
   const std::shared_ptr<const LabelVolume>& before() const { return before_; }
-  // The box of voxels that the last call of to() may have changed; size 0: nothing changed.
+  // Returns the box of voxels that the last call of to() may have changed; size 0: nothing changed.
   const VoxelBox& last_box() const { return last_box_; }
   const VoxelBox& touched_box() const { return touched_; }
   bool empty() const { return touched_.size.x == 0; }
@@ -56,14 +56,14 @@ class LabelStroke {
 
   std::shared_ptr<const LabelVolume> before_;
   std::shared_ptr<LabelVolume> painted_;
-  std::shared_ptr<const LabelVolume> shown_;  // the same volume, for readers
+  std::shared_ptr<const LabelVolume> shown_;  // points to the same volume as painted_, for readers
   LabelStrokeSettings settings_;
   MaskedGrid mask_;
   std::optional<glm::dvec3> last_;
   VoxelBox last_box_, touched_;
 };
 
-// Returns the smallest box that holds both; a box of size 0 holds nothing.
+// Returns the smallest box that contains both boxes. A box of size 0 is ignored.
 VoxelBox box_around(const VoxelBox& a, const VoxelBox& b);
 
 }  // namespace limber

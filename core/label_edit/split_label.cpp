@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-// The cut's plane and the extent of its strip, for points of the world.
+// The plane of a cut and the extent of its strip, in world coordinates.
 class Knife {
  public:
   explicit Knife(const LabelCut& cut) : from_(cut.from), length_(glm::distance(cut.from, cut.to)) {
@@ -22,7 +22,7 @@ class Knife {
     normal_ = glm::normalize(glm::cross(along_, cut.sight));
   }
   double side(const glm::dvec3& point) const { return glm::dot(point - from_, normal_); }
-  // Returns whether the segment between two points on different sides meets the strip.
+  // Returns whether the line segment between two points on different sides of the plane passes through the strip.
   bool parts(const glm::dvec3& a, const glm::dvec3& b) const {
     const double side_a = side(a), side_b = side(b);
     if ((side_a > 0) == (side_b > 0)) return false;
@@ -39,14 +39,14 @@ class Knife {
 constexpr std::array<glm::ivec3, 6> kFaces = {glm::ivec3(1, 0, 0),  glm::ivec3(0, 1, 0),  glm::ivec3(0, 0, 1),
                                               glm::ivec3(-1, 0, 0), glm::ivec3(0, -1, 0), glm::ivec3(0, 0, -1)};
 
-// The voxels of the label in a box, and the parts of a body that the knife leaves connected.
+// The voxels of the label in a box, and the side of the cut from which each was reached.
 struct Parts {
   const LabelVolume& volume;
   Label label;
   const Knife& knife;
   VoxelBox box;
   AffineTransform to_world;
-  std::vector<std::uint8_t> side;  // 0: not reached; 1, 2: reached from the two sides of the cut
+  std::vector<std::uint8_t> side;  // 0: not reached; 1 or 2: reached from this side of the cut
 
   bool holds(const glm::ivec3& v) const { return box.contains(v) && volume.at(v) == label; }
   bool joined(const glm::ivec3& a, const glm::ivec3& b) const {
@@ -54,7 +54,7 @@ struct Parts {
   }
   std::uint8_t& side_of(const glm::ivec3& v) { return side[static_cast<std::size_t>(box.index(v))]; }
 
-  // Marks all that is connected with the seeds. Returns the number of voxels; throws Error on meeting the other side.
+  // Marks all voxels connected to the seeds. Returns their number. Throws Error if it reaches voxels of the other side.
   std::int64_t flood(std::vector<glm::ivec3> open, std::uint8_t mark) {
     std::int64_t count = 0;
     std::erase_if(open, [&](const glm::ivec3& v) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Splits a label in two by a cut, like a knife: a strip of a plane, as wide as the line that the user drew across the
-// tissue and without end along the line of sight. Voxels of the label that share a face are joined unless the cut lies
-// between their centres. If the cut divides the pieces that it meets, those on one side become a new label; pieces that
-// it does not meet keep theirs. So a cut across one knee does not divide the other leg.
+// Splits a label into two by a cut, as with a knife. The cut is a strip of a plane: as wide as the line that the user
+// drew across the tissue, and endless along the line of sight. Voxels of the label that share a face are connected
+// unless the cut passes between their centres. The connected components on one side of the cut become a new label;
+// components that the cut does not touch keep their label. So a cut across one knee does not divide the other leg.
 #pragma once
 
 #include "core/label_edit/label_change.h"

@@ -9,13 +9,13 @@ namespace limber {
 namespace {
 
 enum State : std::uint8_t {
-  kSettled,  // has a label that counts for its neighbours
+  kSettled,  // has another label, or was filled; its label counts for its neighbours
   kKept,     // has the erased label and keeps it
-  kPending,  // is to be filled
-  kQueued,   // is to be filled, and is in the list of a layer
+  kPending,  // still to be filled
+  kQueued,   // still to be filled, and in the list of the current layer
 };
 
-// The labels of the pending voxels' bounding box, with one more voxel on each side where the grid has it.
+// The labels in the bounding box of the pending voxels, enlarged by one voxel on each side within the grid.
 struct Window {
   VoxelBox box;
   std::vector<Label> labels;
@@ -49,7 +49,7 @@ struct Window {
   }
   glm::ivec3 place_of(std::int64_t at) const { return box.lowest + place_of(at, box.size); }
 
-  // Calls act(index, shares a face) for each of the 26 neighbours inside the window.
+  // Calls act(index, shares_a_face) for each of the 26 neighbours inside the window.
   template <class Act>
   void for_neighbours(std::int64_t at, const Act& act) const {
     const glm::ivec3 here = place_of(at);
@@ -62,7 +62,7 @@ struct Window {
   }
 };
 
-// Counts the labels of up to 26 neighbours.
+// Counts how often each label occurs among up to 26 neighbours.
 class Votes {
  public:
   void add(Label label, bool face) {
@@ -83,7 +83,8 @@ class Votes {
   }
 
  private:
-  static constexpr int kWhole = 32;  // a neighbour's vote; more than the six neighbours with faces can add
+  // Value of one vote; more than the sum of the bonuses of six neighbours that share a face.
+  static constexpr int kWhole = 32;
   std::array<Label, 26> labels_{};
   std::array<int, 26> rank_{};
   int count_ = 0;

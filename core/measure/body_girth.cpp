@@ -15,19 +15,20 @@ namespace limber {
 
 namespace {
 
-constexpr double kBeside = 2;                          // voxels that the point may lie beside the body
-constexpr int kMostCells = 4096;                       // upper limit on the cells of the plane along either axis
-constexpr double kFine = 0.5;                          // cell size of a tape, in shortest voxel edges
-constexpr double kCoarse = 2;                          // cell size while planes are compared
-constexpr int kPlanes = 64;                            // planes compared at first
-constexpr double kFirstTurn = 0.12, kLastTurn = 0.01;  // turns of the search for the least girth, radians
+constexpr double kBeside = 2;     // largest distance of the point from the body, voxels
+constexpr int kMostCells = 4096;  // upper limit on the number of cells of the plane along each axis
+constexpr double kFine = 0.5;     // cell size for the tape that is returned, in shortest voxel edges
+constexpr double kCoarse = 2;     // cell size while planes are compared, in shortest voxel edges
+constexpr int kPlanes = 64;       // number of planes that are compared first
+// First and last step of the search for the plane of least girth, radians.
+constexpr double kFirstTurn = 0.12, kLastTurn = 0.01;
 
 bool is_tissue(Label label) { return label != 0; }
 
-// Returns the share of tissue around a point, smoothed over two voxels' width, so that a smooth surface has a smooth
-// border although its voxels are stairs.
+// Returns the share of tissue around a point, smoothed over the width of two voxels. Thus a smooth surface has a smooth
+// border although its voxels form stairs.
 double smooth_share(const LabelVolume& volume, const glm::dvec3& voxel) {
-  // Deep inside, and far outside, all voxels around are alike.
+  // Returns early if all voxels around are tissue or all are air, as is the case away from the surface.
   const glm::ivec3 nearest(glm::floor(voxel + 0.5));
   const bool is_inside = volume.at_or_air(nearest) != 0;
   bool is_same = true;
@@ -68,7 +69,7 @@ std::vector<glm::dvec2> convex_hull(std::vector<glm::dvec2> points) {
   return hull;
 }
 
-// The cut of a plane through the body, in square cells.
+// The section of a plane through the body, sampled in square cells.
 class PlaneCut {
  public:
   PlaneCut(const LabelVolume& volume, const glm::dvec3& point, const glm::dvec3& normal, double cell_in_voxels)
@@ -87,8 +88,8 @@ class PlaneCut {
     side_ = 2 * half_ + 1;
   }
 
-  // Returns the tape's corners in the plane. Nothing when the cut reaches the volume's border, or the tape is surely
-  // longer than `most`, in cells.
+  // Returns the tape's corners in the plane. Returns nothing if the section reaches the volume's border, or if the tape
+  // is certainly longer than `most` cells.
   std::optional<std::vector<glm::dvec2>> tape(double most = std::numeric_limits<double>::infinity()) const {
     std::vector<bool> seen(static_cast<std::size_t>(side_) * side_);
     struct Open {
@@ -131,7 +132,7 @@ class PlaneCut {
     return static_cast<std::size_t>(cell.x + half_) + static_cast<std::size_t>(side_) * (cell.y + half_);
   }
   double share(const glm::ivec2& cell) const { return smooth_share(volume_, to_voxel_ * world(glm::dvec2(cell))); }
-  // Returns whether the cell's tissue is in the volume's outermost voxels, where the body may be cut.
+  // Returns whether the cell's tissue is in an outermost voxel of the volume, where the body may be cut off.
   bool is_at_border(const glm::ivec2& cell) const {
     const glm::ivec3 voxel(glm::floor(to_voxel_ * world(glm::dvec2(cell)) + 0.5));
     const bool inside =
@@ -142,11 +143,11 @@ class PlaneCut {
   const LabelVolume& volume_;
   AffineTransform to_voxel_;
   glm::dvec3 centre_, u_, v_;
-  double cell_;  // mm
+  double cell_;  // cell size, mm
   int half_, side_;
 };
 
-// Returns the point, or the middle of the nearest tissue voxel if the point lies beside the body.
+// Returns the point itself, or the centre of a near tissue voxel if the point is not inside tissue.
 glm::dvec3 point_in_tissue(const LabelVolume& volume, const glm::dvec3& point) {
   const glm::dvec3 place = voxel_from_world(volume.grid) * point;
   if (smooth_share(volume, place) >= 0.75) return point;
@@ -158,7 +159,8 @@ glm::dvec3 point_in_tissue(const LabelVolume& volume, const glm::dvec3& point) {
     for (int y = -reach; y <= reach; ++y)
       for (int x = -reach; x <= reach; ++x) {
         const glm::dvec3 at(voxel + glm::ivec3(x, y, z));
-        // A voxel deeper inside is better than a nearer one at the surface, of which little may be in the plane.
+        // Prefers a voxel deeper inside to a nearer one at the surface, since little of a surface voxel may be in the
+        // plane.
         const double share = smooth_share(volume, at), score = glm::distance(at, place) - 2 * share;
         if (share > 0.5 && score < best) best = score, found = at;
       }
@@ -196,14 +198,14 @@ glm::dvec3 middle_along(const LabelVolume& volume, const glm::dvec3& surface, co
   const double step = 0.5 * std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
   const double most = glm::length(glm::dvec3(volume.grid.size) * volume.grid.spacing);
   const glm::dvec3 way = step * glm::normalize(direction);
-  double first = 0, last = 0;  // steps from the surface to where the tissue begins and ends
+  double first = 0, last = 0;  // number of steps from the surface at which tissue begins and ends
   for (double n = 0; n * step < most; ++n) {
     const bool is_in = tissue_share(volume, to_voxel * (surface + n * way), is_tissue) >= 0.5;
     if (is_in) {
       if (last == 0) first = n;
       last = n + 1;
     }
-    // The surface that is seen may lie a little before the tissue.
+    // Continues at first even outside tissue, since the point on the displayed surface may be slightly outside of it.
     if (!is_in && (last > 0 || n > 4 * kBeside)) break;
   }
   return surface + 0.5 * (first + last) * way;

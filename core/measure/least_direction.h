@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the direction in which a length is least: among directions spread over half a sphere, then by small turns of
-// the best one.
+// Finds the direction in which a length is least: first among directions spread over half a sphere, then by small
+// rotations of the best one.
 #pragma once
 
 #include <cmath>
@@ -17,14 +17,15 @@ struct LeastDirection {
 };
 
 // Returns the direction of the least length.
-//   count                  number of directions tried at first
-//   first_turn, last_turn  the small turns are halved from the first, radians, for as long as they exceed the last
-//   length                 a function (unit direction, most) -> length, equal for opposite directions; it may return
-//                          infinity for a length that exceeds `most`
+//   count                  number of directions that are tried first
+//   first_turn, last_turn  angle of the small rotations, radians: it starts at first_turn and is halved while it is
+//                          above last_turn
+//   length                 a function (unit direction, most) that returns the length, equal for opposite directions; it
+//                          may return infinity if the length exceeds `most`
 template <class Length>
 LeastDirection least_direction(int count, double first_turn, double last_turn, const Length& length) {
   LeastDirection best;
-  // A spiral of the golden angle spreads the directions evenly.
+  // Spreads the directions evenly by a spiral of the golden angle.
   for (int i = 0; i < count; ++i) {
     const double z = (i + 0.5) / count, r = std::sqrt(1 - z * z), turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
     const glm::dvec3 direction(r * std::cos(turn), r * std::sin(turn), z);

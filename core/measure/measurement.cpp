@@ -23,7 +23,7 @@ bool is_complete(MeasureKind kind, std::size_t points) {
 double measure(MeasureKind kind, std::span<const glm::dvec3> points) {
   if (kind == MeasureKind::Angle) {
     const glm::dvec3 a = points[0] - points[1], b = points[2] - points[1];
-    // atan2 is exact near 0 and 180 degrees, where acos is not.
+    // Uses atan2, since acos is inaccurate near 0 and 180 degrees.
     return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
   }
   double length = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A smooth measure of how far a point lies inside tissue, for borders finer than voxels.
+// Measures smoothly how far a point is inside tissue, for borders finer than voxels.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,10 +8,10 @@
 
 namespace limber {
 
-// Returns the share [0, 1] of the voxels around a point that belong, interpolated between the eight nearest voxel
-// centres. It is 0.5 on the border of a flat layer.
-//   voxel    in voxel coordinates
-//   belongs  a function of a label; voxels outside the grid are air, label 0
+// Returns the share [0, 1] of tissue at a point, interpolated between the eight nearest voxel centres. It is 0.5 on the
+// border of a flat layer.
+//   voxel    the point, in voxel coordinates
+//   belongs  a function that returns whether a label counts as tissue; voxels outside the grid are air, label 0
 template <class Belongs>
 double tissue_share(const LabelVolume& volume, const glm::dvec3& voxel, const Belongs& belongs) {
   const glm::ivec3 low(glm::floor(voxel));

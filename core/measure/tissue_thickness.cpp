@@ -13,8 +13,9 @@ namespace limber {
 namespace {
 
 constexpr int kDirections = 400;
-constexpr double kStep = 0.25;                          // step along a line, in shortest voxel edges
-constexpr double kFirstTurn = 0.08, kLastTurn = 0.005;  // turns of the search for the least length, radians
+constexpr double kStep = 0.25;  // step along a line, in shortest voxel edges
+// First and last rotation in the search for the least length, radians.
+constexpr double kFirstTurn = 0.08, kLastTurn = 0.005;
 
 // Bundles of parallel lines through one point of a tissue.
 class LinesThrough {
@@ -26,8 +27,8 @@ class LinesThrough {
         label_(label),
         voxel_(std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z})) {}
 
-  // Returns the mean distances from the centre to the tissue's border ahead and behind, mm. Lines that begin outside
-  // the tissue do not count.
+  // Returns the mean distances from the centre to the tissue's border in the given direction and in the opposite one,
+  // mm. Lines that begin outside the tissue are ignored.
   //   most  upper limit on each distance, mm
   std::array<double, 2> to_borders(const glm::dvec3& direction, double most) const {
     const glm::dvec3 other = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);

@@ -48,8 +48,8 @@ struct Constraint {
   // copies these components of the rotation from the bone's own orientation to its target's.
   std::array<bool, 3> axes{true, true, true};
   RotationSpace space = RotationSpace::World;  // used by copy rotation
-  glm::dvec3 minimum{glm::radians(-30.0)},
-      maximum{glm::radians(30.0)};     // limit rotation: limits about the bone's own axes, radians
+  // Limit rotation: limits about the bone's own axes, radians.
+  glm::dvec3 minimum{glm::radians(-30.0)}, maximum{glm::radians(30.0)};
   BoneAxis aim = BoneAxis::PlusY;      // aim: the direction that points at the target
   PlantPoint point = PlantPoint::Tip;  // plant: the point of hand or foot that stays
   bool keeps_rotation = true;          // plant: the hand or foot keeps `rotation` too

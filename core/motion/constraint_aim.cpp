@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kNearest =
-    1e-6;  // mm; a target nearer to the bone's head gives no direction, so the bone does not turn
+// Distance from the bone's head, mm, below which a target gives no direction, so that the bone does not turn.
+constexpr double kNearest = 1e-6;
 
 void solve(const ConstraintOnRig& on_rig, PosedRig& rig) {
   const glm::dvec3 towards = target_place(on_rig, rig) - rig.head(on_rig.bone);

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kNear =
-    1.0 / 7;  // share of the leg's length; a foot that stands nearer than this in both takes gets one position
+// A foot that stands in both takes at positions nearer than this share of its leg's length gets one position.
+constexpr double kNear = 1.0 / 7;
 
 Pose mixed(const Pose& a, const Pose& b, double share) {
   Pose pose = a;

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kSteepest =
-    3;  // largest tangent of a clamped key, as a multiple of the smaller neighbouring velocity [Fritsch & Carlson]
+// Largest tangent of a clamped key, as a multiple of the smaller neighbouring velocity [Fritsch & Carlson].
+constexpr double kSteepest = 3;
 
 // The constant velocities from the key before to this key, and from this key to the one after, with the numbers of
 // frames. At the first and last key the missing velocity is zero.

@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kSteps = 3;  // steps of the Gauss-Newton method: a fourth step would change speeds by less than a percent
 constexpr int kNear = 3;   // number of keys on either side of a removed key whose speeds are fitted again
-constexpr double kPull =
-    1e-3;  // weight that keeps a key's speed near the difference of frames if there are no frames between two keys
+// Weight that keeps a key's speed near the difference of frames if there are no frames between two keys.
+constexpr double kPull = 1e-3;
 
 double size_of_error(const glm::dquat& wanted, const glm::dquat& value) {
   return glm::degrees(glm::length(turn_between(value, wanted)));

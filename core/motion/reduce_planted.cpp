@@ -47,8 +47,8 @@ void tighten(AllowedErrors& allowed, const Plant& plant, const Armature& armatur
              const std::vector<PlantedLimb>& limbs, const Pose& pose, double mm) {
   const glm::dvec3 point = place_of(limbs[plant.limb], plant.point, armature, pose);
   const std::vector<RigidTransform> posed = posed_from_rest(armature, pose);
-  std::vector<std::pair<int, double>>
-      carriers;  // bones from the limb up to the root, with their distances from the point (lever arms), mm
+  // Bones from the limb up to the root, with their distances from the point (lever arms), mm.
+  std::vector<std::pair<int, double>> carriers;
   for (int bone = carrier_of(limbs[plant.limb]); bone >= 0; bone = armature.bones[bone].parent) {
     const double arm = glm::distance(posed[bone] * armature.bones[bone].head, point);
     if (arm > 1e-6) carriers.emplace_back(bone, arm);

@@ -12,11 +12,12 @@ namespace limber::phantom {
 
 namespace {
 constexpr double kSkinThickness = 1.8;  // thickness of the skin (dermis and epidermis) of an adult's limb, mm
-constexpr double kJointGap = 5;         // cartilage: points whose distances to two bones add up to less than this, mm
-constexpr double kMuscleReach = 7;      // largest distance of a point that becomes muscle from the muscle's shape, mm
-constexpr double kMostFat = 40;         // upper bound of the fat's thickness (Flesh::fat), mm
-constexpr int kBlock = 8;               // edge of the blocks in which the volume is filled, voxels
-constexpr int kMargin = 3;              // width of the air around the body, voxels
+// A point becomes cartilage if the sum of its distances to two bones is less than this, mm.
+constexpr double kJointGap = 5;
+constexpr double kMuscleReach = 7;  // largest distance of a point that becomes muscle from the muscle's shape, mm
+constexpr double kMostFat = 40;     // upper limit of the fat's thickness (Flesh::fat), mm
+constexpr int kBlock = 8;           // edge of the blocks in which the volume is filled, voxels
+constexpr int kMargin = 3;          // width of the air around the body, voxels
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 30;
 constexpr double kFar = 1e30;
 // Safety factor on a block's radius when shapes too far from the block's centre are left out. It is needed because the
@@ -54,7 +55,7 @@ Depth depth_at(const Anatomy& anatomy, const std::vector<int>& nearby, const glm
 Nearby shapes_near(const Anatomy& anatomy, const glm::dvec3& centre, double radius, std::vector<double>& at) {
   const Box block = Box{centre, centre}.grown(radius);
   Nearby nearby;
-  // A smooth union must be computed from both of its shapes, so shapes within the blend width of the block are kept.
+  // A smooth union needs the distances to both of its shapes, so shapes within the blend width of the block are kept.
   // The union's surface is at most a quarter of the blend width outside the two shapes.
   double widest = 0;
   for (const Flesh& flesh : anatomy.flesh) widest = std::max(widest, flesh.blend);

@@ -290,7 +290,7 @@ class Arm {
   void add_thumb() {
     const auto& name = plan_.prefix;
     constexpr double kHead = 7, kLengths[] = {45, 33, 27};
-    // The thumb is spread to the side, lies in front of the palm, and is rolled so that its pad faces the fingers.
+    // Places the thumb: spread to the side, in front of the palm, and rolled so that its pad faces the fingers.
     Frame joint = hand_.at({21, -8, -29}).turned({0, 1, 0}, -36).turned({-1, 0, 0}, 24).turned({0, 0, 1}, -58);
     const V flex(-1, 0, 0);
     Solid metacarpal(cone(joint, {0, 0, -5}, 6.8, {0, 0, -16}, 4.8));

@@ -21,7 +21,7 @@ double cone_distance(const Cone& cone, const glm::dvec3& p) {
   const glm::dvec3 along = cone.b - cone.a, from_a = p - cone.a;
   const double l2 = squared(along), narrowing = cone.radius_a - cone.radius_b;
   const double a2 = l2 - narrowing * narrowing;
-  // One of the two spheres at the ends contains the other sphere, so the cone is the larger sphere.
+  // If one of the spheres at the ends contains the other one, the cone is the larger sphere.
   if (a2 <= 0) return narrowing > 0 ? glm::length(from_a) - cone.radius_a : glm::length(p - cone.b) - cone.radius_b;
 
   const double y = glm::dot(from_a, along), z = y - l2;

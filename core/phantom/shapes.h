@@ -67,8 +67,9 @@ struct Station {
 
 class Loft {
  public:
-  // stations  two or more, in any order
-  // rounding  radius of the edges at both ends, mm
+  // Makes a loft.
+  //   stations  cross sections, two or more, in any order
+  //   rounding  radius of the edges at both ends, mm
   Loft(const Frame& frame, std::vector<Station> stations, double rounding);
   double distance(const glm::dvec3& p) const;
   Box bounds() const;

@@ -372,7 +372,7 @@ class Trunk {
 
   void add_chest() {
     for (double side : {-1.0, 1.0}) {
-      // The lungs may overlap the heart: the heart comes earlier in the list of organs and wins.
+      // The lungs may overlap the heart. The heart then wins, since it comes earlier in the list of organs.
       Solid lung(Loft(Frame{V(side * 68, 0, 0), glm::dmat3(1)},
                       {{1165, {0, 14}, {50, 62}},
                        {1215, {0, 10}, {53, 74}},

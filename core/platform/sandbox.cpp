@@ -44,8 +44,8 @@ void limit(__rlimit_resource what, rlim_t soft, rlim_t hard) {
 }
 
 #ifdef LIMBER_SANITIZED
-constexpr bool kLimitsMemory =
-    false;  // false: AddressSanitizer needs several times the memory that the program requests
+// Memory is not limited, since AddressSanitizer needs several times the memory that the program requests.
+constexpr bool kLimitsMemory = false;
 #else
 constexpr bool kLimitsMemory = true;
 #endif

@@ -26,9 +26,9 @@ constexpr double kElbowAside = 8 * kDegree;  // largest sideways bend of an elbo
 constexpr double kHyperextension = 15 * kDegree;
 // Range in which a foot points outwards (positive) relative to its knee [Staheli 1985].
 constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};
-constexpr double kPronation[] = {-10 * kDegree,
-                                 175 * kDegree};  // range of the forearm's pronation, radians; 0: palm forward
-constexpr double kSoleSlope = 23 * kDegree;       // slope from the toes up to the ankle, with the sole on the ground
+// Range of the forearm's pronation, radians; 0: palm forward.
+constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};
+constexpr double kSoleSlope = 23 * kDegree;   // slope from the toes up to the ankle, with the sole on the ground
 constexpr double kToeSlope = 8 * kDegree;     // slope from the toes' tips up to their base, with the sole on the ground
 constexpr double kBackwards = 110 * kDegree;  // a foot turned further than this from forward points backwards
 constexpr double kSteepFoot = 75 * kDegree;   // a foot that points down more steeply than this has no heading

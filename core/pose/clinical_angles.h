@@ -9,8 +9,7 @@
 //   - A joint that is a hinge in the rig's limits has one angle, the flexion about its own axis, as long as its bone
 //     rotates about this axis only. Otherwise all angles of the joint are computed.
 //   - Spine and neck share their angles evenly between their bones. A pose with other shares gets even ones.
-//   - Rotations without a clinical name are lost: of a finger about its length, of a forearm in other shares than
-//   usual.
+//   - Rotations without a clinical name are lost, such as a rotation of a finger about its length.
 #pragma once
 
 #include <optional>

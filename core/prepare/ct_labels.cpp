@@ -18,14 +18,14 @@ namespace {
 
 enum : Label { kAir = 0, kSkin, kFat, kSoft, kLung, kGas, kBone };
 
-constexpr double kThin = 3;            // half the thickness of what is too thin to be a body, mm
-constexpr double kSmallestBody = 1e4;  // smallest body or part of one, mm3
-constexpr double kLeastShare = 0.02;   // parts smaller than this share of the largest one are no parts of the body
-constexpr double kSmallestBone = 150;  // smaller specks of bone are noise, mm3
+constexpr double kThin = 3;            // half of the smallest thickness of a body, mm; thinner things are removed
+constexpr double kSmallestBody = 1e4;  // volume of the smallest body, or part of a body, mm3
+constexpr double kLeastShare = 0.02;   // smallest part of a body, as a share of the largest part
+constexpr double kSmallestBone = 150;  // volume of the smallest bone, mm3; smaller specks are noise
 constexpr double kLargestMarrow =
-    1.5e5;                             // larger cavities in bone, such as that of a closed skull, hold no marrow, mm3
-constexpr double kSmallestLung = 5e4;  // mm3
-constexpr double kPureAir = -950;      // lungs are denser than this, gas in the bowel is not
+    1.5e5;  // mm3; larger cavities in bone, such as that of a closed skull, contain no marrow
+constexpr double kSmallestLung = 5e4;  // volume of the smallest lung, mm3
+constexpr double kPureAir = -950;      // Hounsfield units; lungs are denser than this, gas in the bowel is not
 
 using Mask = std::vector<std::uint8_t>;
 
@@ -49,8 +49,8 @@ LabelVolume volume_of(const Grid& grid, const Mask& mask) {
   return volume;
 }
 
-// Calls keep(voxels, sum) for each component of the mask, with its size and the sum of `value` over it, and removes the
-// components for which it returns false.
+// Calls keep(voxels, sum) for each connected component of the mask, with its number of voxels and the sum of `value`
+// over them. Removes the components for which keep() returns false.
 template <class Value, class Keep>
 void filter_components(const Grid& grid, Mask& mask, const Value& value, const Keep& keep) {
   const Components components = connected_components(volume_of(grid, mask));
@@ -78,9 +78,9 @@ bool is_empty(const Mask& mask) {
   return std::none_of(mask.begin(), mask.end(), [](std::uint8_t is) { return is != 0; });
 }
 
-// Returns the voxels that belong to the body: those above its threshold within reach of something thick. An opening by
-// 3 mm takes away the table, blankets and cables; what is left of the body grows back by a little more than 3 mm, so
-// that ears and fingers stay.
+// Returns the voxels of the body: those above the body's threshold near something thick. A morphological opening by 3
+// mm removes the table, blankets and cables. The remaining body is then grown by a little more than 3 mm within the
+// voxels above the threshold, so that ears and fingers stay.
 Mask body_of(const GreyLevels& image, double threshold, Progress& progress) {
   const Grid& grid = image.grid;
   const double coarsest = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
@@ -92,7 +92,8 @@ Mask body_of(const GreyLevels& image, double threshold, Progress& progress) {
   Mask thick = dense;
   if (std::any_of(outside.begin(), outside.end(), [](std::uint8_t is) { return is != 0; })) {
     const std::vector<float> depth = squared_distance(whole(grid), outside, grid.spacing, progress);
-    // Distances are between voxel centres; the face of the air is half a voxel nearer.
+    // Distances are measured between voxel centres, and the surface of the air is half a voxel nearer, so half a voxel
+    // is added.
     const double least = kThin + 0.5 * std::cbrt(grid.voxel_volume());
     for_each_voxel(grid, [&](std::size_t i) { thick[i] = double(depth[i]) > least * least; });
   }
@@ -128,11 +129,11 @@ double smoothed(const GreyLevels& image, std::size_t i) {
   return image.least + image.step * sum / count;
 }
 
-// Marks the air that the body encloses in the slices across its longest axis, as lungs are even if the windpipe is open
-// to the outside.
+// Marks air that the body encloses within a slice across the body's longest axis. Lungs are enclosed in this way even
+// if the windpipe is open to the outside.
 Mask enclosed_in_slices(const LabelVolume& body) {
   const Grid& grid = body.grid;
-  // The axis of the grid that points most nearly from feet to head.
+  // Finds the axis of the grid that is most nearly parallel to the direction from feet to head.
   int up = 0;
   for (int axis = 1; axis < 3; ++axis)
     if (std::abs(grid.direction[axis].z) > std::abs(grid.direction[up].z)) up = axis;
@@ -175,7 +176,7 @@ Mask enclosed_in_slices(const LabelVolume& body) {
   return enclosed;
 }
 
-// Labels the air inside the body: as lung where much of it is denser than air, as gas where the body encloses it on all
+// Labels the air inside the body: as lung if much of it is denser than air, as gas if the body encloses it on all
 // sides.
 void label_air(const GreyLevels& image, LabelVolume& volume) {
   const Grid& grid = image.grid;
@@ -213,7 +214,7 @@ void label_skin(double thickness, LabelVolume& volume, Progress& progress) {
   const Mask outside = outside_air(volume);
   const std::vector<float> depth = squared_distance(whole(grid), outside, grid.spacing, progress);
   const double coarsest = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  // The distance is measured between voxel centres; a layer of one voxel has the distance of one spacing.
+  // Distances are measured between voxel centres, so a layer of one voxel has the distance of one spacing.
   const double most = std::max(thickness, coarsest) * (1 + 1e-6);
   for_each_voxel(grid, [&](std::size_t i) {
     Label& label = volume.voxels[i];
@@ -295,14 +296,14 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
 double body_threshold(const GreyLevels& image) {
   std::vector<std::int64_t> counts(65536);
   for (const std::uint16_t level : image.levels) ++counts[level];
-  // Levels are counted from 1, so that their mean has a logarithm: cross entropy needs positive values.
+  // Levels are counted from 1, since cross entropy takes the logarithm of their means, which must be positive.
   std::vector<double> voxels(65537), sums(65537);
   for (std::size_t level = 0; level < 65536; ++level) {
     voxels[level + 1] = voxels[level] + double(counts[level]);
     sums[level + 1] = sums[level] + double(counts[level]) * double(level + 1);
   }
   if (voxels.back() == 0) return image.least;
-  double threshold = sums.back() / voxels.back();  // the mean of all, from where the iteration finds its fixed point
+  double threshold = sums.back() / voxels.back();  // start value of the fixed-point iteration: the mean of all values
   for (int round = 0; round < 1000; ++round) {
     const auto cut = static_cast<std::size_t>(std::clamp(std::ceil(threshold) - 1, 1.0, 65535.0));
     const double below = voxels[cut], above = voxels.back() - below;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes a label volume from a CT by thresholds, so that a CT without a segmentation can be rigged and posed. It tells
-// skin, fat, soft tissue, lung, gas and bone apart, and leaves out the table, blankets and other thin things around the
-// body. It knows no anatomy: contrast agent and metal count as bone, and bones that touch are one.
-// The values of an MR have no unit. Of such an image only the body and its skin are labelled, by one threshold.
+// Makes a label volume from a CT by thresholds, so that a CT without a segmentation can be rigged and posed.
+// Distinguishes skin, fat, soft tissue, lung, gas and bone, and removes the table, blankets and other thin things
+// around the body. It uses no knowledge of anatomy: contrast agent and metal count as bone, and bones that touch are
+// one. The values of an MR have no unit; in such an image only the body and its skin are labelled, by one threshold.
 #pragma once
 
 #include "core/base/progress.h"
@@ -12,13 +12,13 @@
 
 namespace limber {
 
-// Thresholds in Hounsfield units. The values given here are chosen by Limber: air is -1000 and water 0 by definition,
-// and fat lies below water, muscle a little above it and bone far above it. A scan may need others.
+// Thresholds in Hounsfield units. The default values are Limber's choice: air is -1000 and water 0 by definition, and
+// fat is below water, muscle a little above it and bone far above it. Some scans need other values.
 struct CtThresholds {
-  double body = -300;  // from here on, voxels belong to a body
-  double fat = -190;   // from here to `soft`: fat
-  double soft = -30;   // from here on: soft tissue
-  double bone = 200;   // from here on: bone
+  double body = -300;  // from this value on, voxels belong to a body
+  double fat = -190;   // from this value up to `soft`: fat
+  double soft = -30;   // from this value on: soft tissue
+  double bone = 200;   // from this value on: bone
   double skin_mm = 2;  // thickness of the skin, at least one voxel
 };
 
@@ -27,21 +27,21 @@ struct CtLabels {
   TissueTable tissues;  // one tissue for each label that the volume has
 };
 
-// Returns the labels of a CT on its own grid. Throws Error if the thresholds do not rise, if no value is below that of
-// the body, or if nothing in the image is a body: no connected region of at least 10 ml above the threshold of the body
-// that is thicker than 6 mm.
+// Returns the labels of a CT on its own grid. Throws Error if the thresholds do not ascend, if no value is below the
+// body's threshold, or if there is no body: no connected region of at least 10 ml above this threshold that is thicker
+// than 6 mm.
 CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds = {}, Progress& progress = no_progress());
 
-// Returns the threshold between background and body that the histogram of an image gives, by the minimum cross entropy
-// of both classes [Li and Lee 1993, iterated as by Li and Tam 1998]. Background is far more uniform than tissue in an
-// MR; a threshold half way between the means of both (Otsu 1979) would take dark muscle for background.
+// Returns the threshold between background and body, from the histogram of an image, by minimum cross entropy of the
+// two classes [Li and Lee 1993, iterated as by Li and Tam 1998]. In an MR the background is far more uniform than
+// tissue, so Otsu's threshold (1979), half way between the means of both, would count dark muscle as background.
 double body_threshold(const GreyLevels& image);
 
-// Returns the labels of an image whose values have no unit, on its own grid: the body and its skin. Whatever is dark
-// and enclosed by the body, such as cortical bone in an MR, counts as body. It is enough that it is enclosed in one
-// slice across the body's longest axis, as lungs are where the windpipe is open: so the air in a ring that arms and
-// trunk close in a slice is filled too. Throws Error if no value is below the threshold, or if nothing in the image is
-// a body (as labels_of_ct).
+// Returns the labels of an image whose values have no unit, on its own grid: the body and its skin. Dark regions that
+// the body encloses, such as cortical bone in an MR, count as body. It suffices that a region is enclosed within one
+// slice across the body's longest axis, as lungs are when the windpipe is open. Therefore air that arms and trunk
+// enclose in a slice is filled too. Throws Error if no value is below the threshold, or if there is no body (as
+// labels_of_ct).
 CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_mm = 2,
                         Progress& progress = no_progress());
 

@@ -41,8 +41,8 @@ bool same_file(const OpenFile& file, const Path& path) {
 std::unique_ptr<LogFile> open_log(const Path& path) { return std::make_unique<SystemLogFile>(path); }
 
 FileLock::FileLock(const Path& path) {
-  constexpr int kAttempts =
-      100;  // upper limit on attempts; an attempt fails if the file is replaced just before it is locked
+  // Upper limit on attempts; an attempt fails if the file is replaced just before it is locked.
+  constexpr int kAttempts = 100;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     std::error_code error;
     OpenFile file(path, Opening::Read, error);

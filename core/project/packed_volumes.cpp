@@ -81,8 +81,8 @@ bool PackedVolumes::pack(Steps& steps, std::int64_t current, const SetVolume& se
       if (!document.volume || bytes_of(*document.volume) < kLeastBytes) continue;
       if (!link(steps, step < current ? step + 1 : step)) continue;
       packed_[static_cast<std::size_t>(step)] = Packed{document.volume};
-      if (!has_volume_left(step, 0) &&
-          !has_volume_right(step, count)) {  // the last unpacked volume of its group must stay
+      // Undoes the packing if this was the last unpacked volume of its group.
+      if (!has_volume_left(step, 0) && !has_volume_right(step, count)) {
         packed_[static_cast<std::size_t>(step)].reset();
         continue;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Converts between NumPy arrays and Limber's values. Arrays of voxels are indexed [x, y, z], with x fastest in memory
-// (Fortran order), as nibabel gives them; an array of SimpleITK is transposed.
+// (Fortran order), as in nibabel; arrays of SimpleITK must be transposed.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ namespace limber::python {
 
 using Doubles = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
 
-// Returns a read-only array over the voxels of a grid, which `owner` keeps alive. Nothing is copied.
+// Returns a read-only array over the voxels of a grid without copying them. `owner` keeps them alive.
 template <class T>
 pybind11::array voxel_array(const Grid& grid, const T* voxels, std::shared_ptr<const void> owner) {
   auto* held = new std::shared_ptr<const void>(std::move(owner));
@@ -43,8 +43,8 @@ pybind11::array_t<double> array_of(const glm::dmat3& matrix);
 // Returns an N x 4 x 4 array.
 pybind11::array_t<double> array_of(std::span<const RigidTransform> transforms);
 
-// Return the values of an array. Each throws ValueError, which names the argument, for another shape or a number that
-// is not finite.
+// Return the values of an array. They throw ValueError, which names the argument, if the array has another shape or a
+// number is not finite.
 glm::dvec3 vector_from(const Doubles& array, const std::string& name);
 glm::dmat3 matrix_from(const Doubles& array, const std::string& name);
 std::vector<glm::dvec3> points_from(const Doubles& array, const std::string& name);

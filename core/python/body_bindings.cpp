@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies, weights and posed bodies for Python.
+// Python classes for bodies, weights and posed bodies.
 #include <algorithm>
 
 #include <pybind11/stl.h>
@@ -23,7 +23,7 @@ namespace limber::python {
 
 namespace {
 
-// What one pose made of a body. Its volume and its fields are shared with Python's arrays.
+// The result of posing a body once. Its volume and its fields share memory with Python's arrays.
 struct PosedVolume {
   std::shared_ptr<Posed> posed;
   Volume volume;
@@ -71,7 +71,8 @@ Weights read_weights_of(const std::shared_ptr<Body>& body, const Path& path, con
       body, call_with_result(progress, [&](Progress& shown) { return read_bound_body(*body, path, choice, shown); }));
 }
 
-// Returns the weights with other influences. `bones` and `weights`: N x 4, in the order of Weights.voxels.
+// Returns a copy of the weights with other influences.
+//   bones, weights  N x 4, in the order of Weights.voxels
 Weights with_influences(const Weights& from, const py::array_t<int, py::array::c_style | py::array::forcecast>& bones,
                         const Doubles& weights) {
   const TissueVoxels& tissue = from.bound->tissue;
@@ -125,7 +126,7 @@ py::array_t<int> voxels_of(const Weights& weights) {
   return voxels;
 }
 
-// The weight of one bone at every voxel.
+// Returns the weight of one bone at every voxel, as a float array.
 py::array weight_volume(const Weights& weights, const std::string& bone) {
   const std::vector<std::string>& names = weights.bound->weights.bones();
   const auto found = std::find(names.begin(), names.end(), bone);
@@ -151,7 +152,7 @@ struct ResampleOptions {
   std::optional<double> spacing;
 };
 
-// The words of finite elements are refused with other methods, as the command line does.
+// Throws Error if options of finite elements are given for another method, as the command line does.
 void check_options(const ResampleOptions& options) {
   if (!find_method(options.method))
     throw Error("there is no such method", options.method, "write " + method_summaries(Methods::All));
@@ -224,7 +225,7 @@ py::object resample_body(const Weights& weights, const py::object& poses, const 
                                              .grey = carried.get()}};
   std::vector<PosedVolume> results;
   call_long(progress, [&](Progress& shown) {
-    // The bound body is copied, since fitting joints adds to it, and other threads may use it.
+    // Copies the bound body, since fitting joints changes it and other threads may use it.
     BoundBody bound = *weights.bound;
     PosingEvents events;
     events.on_step = [&](const SolveStep& step) { shown.update("solving", step.reached); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The Python module `limber._limber`. Each function adds the classes and functions of one subject to the module. Their
-// docstrings are the reference for Python's users; limber/__init__.pyi states the types.
+// The Python module `limber._limber`. Each function adds the classes and functions of one subject to the module. The
+// docstrings are the reference for users of Python; limber/__init__.pyi declares the types.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace limber::python {
 struct Volume {
   std::shared_ptr<const VolumeFile> file;
 };
-// Returns the volume with another holder of the same voxels.
+// Returns a VolumeFile that shares the voxels of `volume`.
 VolumeFile shared_copy(const Volume& volume);
 Volume volume_of(VolumeFile file);
 

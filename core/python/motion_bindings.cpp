@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Motion capture for Python.
+// Python classes for motion capture.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -17,7 +17,7 @@ namespace limber::python {
 
 namespace {
 
-// A motion on a rig, with what it refers to.
+// A motion retargeted to a rig, together with the objects that it refers to.
 struct RiggedMotion {
   std::shared_ptr<const Motion> motion;
   std::shared_ptr<const Armature> rig;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The live preview for Python: a coarse inverse map of the posed body, quick enough for every frame of a display.
+// The live preview for Python: a coarse inverse map of the posed body, fast enough for every frame of a display.
 #include <limits>
 #include <mutex>
 
@@ -23,7 +23,7 @@ struct PosedPreview {
   std::shared_ptr<const PreviewMap> map;
   std::shared_ptr<const Body> body;
 
-  // Returns the rest points of posed points; NaN where there is no body. All in world coordinates, mm.
+  // Returns the rest positions of posed points, world, mm; NaN for points outside the body.
   std::vector<glm::dvec3> rest_points(const std::vector<glm::dvec3>& posed) const {
     const AffineTransform voxel = voxel_from_world(map->grid), world = world_from_voxel(map->grid);
     std::vector<glm::dvec3> rest(posed.size(), glm::dvec3(std::numeric_limits<double>::quiet_NaN()));
@@ -54,7 +54,7 @@ class Preview {
         live_(std::shared_ptr<const LabelVolume>(weights.body, &weights.body->file.volume), weights.body->tissues,
               weights.bound->tissue, weights.bound->weights, step ? step : preview_step(weights.bound->tissue)) {}
 
-  // Threads of Python may share a preview; they are served one after the other.
+  // Locks the preview, since several Python threads may use it.
   PosedPreview posed(const Pose& pose, Blend blend) {
     const std::lock_guard lock(mutex_);
     return {live_.update(bone_motions(bones_, body_->rig, pose), blend), body_};

@@ -15,7 +15,7 @@ namespace limber::python {
 
 namespace {
 
-// The latest progress of the working thread, for the calling thread to read.
+// Passes the latest progress from the working thread to the calling thread.
 class SharedProgress final : public Progress {
  public:
   struct State {
@@ -45,7 +45,7 @@ void show_progress(const py::object& callback, const SharedProgress::State& stat
     callback(state.stage, state.fraction);
     return;
   }
-  // A tqdm bar, whose total is 1 unless its user has set another.
+  // Sets the total of a tqdm bar to 1 unless the user has set another.
   if (callback.attr("total").is_none()) callback.attr("total") = 1.0;
   callback.attr("set_description_str")(state.stage, false);
   callback.attr("n") = state.fraction * callback.attr("total").cast<double>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Calls long functions from Python. The work runs in a thread of its own, without the interpreter's lock, while the
-// calling thread hands progress to Python and looks for Ctrl-C twenty times a second.
+// Calls long functions from Python. The work runs in a thread of its own, without Python's interpreter lock. Meanwhile
+// the calling thread passes progress to Python and checks for Ctrl-C twenty times a second.
 #pragma once
 
 #include <functional>
@@ -14,8 +14,8 @@
 
 namespace limber::python {
 
-// Calls work(progress) and waits for its end. Rethrows what it throws. If `callback` or a signal handler raises an
-// exception, cancels the work, and raises that exception when the work has ended.
+// Calls work(progress) in another thread and waits for its end. Rethrows its exceptions. If `callback` or a signal
+// handler raises an exception, cancels the work, and raises that exception when the work has ended.
 //   callback  None; a function of (stage: str, fraction: float); or a tqdm bar
 void call_long(const pybind11::object& callback, const std::function<void(Progress&)>& work);
 

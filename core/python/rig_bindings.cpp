@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rigs and poses for Python.
+// Python classes for rigs and poses.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -85,7 +85,7 @@ glm::dquat rotation_from(const py::handle& value, const std::string& bone) {
   return glm::normalize(q);
 }
 
-// "left hip flexion=90" from ("left hip flexion", 90).
+// Returns the request "left hip flexion=90" for ("left hip flexion", 90).
 std::string joint_request(const std::string& motion, double degrees) {
   char number[40];
   std::snprintf(number, sizeof number, "%.17g", degrees);
@@ -115,7 +115,7 @@ void require_pose_of(const Armature& rig, const Pose& pose) {
                 "give a pose of this rig, which has " + std::to_string(rig.bones.size()));
 }
 
-// {"left hip flexion": 90.0, ...}
+// Returns the clinical angles of a pose: {"left hip flexion": 90.0, ...}.
 std::map<std::string, double> angles_of_pose(const Armature& rig, const Pose& pose) {
   require_pose_of(rig, pose);
   std::map<std::string, double> angles;
@@ -150,7 +150,7 @@ Pose pose_of_arrays(const Doubles& rotations, const py::object& root_translation
   return pose;
 }
 
-// The fitted rig, how far each joint may be off, and warnings.
+// Returns the fitted rig, the possible error of each joint, and warnings.
 py::tuple fit_rig(const Volume& volume, const std::string& name, const py::object& progress) {
   const LabelVolume& labels = volume.file->volume;
   const AutoFit fitted = call_with_result(progress, [&](Progress& shown) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes and tissues for Python.
+// Python classes for volumes and tissues.
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -17,7 +17,7 @@ namespace limber::python {
 
 namespace {
 
-// nibabel's affines lead to RAS, Limber's to LPS: x and y have the opposite signs.
+// Converts between nibabel's world axes (RAS) and Limber's (LPS), in which x and y have opposite signs.
 const glm::dmat3 kFlip(glm::dvec3(-1, 0, 0), glm::dvec3(0, -1, 0), glm::dvec3(0, 0, 1));
 
 py::array_t<double> affine_of(const Grid& grid) {
@@ -61,7 +61,7 @@ Grid grid_from(const std::array<py::ssize_t, 3>& shape, const py::object& spacin
 
 bool is_x_fastest(const py::array& array) { return array.flags() & py::array::f_style; }
 
-// Returns the values of an array that is shared, not copied: 16-bit labels, x fastest.
+// Returns a volume that shares the memory of an array of 16-bit labels, x fastest.
 VolumeFile shared_volume(const Grid& grid, const py::array_t<Label>& array) {
   VolumeFile file;
   file.volume.grid = grid;
@@ -79,7 +79,7 @@ TissueTable tissues_in(const LabelVolume& volume) {
   return tissues_of_values(values, {});
 }
 
-// Returns the labels of an array of any other type or order, which are copied.
+// Returns a volume with a copy of the labels of an array of any other type or order.
 VolumeFile decoded_volume(const Grid& grid, const py::array& array) {
   const auto type = voxel_type_from_text(py::str(array.dtype().attr("name")).cast<std::string>());
   if (!type) throw py::type_error("labels: give an array of whole numbers");

@@ -9,8 +9,9 @@ namespace limber {
 
 namespace {
 
-constexpr int kPairs = 12;        // differences that approximate the Hessian
-constexpr double kArmijo = 1e-4;  // share of the expected decrease that a step must reach
+constexpr int kPairs = 12;  // number of pairs of differences that approximate the Hessian
+// Share of the decrease predicted by the slope that a step must reach (Armijo condition).
+constexpr double kArmijo = 1e-4;
 constexpr int kMostHalvings = 12;
 constexpr double kFirstStep = 0.05;  // largest change of a variable in the first step
 
@@ -23,7 +24,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
 // A step and the change of the gradient over it.
 struct Pair {
   std::vector<double> step, change;
-  double curvature = 0;  // their product
+  double curvature = 0;  // dot product of step and change
 };
 
 // Returns minus the approximate inverse Hessian times the gradient, by the two-loop recursion.

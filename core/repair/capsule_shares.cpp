@@ -8,9 +8,10 @@ namespace limber {
 
 namespace {
 
-// The limb's thickness is measured in a slab of this width around the joint, mm, where the field may change tissue.
+// Half width, mm, of the slab around the joint in which the limb's thickness is measured. Only tissue that the field
+// may change counts.
 constexpr double kSlab = 20;
-constexpr double kLeastThickness = 5;  // mm
+constexpr double kLeastThickness = 5;  // lower limit of the limb's thickness, mm
 
 double smooth_rise(double t) {
   t = std::clamp(t, 0.0, 1.0);

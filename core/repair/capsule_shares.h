@@ -21,8 +21,8 @@ class CapsuleShape {
 
  private:
   const JointField& field_;
-  glm::dvec3 normal_{0}, flexor_{0};  // unit: from the parent to the moving bone, and towards the flexor side
-  double thickness_ = 0;              // of the limb between the two sides at the joint, mm
+  glm::dvec3 normal_{0}, flexor_{0};  // unit vectors: from the parent to the moving bone, and towards the flexor side
+  double thickness_ = 0;              // thickness of the limb from extensor side to flexor side at the joint, mm
 };
 
 }  // namespace limber

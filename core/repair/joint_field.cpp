@@ -14,15 +14,16 @@ namespace limber {
 
 namespace {
 
-// The edge of a cell: a blend over 20 mm spans two cells.
+// Wanted edge length of a cell: a blend over 20 mm then spans two cells.
 constexpr double kCellEdge = 8;  // mm
-// Soft tissue is free to leave a bone's weights over this distance from the bone, as heat lets it.
+// Distance from a bone over which the mask rises from 0 to 1, so that soft tissue near bone keeps the bone's weights,
+// as heat weights do.
 constexpr double kBoneFade = 8;  // mm
-// Shares of a bone's length, counted from the joint, between which the field fades into the weights that stay.
+// Distances from the joint, as shares of a bone's length, at which the mask begins to fall and at which it becomes 0.
 constexpr double kReachBegin = 0.6, kReachEnd = 0.95;
-// Shares of the joint's own bones, and those next to it, between which tissue belongs to the joint.
+// Weight of the joint's own bones and their neighbours, between which the mask rises from 0 to 1 in a voxel.
 constexpr double kOtherPart = 0.3, kOwnPart = 0.8;
-constexpr int kGrain = 16;  // bricks
+constexpr int kGrain = 16;  // bricks per block of a parallel loop
 
 double smoothstep(double low, double high, double x) {
   const double t = std::clamp((x - low) / (high - low), 0.0, 1.0);
@@ -31,8 +32,8 @@ double smoothstep(double low, double high, double x) {
 
 glm::ivec3 corner_of(int i) { return {i & 1, i >> 1 & 1, i >> 2}; }
 
-// Returns how far along each of the joint's bones, the parent and then the moving one, the field may reach, mm. A bone
-// that is short beside the other one, such as a collarbone, counts half of the other's length.
+// Returns the distances, mm, up to which the field may reach along the parent bone and along the moving bone. If one
+// bone is much shorter than the other, such as a collarbone, half of the other's length counts instead.
 std::array<double, 2> reach_of(const Armature& armature, int bone) {
   const Bone& child = armature.bones[bone];
   const double below = glm::distance(child.head, child.tail),
@@ -144,7 +145,8 @@ void JointField::make_cells(const WeightedBody& body, const SkinWeights& weights
 
 void JointField::make_shapes(const WeightedBody& body) {
   const glm::dmat3 world = world_from_voxel(body.volume.grid).linear;
-  const glm::dmat3 slopes = glm::transpose(glm::inverse(world));  // columns: the world's slope of a voxel coordinate
+  // Columns: gradient of each voxel coordinate in world axes, 1 / mm.
+  const glm::dmat3 slopes = glm::transpose(glm::inverse(world));
   shapes_.resize(512);
   for (int z = 0; z < step_; ++z)
     for (int y = 0; y < step_; ++y)

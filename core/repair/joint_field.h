@@ -2,11 +2,12 @@
 // The share w with which the tissue around a joint follows the bones below the joint, as a smooth function of few
 // unknowns. The tissue is divided into coarse cells whose corners are nodes (deform/cell_nodes.h). In a voxel
 //
-//    w = (1 - mask) * w0 + mask * S,      S = trilinear mean of the values of the eight nodes of the voxel's cell
+//    w = (1 - mask) * w0 + mask * S,      S = trilinear interpolation of the values of the eight nodes of the voxel's
+//    cell
 //
-// w0 is the share by the weights that the body has. The mask fades to 0 towards bone, far from the joint along its two
-// bones, and in tissue that follows other parts of the body, so the field joins what stays as it is. Node values in
-// [0, 1] give shares in [0, 1].
+// where w0 is the share according to the body's present weights. The mask falls to 0 towards bone, far from the joint
+// along its two bones, and in tissue that follows other parts of the body. So w changes continuously into weights that
+// stay as they are. Node values in [0, 1] give shares in [0, 1].
 #pragma once
 
 #include <array>
@@ -21,38 +22,38 @@
 
 namespace limber {
 
-// The share in one voxel: w = base + mask * S.
+// The share in one voxel as a function of the interpolated node value S: w = base + mask * S.
 struct FieldPoint {
-  std::int32_t piece = -1;  // the voxel's cell; -1: the share is fixed
-  std::uint16_t place = 0;  // the voxel in its cell, x + 8 y + 64 z
+  std::int32_t piece = -1;  // index of the voxel's cell; -1: the share is fixed
+  std::uint16_t place = 0;  // position of the voxel in its cell, x + 8 y + 64 z
   float mask = 0, base = 0;
 };
 
 class JointField {
  public:
-  // Keeps references: the body must outlive the field.
-  //   weights  rigid in bone tissue
+  // Keeps a reference to the body, which must outlive the field.
+  //   weights  must be rigid in bone tissue
   //   throws Error if the joint has no soft tissue to repair
   JointField(const WeightedBody& body, const SkinWeights& weights, const JointMotion& motion, Progress& progress);
 
   std::int64_t node_count() const { return std::ssize(node_position_); }
   // Returns a node's position at rest relative to the joint, along the world's axes, mm.
   const glm::dvec3& node_position(std::int64_t node) const { return node_position_[node]; }
-  // Returns the nodes' values that are nearest to w0.
+  // Returns the node values whose shares approximate w0 best.
   const std::vector<double>& initial() const { return initial_; }
   std::span<const std::array<std::int32_t, 8>> pieces() const { return pieces_; }
   // Three nodes in a row along an axis of the volume.
   using Row = std::array<std::int32_t, 3>;
   std::span<const Row> rows() const { return rows_; }
-  double cell_edge() const { return cell_edge_; }  // mm; the mean over the axes
+  double cell_edge() const { return cell_edge_; }  // mean edge length of a cell over the three axes, mm
 
-  // Returns w0 and the mask of a tissue voxel, by its index in the list.
+  // Return w0 and the mask of a tissue voxel, by its index in the list of tissue voxels.
   float share(std::int64_t voxel) const { return share_[voxel]; }
   float mask(std::int64_t voxel) const { return mask_[voxel]; }
   FieldPoint point(std::int64_t index, const glm::ivec3& voxel) const;
   double value(const FieldPoint& point, std::span<const double> nodes) const;
 
-  // The trilinear weights of the eight nodes at a place in a cell, and their slopes along the world's axes, 1 / mm.
+  // The trilinear weights of a cell's eight nodes at a position in the cell, and their gradients in world axes, 1 / mm.
   struct Shape {
     std::array<float, 8> weight;
     std::array<glm::vec3, 8> slope;

@@ -11,12 +11,13 @@ namespace limber {
 
 namespace {
 
-// Circles and their samples are two voxels apart, and at least this far: overlap is a matter of whole layers.
+// Lower limit of the distance between circles and between samples on a circle, which is otherwise two voxels. Finer
+// steps are not needed, since tissue overlaps in whole layers.
 constexpr double kLeastStep = 3;  // mm
-// Wider gaps stay open in every turn.
+// Upper limit on the angle of a gap, radians: wider gaps are not closed by any turn.
 constexpr double kWidestTurn = std::numbers::pi;
 
-// A frame of the joint's axis: positions are distance from the axis, angle about it, and height along it.
+// Cylindrical coordinates about the joint's axis: distance from the axis, angle about it, and height along it.
 struct AxisFrame {
   glm::dvec3 centre, axis, across, along;
 
@@ -48,7 +49,7 @@ Extent extent_of(const WeightedBody& body, const JointField& field, const AxisFr
   return extent;
 }
 
-// Walks round one circle and adds its gaps.
+// Follows one circle and appends the gaps on it.
 class CircleWalk {
  public:
   CircleWalk(const WeightedBody& body, const JointField& field, const std::vector<FleshClass>& classes)
@@ -101,7 +102,7 @@ class CircleWalk {
   const JointField& field_;
   const std::vector<FleshClass>& classes_;
   AffineTransform from_world_;
-  std::vector<glm::ivec3> voxels_;  // on the circle; x = -1: air
+  std::vector<glm::ivec3> voxels_;  // voxels along the circle; x = -1: air
 };
 
 }  // namespace

@@ -16,11 +16,13 @@ namespace limber {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kLargestStep = 22.5;  // between turns, degrees: tissue volumes change smoothly between them
-constexpr double kLeastTurn = 5;       // smaller turns change hardly any voxel
-constexpr double kWidestRange = 170, kWidestDefault = 120, kWidestSwing = 60;  // degrees from rest
+// Largest angle between two turns, degrees; tissue volumes change smoothly between them.
+constexpr double kLargestStep = 22.5;
+constexpr double kLeastTurn = 5;  // smallest turn, degrees; a smaller one changes hardly any voxel
+// Limits of the turns, degrees from rest: with a given range, without one, and for swings of ball joints.
+constexpr double kWidestRange = 170, kWidestDefault = 120, kWidestSwing = 60;
 
-// Returns the limits of the joint: the rig's own, else the usual ones that the bone's name tells.
+// Returns the limits of the joint: those of the rig, else the usual limits for the bone's name.
 JointLimits limits_of(const Armature& armature, int bone) {
   const JointLimits& own = armature.bones[bone].limits;
   if (own.type == JointLimits::Type::Hinge || own.type == JointLimits::Type::Ball) return own;
@@ -40,8 +42,9 @@ std::vector<int> bones_below(const Armature& armature, int bone) {
   return below;
 }
 
-// Returns an axis across the bone about which a ball joint swings: the axis of the body (left, back, up) that is least
-// along the bone, made perpendicular to it. Left comes first, so a leg that hangs swings forward and back.
+// Returns an axis, perpendicular to the bone, about which a ball joint swings. It is made from the axis of the body
+// (left, back, up) that is least parallel to the bone. If several are, the left axis is used, so that a hanging leg
+// swings forward and back.
 glm::dvec3 swing_axis(const Armature& armature, int bone) {
   const glm::dvec3 whole = armature.bones[bone].tail - armature.bones[bone].head;
   if (!(glm::length(whole) > 0))
@@ -75,8 +78,8 @@ void check_range(const TurnRange& range, const std::string& bone) {
               "write two angles from rest, such as 0,90: the first -170 to 0, the second 0 to 170, 5 or more apart");
 }
 
-// The motions over which hips and shoulders are repaired, in degrees from the anatomical position: what sitting,
-// walking and reaching need. Adduction and rotation are left out.
+// The range over which hips and shoulders are repaired, in degrees from the anatomical position: as far as sitting,
+// walking and reaching need. Adduction and rotation are not included.
 struct BallTurns {
   BodyPart part;
   BodyJoint joint;
@@ -94,7 +97,7 @@ const std::vector<BallTurns>& ball_turns() {
   return turns;
 }
 
-// Returns the turns of a hip or a shoulder; empty if the bone's name tells neither.
+// Returns the turns of a hip or a shoulder; empty if the bone's name means neither.
 std::vector<JointTurn> named_turns(const Armature& armature, int bone) {
   std::vector<JointTurn> turns;
   const BodyFrames frames = body_frames(armature);

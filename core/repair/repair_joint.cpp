@@ -19,18 +19,19 @@ namespace limber {
 
 namespace {
 
-// Passes of smoothing, each three quarters of the way to the mean of the six neighbours: over 1.6 voxels in all.
+// Number of smoothing passes. Each moves a weight three quarters of the way to the mean of its six neighbours, so that
+// all passes together smooth over about 1.6 voxels.
 constexpr int kSmoothing = 10;
 constexpr double kSmoothingAmount = 0.75;
-constexpr int kMostRounds = 4;  // of correction, each judged by a resampling
-// Factor on the costs of folds and overlap after a round that has made more of them.
+constexpr int kMostRounds = 4;  // upper limit on the rounds of correction, each of which resamples the body
+// Factor by which the costs of folds and overlap grow after a round in which more tissue overlaps than before.
 constexpr double kMoreCare = 5;
-// The share of the mean volume change that is added to a turn's own before turns are weighed by its inverse.
+// A turn's weight is 1 / (its own volume change + this share of the mean volume change of all turns).
 constexpr double kEvenness = 0.5;
 constexpr int kMostIterations = 60;
-constexpr double kLeastProgress = 2e-3;  // of an iteration, %
+constexpr double kLeastProgress = 2e-3;  // an iteration that lowers the total by less, in percent, is the last one
 
-// Returns S, %.
+// Returns S, the sum of the absolute volume changes of skin, fat and muscle, %.
 double size_of(const FleshChange& change) {
   return std::accumulate(change.begin(), change.end(), 0.0,
                          [](double sum, double each) { return sum + std::abs(each); });
@@ -70,9 +71,8 @@ std::vector<TurnFigures> measured(const WeightedBody& body, const SkinWeights& w
   return figures;
 }
 
-// Returns the weights in which the tissue of the field follows the moving bones by the shares of the nodes. The shares
-// have kinks between cells, which would show as ripples on posed skin, so the weights are smoothed over less than a
-// cell.
+// Returns the weights in which the field's tissue follows the moving bones by the shares of the nodes. The shares have
+// kinks between cells, which would appear as ripples on posed skin, so the weights are smoothed over less than a cell.
 WeightEdit with_shares(const WeightedBody& body, const SkinWeights& weights, const JointField& field,
                        std::span<const double> nodes, const JointMotion& motion, const BoneSet& locked) {
   EditScope scope{.locked = locked};
@@ -83,7 +83,7 @@ WeightEdit with_shares(const WeightedBody& body, const SkinWeights& weights, con
              [&](const WeightRules& rules, Influence& influence, std::int64_t index, const glm::ivec3& voxel) {
                const FieldPoint point = field.point(index, voxel);
                if (point.piece < 0 || point.mask == 0) return WeightChange{};
-               // Locked bones keep their part of the share; the others get the rest.
+               // Locked bones keep their weights; the other bones share the rest.
                int held = 0;
                for (int i = 0; i < 4; ++i)
                  if (is_moving[influence.bone[i]] && rules.is_locked(influence.bone[i])) held += influence.weight[i];
@@ -101,7 +101,7 @@ WeightEdit with_shares(const WeightedBody& body, const SkinWeights& weights, con
   return edit;
 }
 
-// The widths that are tried, mm: each half wider than the one before.
+// Returns the capsule widths to try, mm: each is 1.5 times the one before.
 std::vector<double> widths_to_try() {
   std::vector<double> widths;
   for (double width = 20; width < 500; width *= 1.5) widths.push_back(width);
@@ -114,7 +114,7 @@ struct CapsuleStart {
   double value = 0;
 };
 
-// Searches the two widths in turn, each over all that are tried, until neither changes.
+// Searches the extensor width and the flexor width in turn, each among all widths to try, twice.
 CapsuleStart best_capsule(const CapsuleShape& shape, const VolumeModel& model, Progress& progress) {
   CapsuleStart best{.widths = {60, 120}, .nodes = {}, .value = INFINITY};
   for (int round = 0; round < 2; ++round)
@@ -150,7 +150,7 @@ double mean_overlap(const std::vector<TurnFigures>& figures) {
 
 namespace {
 
-// One repair: the model of the joint, the body's own figures, and the best weights so far.
+// One run of the repair, with the model of the joint, the figures of the unchanged body, and the best weights so far.
 class Repairer {
  public:
   Repairer(const WeightedBody& body, const SkinWeights& weights, int bone, const JointRepairSettings& settings,
@@ -171,8 +171,8 @@ class Repairer {
 
   JointRepair run() {
     repair_.before = repair_.after = measured(body_, weights_, motion_, settings_.blend, progress_);
-    // Flesh that settles after blending gives its volume back by itself: there the blend alone is made to keep it, and
-    // what came out says nothing about the blend.
+    // Some blends let flesh settle afterwards, which restores its volume. For them, only the blend itself is optimized;
+    // the resampled volumes are not used to correct the prediction, since they include the settling.
     const bool settles = rule_of(settings_.blend).settles_flesh;
     const VolumeModel::Value unchanged = model_.evaluate(field_.initial(), {});
     if (!settles) learn(repair_.before, unchanged.change);
@@ -193,7 +193,7 @@ class Repairer {
   }
 
  private:
-  // Starts the correction from the best capsule, or from the weights as they are where these are better.
+  // Starts the correction from the best capsule, or from the present weights if they have a smaller total.
   void start() {
     CapsuleStart capsule = best_capsule(capsule_, model_, progress_);
     widths_ = capsule.widths;
@@ -213,7 +213,7 @@ class Repairer {
     return model_.evaluate(nodes_, {});
   }
 
-  // Resamples the body with the corrected weights, and keeps them if the body is better than by the best so far.
+  // Resamples the body with the corrected weights, and stores them if the result is better than the best so far.
   std::vector<TurnFigures> take_if_better() {
     WeightEdit edit = with_shares(body_, weights_, field_, nodes_, motion_, settings_.locked);
     auto figures = measured(body_, edit.weights, motion_, settings_.blend, progress_);
@@ -241,7 +241,7 @@ class Repairer {
     model_.set_tuning(std::move(tuning));
   }
 
-  // Gives more weight to turns that change the volumes little, so that the widest turns do not decide alone.
+  // Gives turns with small volume changes more weight, so that the widest turns do not dominate the total.
   void weigh_turns(const std::vector<FleshChange>& unchanged) {
     VolumeModel::Tuning tuning = model_.tuning();
     double mean = 0, total = 0;

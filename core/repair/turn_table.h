@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How a blend moves tissue that follows a turning bone by a share w and a still bone by 1 - w. Across the turn's axis
-// every blend of two such bones is a rotation and a scaling about the axis: with points as complex numbers q, a point
-// moves to z(w) q, and its place along the axis stays. Where w varies, the local volume changes by
+// Computes how a blend moves tissue that follows a turning bone by a share w and a still bone by 1 - w. For every blend
+// of two such bones, the tissue's motion in the plane perpendicular to the axis is a rotation and a scaling: a point
+// with the complex coordinate q in this plane moves to z(w) q, and its position along the axis stays. If w varies in
+// space, the local volume changes by
 //
 //    det F = |z|^2 + Re(k) (q . grad w) + Im(k) (iq . grad w),     k = conj(z) dz/dw
 //
-// where q . grad w is the distance from the axis times the slope of w away from the axis, and iq . grad w is the same
-// about the axis. The functions are tabulated from the blend's own rule, so they hold for every blend of blend_rule.h.
+// where q . grad w is the distance from the axis times the slope of w away from the axis, and iq . grad w is the
+// distance times the slope of w around the axis. The functions are tabulated from the blend's own rule, so they hold
+// for every blend of blend_rule.h.
 #pragma once
 
 #include <complex>
@@ -18,10 +20,11 @@ namespace limber {
 
 class TurnTable {
  public:
-  //   angle  of the turn, radians, less than pi
+  // Tabulates the functions for one blend and one turn.
+  //   angle  angle of the turn, radians, less than pi
   TurnTable(Blend blend, double angle);
 
-  // Values at w, [0, 1], and their slopes over w.
+  // The functions at a share w, [0, 1], and their derivatives with respect to w.
   struct Values {
     float volume, away, about;        // |z|^2, Re(k), Im(k)
     float volume_w, away_w, about_w;  // their derivatives
@@ -34,7 +37,7 @@ class TurnTable {
     return {a.volume + t * (b.volume - a.volume), a.away + t * (b.away - a.away), a.about + t * (b.about - a.about),
             (b.volume - a.volume) * kSteps,       (b.away - a.away) * kSteps,     (b.about - a.about) * kSteps};
   }
-  // Returns the angle by which tissue of share w turns about the axis, radians, and its derivative over w.
+  // Returns the angle by which tissue of share w turns about the axis, radians, and its derivative with respect to w.
   std::pair<double, double> angle_at(double w) const;
 
  private:

@@ -11,26 +11,28 @@ namespace limber {
 
 namespace {
 
-// Cells whose volume falls below this share of their volume at rest count as folded: they turn over soon.
+// A voxel whose volume falls below this share of its volume at rest counts as folded, since it is close to inversion.
 constexpr float kLeastVolume = 0.25f;
-// Factors on the parts of the total. Chosen on the Bender arm: smaller factors on the last three lower the volume
+// Factors of the terms of the total, chosen on the Bender arm. Smaller factors of the last three would lower the volume
 // changes at +90 degrees to 1 %, but leave ripples on the skin and bulge the upper arm.
 constexpr double kFold = 1, kOverlap = 0.5;
-constexpr double kLocal = 0.5;   // on the squared volume change of single voxels
-constexpr double kShear = 0.02;  // on the squared shear
-constexpr double kBend = 6;      // on the squared bend of the field, as a change of strain over one cell
-// |x| near 0 is rounded over this many percent, so that the minimizer sees a slope that changes smoothly.
+constexpr double kLocal = 0.5;   // factor of the squared volume change of single voxels
+constexpr double kShear = 0.02;  // factor of the squared shear
+constexpr double kBend = 6;  // factor of the squared bend of the field, measured as a change of strain over one cell
+// Half width, in percent, of the range around 0 in which |x| is replaced by a smooth function, since the minimizer
+// needs a continuous derivative.
 constexpr double kRounding = 0.2;
-// Voxels that the sums visit; in finer volumes a regular part of the voxels stands for all.
+// Upper limit on the number of voxels that are summed. In finer volumes, a regular subset of the voxels is used.
 constexpr std::int64_t kMostSamples = 250'000;
-constexpr double kLeastShare = 0.005;  // of the soft tissue around the joint, for a tissue to count
-constexpr int kGrain = 128;            // cells
+// A class of tissue counts only if it is at least this share of the soft tissue around the joint.
+constexpr double kLeastShare = 0.005;
+constexpr int kGrain = 128;  // cells per block of a parallel loop
 
 struct Sample {
-  glm::vec3 position;    // from the joint, mm
-  glm::vec3 base_slope;  // of the fixed part of the share, 1 / mm
-  glm::vec3 mask_slope;  // of the mask
-  glm::vec3 open;        // by axis of the volume: share of the two neighbours that are tissue, 0, 1/2 or 1
+  glm::vec3 position;    // position relative to the joint, mm
+  glm::vec3 base_slope;  // gradient of the fixed part of the share, 1 / mm
+  glm::vec3 mask_slope;  // gradient of the mask, 1 / mm
+  glm::vec3 open;  // for each axis of the volume, how many of the two neighbours are tissue, as a share: 0, 1/2 or 1
   FieldPoint point;
   FleshClass tissue;
 };
@@ -38,7 +40,7 @@ struct Sample {
 double rounded(double x) { return std::sqrt(x * x + kRounding * kRounding) - kRounding; }
 double rounded_slope(double x) { return x / std::sqrt(x * x + kRounding * kRounding); }
 
-// The turns about one axis.
+// The turns with one common axis, by index, and the gaps that they can close.
 struct Axis {
   glm::dvec3 axis;
   std::vector<int> turns;
@@ -90,13 +92,13 @@ class VolumeModel::Work {
     return value;
   }
 
-  // Writes the gradient of the total.
-  //   slopes  of the total by the volume change of each turn and tissue, 1 / mm3
+  // Writes the gradient of the total with respect to the node values.
+  //   slopes  derivative of the total with respect to the volume change of each turn and tissue class, 1 / mm3
   void differentiate(std::span<const double> nodes, const std::vector<FleshChange>& slopes, double care,
                      std::span<double> gradient) const;
 
  private:
-  // The energy of bending, and its slope by the second difference of a row.
+  // Returns the factor of the squared second difference of a row in the bending energy.
   double bend_of(const JointField::Row& row) const {
     const double r2 = glm::dot(field_.node_position(row[1]), field_.node_position(row[1]));
     return kBend * percent_of_all_ * field_.cell_edge() * r2;
@@ -129,7 +131,7 @@ class VolumeModel::Work {
 
   struct Local {
     float w;
-    glm::vec3 slope;  // of w along the world's axes
+    glm::vec3 slope;  // gradient of w in world axes, 1 / mm
   };
   Local local(const Sample& sample, const std::array<float, 8>& values) const {
     const JointField::Shape& shape = field_.shape(sample.point.place);
@@ -150,19 +152,20 @@ class VolumeModel::Work {
   int turn_count_;
   std::vector<TurnTable> tables_;
   std::vector<Axis> axes_;
-  std::vector<Sample> samples_;                         // grouped by piece
-  std::vector<std::int32_t> piece_begin_;               // index of each piece's first sample, and the number of samples
-  glm::mat3 axes_of_volume_{1}, volume_from_world_{1};  // unit axes of the volume as columns, and the inverse
-  float sample_volume_ = 0;                             // mm3
-  FleshChange percent_of_{};                            // 100 / volume of the body's tissue of each class
-  FleshChange near_per_body_{};  // volume of the body's tissue of each class / volume of that around the joint
+  std::vector<Sample> samples_;            // sorted by cell
+  std::vector<std::int32_t> piece_begin_;  // index of each cell's first sample, then the number of samples
+  // Columns: unit axes of the volume; and the inverse of this matrix.
+  glm::mat3 axes_of_volume_{1}, volume_from_world_{1};
+  float sample_volume_ = 0;      // volume for which one sample stands, mm3
+  FleshChange percent_of_{};     // 100 / volume of the body's tissue of each class
+  FleshChange near_per_body_{};  // volume of each class in the whole body divided by its volume around the joint
   double percent_of_all_ = 0;    // 100 / volume of skin, fat and muscle around the joint
 };
 
 namespace {
 
-// Slopes of a function of voxels along the world's axes, by central differences; a neighbour that is not connected
-// tissue counts as the voxel itself, as it does for the corners of the voxel's cell when the body is posed.
+// Computes gradients of a function of voxels in world axes by central differences. A neighbour that is not connected
+// tissue is replaced by the voxel itself. The same happens at the corners of the voxel's cell when the body is posed.
 class Slopes {
  public:
   explicit Slopes(const WeightedBody& body) : tissue_(body.tissue), size_(body.volume.grid.size) {
@@ -170,7 +173,8 @@ class Slopes {
     world_ = glm::transpose(glm::inverse(linear));
   }
   struct Neighbours {
-    std::array<std::int64_t, 6> index;  // of the neighbours towards lower x, higher x, ...; the voxel's own where none
+    // Indices of the neighbours towards lower x, higher x, ...; the voxel's own index where there is none.
+    std::array<std::int64_t, 6> index;
     glm::vec3 open;
   };
   Neighbours neighbours(std::int64_t index, const glm::ivec3& voxel) const {
@@ -217,7 +221,7 @@ void VolumeModel::Work::gather_samples(const WeightedBody& body, const JointMoti
   const std::int64_t soft = std::accumulate(near.begin(), near.end(), std::int64_t{0});
   for (int c = 0; c < kFleshClasses; ++c) {
     percent_of_[c] = counts[c] ? 100 / (counts[c] * voxel_volume) : 0;
-    // A tissue of which hardly anything lies around the joint does not count.
+    // Ignores a class of tissue of which there is hardly anything around the joint.
     near_per_body_[c] = near[c] > kLeastShare * soft ? double(counts[c]) / near[c] : 0;
   }
   percent_of_all_ = 100 / (std::max<std::int64_t>(soft, 1) * voxel_volume);

@@ -54,12 +54,12 @@ struct Report {
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   std::vector<TurnedJoint> joints;
-  std::optional<std::vector<GlidedJoint>>
-      glide;  // joints that were translated so that their bones do not overlap; none: joints do not glide
+  // The joints that were translated so that their bones do not overlap. Empty: joints do not glide.
+  std::optional<std::vector<GlidedJoint>> glide;
   StageSeconds seconds;
   std::optional<VolumeMetrics> metrics;
-  std::optional<std::vector<std::string>>
-      doubts;  // reasons why the input files may not belong together (input_doubts.h); none: not checked
+  // Reasons why the input files may not belong together (input_doubts.h). Empty optional: not checked.
+  std::optional<std::vector<std::string>> doubts;
   std::optional<bool> whole_body;  // true: the rig has legs, and arms or a head; none: no rig
   PosedBoneMeasures posed_bones;
   std::optional<Exposure> exposure;

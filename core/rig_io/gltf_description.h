@@ -23,10 +23,12 @@ struct GltfDescription {
     int parent = -1;
     std::int64_t mesh = -1;
     glm::dmat4 world_from_node{1};  // metres, Y up
-    bool is_in_scene = false;       // the default scene (the first if none is named, all nodes without scenes) shows it
+    // True: the default scene shows the node. That is the first scene if none is named; without scenes, all nodes are
+    // shown.
+    bool is_in_scene = false;
   };
   struct Primitive {
-    std::int64_t positions = -1, indices = -1;  // accessors
+    std::int64_t positions = -1, indices = -1;  // indices of accessors
     std::int64_t mode = 4;                      // 4: triangles, 5: strip, 6: fan [glTF 2.0, 5.24.4]
   };
   struct Accessor {
@@ -42,16 +44,16 @@ struct GltfDescription {
   };
   struct Buffer {
     std::uint64_t bytes = 0;
-    std::string uri;  // empty: the binary chunk of a .glb
+    std::string uri;  // empty: the data are in the binary chunk of a .glb
   };
 
   std::vector<Node> nodes;
-  std::vector<std::size_t> order;  // all nodes, parents before their children
+  std::vector<std::size_t> order;  // indices of all nodes, parents before their children
   std::vector<std::vector<Primitive>> meshes;
   std::vector<Accessor> accessors;
   std::vector<View> views;
   std::vector<Buffer> buffers;
-  std::vector<std::vector<std::uint64_t>> skins;  // each skin's joints, which have not been checked to be nodes
+  std::vector<std::vector<std::uint64_t>> skins;  // joints of each skin; not checked to be indices of nodes
   std::size_t animations = 0;
   std::string_view binary;  // the binary chunk of a .glb, a part of the parsed bytes; empty without
 };

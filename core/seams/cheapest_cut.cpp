@@ -139,7 +139,7 @@ class CheapestCut {
   // Returns the cost of a cut that makes v a surface voxel; the flesh lies in the direction `inward`. If fat or muscle
   // is less deep below this surface than it usually is below skin at the air, the cost is higher than `own_cost`. The
   // depth of bone is ignored, because bone lies near the skin in a hand but deep in a thigh. Only the first voxel of
-  // fat and the first of muscle count: the deeper a layer lies, the less it surprises.
+  // fat and the first of muscle count, since deeper voxels tell less about where the surface belongs.
   SurfaceCost cost_as_surface(double own_cost, glm::ivec3 v, int inward) const {
     const int axis = inward >> 1, step = inward & 1 ? 1 : -1, last = inward & 1 ? volume_.grid.size[axis] - 1 : 0;
     const int steps = std::min(std::max(of_limb_.reach(axis), of_other_.reach(axis)) - 1, step * (last - v[axis]));

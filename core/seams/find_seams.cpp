@@ -93,7 +93,8 @@ class SeamFinder {
     else spread_bones([](std::uint16_t, float way) { return way; });
   }
 
-  //   corrected  a function (bone, length of a path) -> the length that is compared
+  // Assigns every tissue voxel to the bone with the least corrected path length.
+  //   corrected  a function (bone, path length in mm) that returns the length to compare
   template <class Corrected>
   void spread_bones(const Corrected& corrected) {
     bone_.resize(tissue_.size());
@@ -254,8 +255,8 @@ class SeamFinder {
     borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
   }
 
-  // Parts limb `first`, and the limbs after it for as long as their bands touch none of those before, from the body.
-  // Bands that do not touch are cut on several threads. Returns the number of limbs.
+  // Separates limb `first` from the body, together with the limbs after it whose bands do not touch the bands before.
+  // Bands that do not touch are cut on several threads. Returns how many limbs were separated.
   std::size_t part_from(std::size_t first) {
     std::vector<SeamBand> bands;
     for (std::size_t k = first; k < limbs_.size(); ++k) {
@@ -291,12 +292,12 @@ class SeamFinder {
   }
   std::int32_t node_at(std::int64_t place) const { return node_of_[place] - 1; }
 
-  // Returns true if a tissue voxel lies in another band than the given one.
+  // Returns true if a tissue voxel is in a band other than the given one.
   bool is_of_other(const SeamBand& band, std::int64_t place) const {
     const std::int32_t node = node_at(place);
     return node >= std::ssize(band.nodes) || (node >= 0 && band.nodes[node].place != place);
   }
-  // Finds the voxels of a band. Returns false if the band touches another one.
+  // Finds the voxels of a band. Returns false if the band touches the band of another limb.
   bool find_band(SeamBand& band) {
     const Limb& limb = band.limb;
     std::vector<std::int32_t> open;

@@ -23,8 +23,8 @@ struct Limb {
 // Returns the rig's arms and legs, then its thumbs and fingers; none when no bone's name is recognized.
 std::vector<Limb> limbs_of(const Armature& armature);
 
-// Returns true if a point lies in the free part of the limb: beyond the share `grown_together` of its root bone, or
-// nearest to another bone of the limb.
+// Returns true if a point is in the part of the limb that is not grown together with the body: further along the root
+// bone than the share `grown_together`, or nearest to another bone of the limb.
 bool is_free(const Limb& limb, const Armature& armature, const glm::dvec3& point);
 
 enum class LimbName { Arms, Legs, Trunk, Head };

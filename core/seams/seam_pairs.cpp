@@ -63,9 +63,9 @@ bool may_touch(const std::vector<Limb>& limbs, const Face& face) {
   });
 }
 
-// Corrects the bones of faces at the ends of seams. There, the two voxels of a face may have nearest bones of one limb,
-// between which no seam can lie. This face gets the bones of the nearest face whose bones may touch, if that face is at
-// most `reach` mm away.
+// Corrects the bones of faces at the ends of seams. There, the nearest bones of a face's two voxels may belong to one
+// limb, between whose bones no seam can lie. Such a face gets the bones of the nearest face whose bones may touch, if
+// that face is at most `reach` mm away.
 void settle_ends(std::vector<Face>& faces, const std::vector<Limb>& limbs, double reach) {
   std::vector<Face> settled;
   for (const Face& face : faces)

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDeepest = 30;                  // length of a ray, mm; deeper tissue tells nothing about the surface
 constexpr std::int64_t kFewestRays = 200;        // with fewer rays along an axis, surprise() is 0
-constexpr double kUsual = 0.5, kUnusual = 0.05;  // shares of the rays at which surprise() is 0 and 1
+constexpr double kUsual = 0.5, kUnusual = 0.05;  // shares of the rays: surprise() is 0 at the first and 1 at the second
 
 }  // namespace
 
@@ -58,7 +58,8 @@ class SkinCaster {
     const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume_.grid.spacing, axis);
     const glm::ivec3& size = volume_.grid.size;
     const int last = inward & 1 ? size[axis] - 1 : 0;
-    if (step * (last - voxel[axis]) + 1 < steps) return std::nullopt;  // there is air outside the grid
+    // Stops if the ray would leave the grid, beyond which there is air.
+    if (step * (last - voxel[axis]) + 1 < steps) return std::nullopt;
     const std::int64_t stride = step * (axis == 0 ? 1 : axis == 1 ? size.x : std::int64_t{size.x} * size.y);
     std::int64_t at = volume_.grid.index(voxel);
     SkinRay ray{0, static_cast<std::uint8_t>(axis), {}};

@@ -19,8 +19,8 @@ struct ReportFacts {
   std::string commit;   // the commit that the program was built from; "": unknown
   std::string date;     // date on which the report is written
   std::optional<SarFigures> sar;
-  std::optional<RatingResult>
-      rating;               // scores that raters gave for how real the bodies look; empty: there are no scores
+  // The scores that raters gave for how real the bodies look. Empty: there are no scores.
+  std::optional<RatingResult> rating;
   bool of_session = false;  // true: results of an editor session, with wall-clock times and no cell folders
 };
 std::string date_text();  // the present time: "2025-03-07 14:05"

@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kTurn =
-    35 * M_PI / 180;  // angle between the joint's axis and the direction from which the fold is viewed, radians
+// Angle between the joint's axis and the direction from which the fold is viewed, radians.
+constexpr double kTurn = 35 * M_PI / 180;
 constexpr double kStraight = 0.1;  // a joint is straight if the sum of its bones' unit directions is shorter than this
 constexpr double kOff_mm = 50;  // mm; a joint that is this far along its axis from the body's middle has an outer side
 

@@ -9,7 +9,8 @@ namespace limber {
 
 namespace {
 
-// A row of tissues.csv, which knows the names of organs in many vocabularies, and its colour.
+// The colour of an organ. `row` is the name of a row of tissues.csv, which lists the organ's names in many
+// vocabularies.
 struct OrganColour {
   std::string_view row;
   std::uint32_t colour;

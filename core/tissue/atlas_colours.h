@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The colours that anatomy atlases give organs: green for the gall bladder, blue for veins, dark red for liver, spleen
-// and kidneys. Paired organs share a colour.
+// The colours that anatomy atlases use for organs: green for the gall bladder, blue for veins, dark red for liver,
+// spleen and kidneys. Paired organs share a colour.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace limber {
 
-// Returns the colour, sRGB, of the organ that a row of tissues.csv describes; nothing if the row is no organ's.
+// Returns the colour, sRGB, of the organ in a row of tissues.csv; nothing if the row is not an organ.
 std::optional<glm::vec3> organ_colour(std::string_view row);
 
-// Returns the colour of veins, sRGB, if the name of a vessel is that of a vein: "inferior vena cava", "portal_vein".
+// Returns the colour of veins, sRGB, if the name of a vessel means a vein: "inferior vena cava", "portal_vein".
 std::optional<glm::vec3> vein_colour(std::string name);
 
 }  // namespace limber

@@ -26,8 +26,8 @@ inline EightSteps raised(const EightSteps& steps, std::uint16_t rise) {
   return reinterpret_cast<EightSteps>(
       _mm_adds_epu16(reinterpret_cast<__m128i>(steps), reinterpret_cast<__m128i>(EightSteps{} + rise)));
 #else
-  const EightSteps sum = steps + rise,
-                   is_beyond = sum < steps;  // all bits of an element of `is_beyond` are set if its sum has overflowed
+  // All bits of an element of `is_beyond` are set if its sum has overflowed.
+  const EightSteps sum = steps + rise, is_beyond = sum < steps;
   return sum | is_beyond;
 #endif
 }

@@ -24,9 +24,8 @@ class TiledValues {
     pages_.resize(std::int64_t{tiles_.x} * tiles_.y * tiles_.z * kTileVoxels + kTileVoxels);
     constexpr std::uintptr_t kPage = 4096;
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(pages_.data());
-    const std::uintptr_t before =
-        (kPage - begin % kPage) %
-        kPage;  // bytes from the start of the memory to its first page, at which the values begin
+    // Bytes from the start of the memory to its first page, at which the values begin.
+    const std::uintptr_t before = (kPage - begin % kPage) % kPage;
     if (before % sizeof(Value) == 0) first_ = static_cast<std::int64_t>(before / sizeof(Value));
   }
 

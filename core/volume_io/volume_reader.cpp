@@ -23,8 +23,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kAskMilliseconds = 20;  // milliseconds between two checks whether the user has cancelled
-constexpr int kPipeBytes =
-    1 << 20;  // requested size of the pipe's buffer, bytes: the largest that the kernel usually grants
+// Requested size of the pipe's buffer, bytes: the largest that the kernel usually grants.
+constexpr int kPipeBytes = 1 << 20;
 constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a header with all its keys
 constexpr int kNotLoaded = 127;                      // exit code of a process that lacks a shared library
 constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
