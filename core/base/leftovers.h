@@ -26,7 +26,7 @@ class Unfinished {
 
  private:
   Path path_, note_;
-  OpenFile locked_;  // the note
+  OpenFile locked_;  // the note's file, open and locked
 };
 
 // Returns ".limber-PID-NAME" beside `path`, the temporary name of a file that will be renamed to `path`.

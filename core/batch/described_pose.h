@@ -20,7 +20,7 @@ namespace limber {
 struct DescribedPose {
   std::string name;
   std::vector<std::string> flex;  // requests BONE=DEGREES; if `flex`, `body` and all files are empty: the rest pose
-  PoseRequest body;               // from the keys "pose_name" and "joints"
+  PoseRequest body;               // values of the keys "pose_name" and "joints"
   Path pose, motion, map;         // pose file, motion file and retarget map; empty: no such file
   std::optional<int> frame;
   std::string up;

@@ -9,9 +9,9 @@ namespace limber {
 
 struct Observed {
   std::vector<std::string> fields;  // the values of the first columns
-  std::string report;               // limber-report/1; empty if there is none
-  std::string cell;                 // cell.json
-  std::string failure;              // why there is no report
+  std::string report;               // text of the report (limber-report/1); empty if there is none
+  std::string cell;                 // text of the file cell.json
+  std::string failure;              // why the cell has no report
 };
 
 // Returns CSV with the given columns, followed by group, item, quantity and value: "tissues", "fat",

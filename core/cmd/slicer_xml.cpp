@@ -122,7 +122,7 @@ Element element_of(CLI::Option& option, const std::string& command) {
   const std::string name = name_of(option);
   if (option.get_expected_max() == 0) return {"boolean", ""};
   if (const auto output = outputs().find(command + " " + name); output != outputs().end()) return output->second;
-  const bool is_pair = option.get_type_name().find('=') != std::string::npos;  // IN=OUT
+  const bool is_pair = option.get_type_name().find('=') != std::string::npos;  // true for values of the form IN=OUT
   if (names_outputs(option)) return is_pair ? Element{"string", ""} : file_of("*");
   if (const auto input = inputs().find(name); input != inputs().end()) return input->second;
   if (option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll) return {"string", R"( multiple="true")"};

@@ -30,6 +30,6 @@ TissueTable tissues_of(const VolumeFile& file, const std::string& table);
 std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options,
                                          const std::string& where);
 
-std::string joined(const std::vector<std::string>& names);  // "a, b, c"
+std::string joined(const std::vector<std::string>& names);  // returns the names separated by commas: "a, b, c"
 
 }  // namespace limber::cmd

@@ -27,8 +27,8 @@ struct ExportInput {
 };
 
 struct Exporter {
-  std::string name;                  // "openEMS boxes"
-  std::vector<std::string> endings;  // ".xml"
+  std::string name;                  // for example "openEMS boxes"
+  std::vector<std::string> endings;  // file endings, for example ".xml"
   bool needs_frequency = false;
   bool takes_voxels = true;
   bool takes_mesh = false;  // true: if there is an ExportInput::mesh, it is written instead of the voxels

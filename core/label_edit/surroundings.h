@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// What replaces the label of erased voxels.
+// The labels that replace those of erased voxels.
 enum class Erased {
   Surroundings,  // the labels around them
   Air,

@@ -16,11 +16,11 @@
 
 namespace limber {
 
-// How a value changes from a key to the next one: it stays until the next key, changes at constant speed, or follows a
-// cubic Bezier curve with the tangents of the two keys.
+// The change of a value from a key to the next one: it stays until the next key, changes at constant speed, or follows
+// a cubic Bezier curve with the tangents of the two keys.
 enum class Interpolation : std::uint8_t { Constant, Linear, Bezier };
 
-// What determines a key's tangents. Automatic: the neighbouring keys [Catmull & Rom 1974]. Clamped: the neighbouring
+// The source of a key's tangents. Automatic: the neighbouring keys [Catmull & Rom 1974]. Clamped: the neighbouring
 // keys, but without overshoot where the curve turns back. Aligned: the user; both tangents are equal. Free: the user;
 // the tangents are independent. Flat: both tangents are zero.
 enum class HandleKind : std::uint8_t { Automatic, Clamped, Aligned, Free, Flat };

@@ -79,7 +79,7 @@ std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLim
                           const std::vector<Pose>& poses, const std::vector<Plant>& plants, int ease,
                           Progress& progress = no_progress());
 
-// How accurately a plant is kept, mm.
+// The accuracy with which a plant is kept, mm.
 struct PlantError {
   double from_place = 0;  // largest distance of the point from the plant's position in its frames
   double slide = 0;       // largest horizontal distance of the point from its own position in the first of these frames

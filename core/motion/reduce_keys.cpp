@@ -63,7 +63,7 @@ class Spline {
  private:
   struct Worst {
     int frame = -1;
-    double error = 0;  // as a share of the error that is allowed at the frame
+    double error = 0;  // error divided by the error that is allowed at the frame
   };
 
   // Returns the speed at a frame as the central difference of the neighbouring frames.

@@ -36,8 +36,8 @@ ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& p
 
 // The largest errors that are allowed at each frame; all are positive.
 struct AllowedErrors {
-  std::vector<std::vector<double>> degrees;  // for each bone and frame
-  std::vector<double> mm;                    // of the body's shift, for each frame
+  std::vector<std::vector<double>> degrees;  // degrees; one list for each bone, with one value for each frame
+  std::vector<double> mm;                    // allowed error of the body's shift at each frame, mm
 };
 AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, const ReduceSettings& settings);
 

@@ -49,7 +49,7 @@ struct RetargetMap {
 
     bool operator==(const Source&) const = default;
   };
-  std::map<std::string, Source> sources;  // by name of the bone; other bones follow their parents
+  std::map<std::string, Source> sources;  // keyed by the name of the bone; bones without an entry follow their parents
   RestStances stances;
 
   bool operator==(const RetargetMap&) const = default;
@@ -73,7 +73,7 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
                                const Armature& armature);
 void write_retarget_map(const RetargetMap& map, const Path& path);
 
-// How the body moves with the source's hips.
+// The movement of the body as a whole, which follows the hips of the source.
 enum class Travel {
   Locked,   // the body stays at its rest position
   InPlace,  // the body moves only up and down, so that feet on the ground are as high as at rest

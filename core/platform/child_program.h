@@ -18,7 +18,7 @@ struct Streams {
 };
 enum class Environment { Same, Empty };
 
-// How a program ended.
+// The way in which a program ended.
 struct ProgramEnd {
   int exit_code = 0;
   int signal = 0;  // number of the signal that ended the program; 0: it ended by itself

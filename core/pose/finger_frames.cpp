@@ -102,8 +102,7 @@ void add_abduction(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dv
 }
 
 // Sets the spread axis of a finger's first bone, so that a positive angle moves the bone in the direction `towards`.
-//   level  unit direction of the unspread bone, at the knuckle's flexion at rest; spread is measured from this
-//   direction
+//   level  unit direction of the bone without spread, at the knuckle's flexion at rest
 void add_spreading(AnatomicalHinge& hinge, const glm::dvec3& bone, const glm::dvec3& towards, const glm::dvec3& level) {
   const glm::dvec3 axis = unit(glm::cross(bone, hinge.axis));
   if (axis == glm::dvec3(0) || level == glm::dvec3(0) || towards == glm::dvec3(0)) return;

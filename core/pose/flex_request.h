@@ -9,7 +9,7 @@ namespace limber {
 
 struct FlexRequest {
   std::string bone;
-  double degrees = 0;  // from -360 to 360; a positive angle bends further
+  double degrees = 0;  // angle, from -360 to 360 degrees; a positive angle bends further
 };
 
 // Reads BONE=DEG. A bone's name may contain equals signs; the number follows the last one. Throws Error if the bone's

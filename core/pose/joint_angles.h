@@ -94,7 +94,7 @@ BodyPart part_of(BodyJoint joint);
 bool is_paired(BodyJoint joint);
 
 struct AngleRange {
-  double low = 0, high = 0;  // degrees
+  double low = 0, high = 0;  // lowest and highest angle, degrees
 };
 // Returns the range that adults usually reach [AAOS 1965; varus, valgus and axial rotation of elbow, knee and ankle:
 // Kapandji, The Physiology of the Joints]. Empty if the joint has no such motion.

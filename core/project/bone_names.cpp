@@ -56,7 +56,7 @@ RetargetMap matched(const Clip& clip, const Armature& armature) {
   try {
     return match_by_names(*clip.motion, armature);
   } catch (const Error&) {
-    return {};  // no joint of the clip matches a bone
+    return {};  // the clip does not move any bone, since none of its joints matches one
   }
 }
 

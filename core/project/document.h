@@ -31,7 +31,7 @@ namespace limber {
 struct WeightLayers;
 struct SolvedMesh;
 
-// How one tissue is shown. A label without an entry is visible and opaque.
+// The display of one tissue. A label without an entry is visible and opaque.
 struct TissueLook {
   bool visible = true;
   float opacity = 1;  // [0, 1], in the X-ray and tissue displays
@@ -56,7 +56,7 @@ struct ClipPlane {
   bool operator==(const ClipPlane&) const = default;
 };
 
-// Which tissues are shown, and which region of the volume. Edits of the visibility can be undone like any other edit.
+// The tissues and the region of the volume that are shown. Edits of the visibility can be undone like any other edit.
 struct Visibility {
   std::map<Label, TissueLook> looks;
   ClipBox clip_box;
@@ -85,7 +85,7 @@ struct Result {
   std::shared_ptr<const SkinWeights> from_weights;
   std::shared_ptr<const Pose> from_pose;
   std::shared_ptr<const SolvedMesh> solved;      // the posed mesh of the FEM solver; null where no joint bends
-  std::shared_ptr<const Overlap> overlap;        // null where the overlap was not kept
+  std::shared_ptr<const Overlap> overlap;        // null if the overlap was not stored
   std::shared_ptr<const Seams> from_seams;       // Document::seams at the time of resampling
   std::shared_ptr<const BoneMap> from_bone_map;  // Document::bone_map at the time of resampling
 };

@@ -44,7 +44,7 @@ class PackedVolumes {
   std::int64_t bytes() const;  // size of the stored changes
 
  private:
-  // How the volume of a step differs from that of the step before.
+  // The difference between the volume of a step and that of the step before.
   struct Link {
     bool same = false;
     std::shared_ptr<const LabelChange> change;

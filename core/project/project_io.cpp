@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kApplication = 0x4c696d62;  // "Limb"
+constexpr std::int64_t kApplication = 0x4c696d62;  // the letters "Limb", by which SQLite identifies Limber's files
 constexpr std::int64_t kSchemaVersion = 1;
 constexpr const char* kChunkTable = "CREATE TABLE chunk(hash BLOB PRIMARY KEY, packed BLOB NOT NULL)";
 constexpr const char* kStateTable = "CREATE TABLE state(name BLOB PRIMARY KEY, value BLOB NOT NULL) WITHOUT ROWID";

@@ -56,7 +56,7 @@ struct SpareChunks {
 SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer,
                         Progress& progress = no_progress(), const SpareChunks& spare = {});
 
-// What update_project() does with chunks that only earlier saves need.
+// Tells update_project() whether to remove or keep the chunks that only earlier saves need.
 enum class Unused { Remove, Keep };
 
 // Saves into an existing project file: writes only what has changed since the save with the mark `expected`. Throws

@@ -10,7 +10,7 @@ namespace limber {
 class DisplacementView {
  public:
   DisplacementView() = default;
-  // Row after row, x fastest; empty if `count` is 0.
+  // Makes a view of displacements that are stored row by row, x fastest. The view is empty if `count` is 0.
   DisplacementView(const glm::vec3* rows, std::size_t count) : rows_(count > 0 ? rows : nullptr) {}
   DisplacementView(const TiledVectors& tiles) : tiles_(tiles.empty() ? nullptr : &tiles) {}
 

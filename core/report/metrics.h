@@ -34,7 +34,7 @@ struct TissueChange {
   TissueKind kind = TissueKind::Unknown;
   std::int64_t voxels_before = 0, voxels_after = 0;
   double mm3_before = 0, mm3_after = 0;
-  double mass_before = 0, mass_after = 0;  // g
+  double mass_before = 0, mass_after = 0;  // mass of the tissue, g
   double volume_change_percent = 0, mass_change_percent = 0;
   int components_before = 0, components_after = 0;  // number of 26-connected components of 50 voxels or more
   // Number of parts into which posing has torn the tissue: its components of 50 voxels or more after posing minus those
@@ -47,7 +47,7 @@ struct VolumeMetrics {
   std::vector<TissueChange> tissues;  // tissues that are present before or after, sorted by label
   std::int64_t voxels_before = 0, voxels_after = 0;
   double mm3_before = 0, mm3_after = 0;
-  double mass_before = 0, mass_after = 0;  // g
+  double mass_before = 0, mass_after = 0;  // mass of all tissues, g
   double volume_change_percent = 0, mass_change_percent = 0;
   std::int64_t enclosed_air_before = 0, enclosed_air_after = 0;  // number of air voxels that tissue encloses
   std::int64_t trapped_air_voxels = 0;                           // increase of the enclosed air, voxels; 0: none

@@ -37,7 +37,7 @@ Json tissue_rows(const Report& report) {
              {"mm3_after", tissue.mm3_after},
              {"mass_before_g", tissue.mass_before},
              {"mass_after_g", tissue.mass_after}};
-    // For a tissue that was absent before posing, a change in percent makes no sense.
+    // Leaves out the change in percent for a tissue that was absent before posing.
     if (tissue.voxels_before) {
       row["volume_change_percent"] = tissue.volume_change_percent;
       row["mass_change_percent"] = tissue.mass_change_percent;

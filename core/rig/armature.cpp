@@ -134,7 +134,8 @@ glm::dvec3 flex_axis(const Armature& armature, int bone_index) {
   const glm::dvec3 a = parent.tail - parent.head, b = bone.tail - bone.head;
   const double lengths = glm::length(a) * glm::length(b);
   const glm::dvec3 axis = glm::cross(a, b);
-  // If bone and parent are bent by less than 10 degrees, small errors of their positions would decide the axis.
+  // Throws Error if bone and parent are bent by less than 10 degrees, since small errors of their positions would then
+  // decide the axis.
   if (lengths == 0 || glm::length(axis) < lengths * std::sin(10 * std::numbers::pi / 180))
     throw Error("the bone is nearly straight with its parent, so its flex axis is not known", bone.name, remedy);
   return glm::normalize(axis);

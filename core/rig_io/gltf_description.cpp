@@ -21,7 +21,8 @@ enum class Kind { Text, Number, Whole, Yes, Numbers, Wholes, Object, Objects };
 struct Property {
   std::string_view owner, key;
   Kind kind;
-  std::string_view inner = {};  // type of the object or objects that are this property's value, as in `owner`
+  std::string_view inner =
+      {};  // name of the type of the object or objects that are this property's value; empty: not an object
   bool required = false;
 };
 

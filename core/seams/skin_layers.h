@@ -60,7 +60,7 @@ class SkinLayers {
   double surprise(int axis, Layer layer, int steps) const {
     return steps < reach_[axis] ? surprise_[axis][static_cast<int>(layer)][steps] : 0;
   }
-  // Returns the depth along an axis, in voxels, from which inwards surprise() is 0 for every layer.
+  // Returns the depth along an axis, in voxels, below which surprise() is 0 for every layer.
   int reach(int axis) const { return reach_[axis]; }
 
  private:

@@ -35,7 +35,7 @@ WeightsFile read_weights(const Path& path, const LabelVolume& volume, const Tiss
                          const Armature& armature);
 // Throws Error when no weights can be written to this path.
 void check_weights_writable(const Path& path);
-// Whether the weights were computed with the seams of `tissue`. The file stores seams only for OfTissue.
+// Tells whether the weights were computed with the seams of `tissue`. The file stores seams only for OfTissue.
 enum class SeamsOfWeights { Unknown, OfTissue };
 void write_weights(const SkinWeights& weights, const LabelVolume& volume, const TissueVoxels& tissue, const Path& path,
                    SeamsOfWeights seams = SeamsOfWeights::Unknown);

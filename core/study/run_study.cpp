@@ -157,7 +157,7 @@ class Runner {
   CellStore store_;
   const CellSettings settings_;
   std::vector<StudyCell> mine_;
-  std::vector<DescribedBody> bodies_;  // at each of the study's spacings
+  std::vector<DescribedBody> bodies_;  // the body at each of the study's spacings
   Pace pace_;
   int started_ = 0;
 };

@@ -16,12 +16,12 @@ namespace limber {
 struct RaterScores {
   struct Score {
     int order = 0;  // position at which the rater saw the picture, from 1
-    int score = 0;  // [1, 5]
+    int score = 0;  // from 1 to 5
     std::string remark;
   };
   Path file;
   std::string rater;
-  std::map<std::string, Score> scores;  // by the picture's code; only pictures with a score
+  std::map<std::string, Score> scores;  // keyed by the picture's code; pictures without a score have no entry
 };
 
 // Reads a rater's file. Throws Error if the file is not of this kind, names two raters, or has an invalid score.

@@ -61,8 +61,8 @@ Study read_study(const Path& path);
 //   folder  contains man-arm-2mm.mha (or other man-arm-*mm volumes) and its armature; empty: uses the procedural arm
 Study paper_study(const Path& folder = {});
 
-// Returns the study as JSON for the file of results, with the values of all keys that were left at their defaults.
-//   name_of  returns how the text calls a file; empty: by its name without its folder
+// Returns the study as JSON for the file of results. Keys that were left at their defaults are written too.
+//   name_of  returns the name by which the text mentions a file; empty: the file's name without its folder
 std::string to_json(const Study& study, const std::function<std::string(const Path&)>& name_of = {});
 
 // Returns "2 mm", or "as it is" for the volume's own spacing.

@@ -47,7 +47,7 @@ std::string minutes_text(double seconds) {
 std::string escaped(const std::string& text) {
   std::string result;
   for (std::size_t i = 0; i < text.size(); ++i) {
-    // Also drops U+FFFE and U+FFFF, which XML forbids.
+    // Replaces U+FFFE and U+FFFF, which XML forbids, by U+FFFD.
     if (text.compare(i, 3, "\xef\xbf\xbe") == 0 || text.compare(i, 3, "\xef\xbf\xbf") == 0) {
       result += "\ufffd";
       i += 2;

@@ -7,7 +7,7 @@
 
 namespace limber {
 
-std::string number(double value);                       // at most six digits: "0.05"
+std::string number(double value);                       // returns a number with at most six digits: "0.05"
 std::string fixed(double value, int decimals);          // "12.30"; never "-0.00"
 std::string signed_number(double value, int decimals);  // "+1.20", "0.00"; minus is U+2212, as wide as a plus
 std::string grouped(std::int64_t value);   // "646 912": narrow no-break spaces between thousands, from five digits on

@@ -28,9 +28,9 @@ std::uint32_t first_letters(const TissueWords& words) {
   return letters;
 }
 
-// Returns how many words name i of a row has (i = 0: the row's name, then its synonyms) if the tissue's name contains
-// all of these words; else 0.
-//   letters  first_letters(name): most rows differ from the name in a first letter
+// Returns the number of words of name i of a row (i = 0: the row's name, then its synonyms) if the tissue's name
+// contains all of these words; else 0.
+//   letters  first_letters(name), which quickly excludes most rows
 int words_met(const TissueWords& name, std::uint32_t letters, const TissueNames& row, std::size_t i) {
   const TissueWords& wanted = row.words[i];
   if (row.whole[i] && name.size() != wanted.size()) return 0;

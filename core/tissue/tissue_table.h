@@ -85,7 +85,7 @@ class FileValueIndex {
 // Sets the tissue's colour, stiffness and priority to the initial values of its kind. Sets its density to that of the
 // row of tissues.csv that matches the tissue's name, or else its kind (tissue_rows.h).
 void apply_kind_defaults(Tissue& tissue);
-// Where the initial material values of a tissue kind come from, in words for the user.
+// The sources of the initial material values of a tissue kind, in words for the user.
 struct MaterialSources {
   std::string_view density, stiffness, poisson;
 };

@@ -17,7 +17,7 @@ struct Components {
     Label label;              // never air
     std::int32_t component;   // index into `voxels`
   };
-  std::vector<Run> runs;                // row by row
+  std::vector<Run> runs;                // in the order of rows
   std::vector<std::int64_t> first_run;  // #rows + 1: index of the first run of row y + size.y * z
   std::vector<std::int64_t> voxels;  // voxel count of each component; components are in the order of their first voxels
 };

@@ -47,7 +47,8 @@ struct GreyVolume {
   std::vector<std::string> warnings;
 };
 
-// What the command `info` shows about a label or grey volume: header, value range and label counts, without the voxels.
+// The facts that the command `info` shows about a label or grey volume: header, value range and label counts, without
+// the voxels.
 struct VolumeSummary {
   Grid grid;
   FileType type;
