@@ -149,8 +149,8 @@ struct Cholesky::Factor {
   Factor(const Factor&) = delete;
   Factor& operator=(const Factor&) = delete;
 
-  // Throws Error if the last call of CHOLMOD failed (negative status). The message speaks of too little memory, because
-  // no other failure depends on the input.
+  // Throws Error if the last call of CHOLMOD failed (negative status). The message names lack of memory as the cause,
+  // because no other failure depends on the input.
   void require(const char* what) const {
     if (common.status >= 0) return;
     throw Error("not enough memory for a system of " + std::to_string(node_count) + " mesh nodes",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pose of a rig that is changed bone by bone. It always knows the world positions of its joints.
+// A pose of a rig that is changed bone by bone, with the world positions of its joints, which are kept up to date.
 #pragma once
 
 #include <vector>

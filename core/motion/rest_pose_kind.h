@@ -22,8 +22,8 @@ enum class RestStance : std::uint8_t { AsItLies, TPose, APose, Anatomical };
 constexpr RestStance kRestStances[] = {RestStance::AsItLies, RestStance::TPose, RestStance::APose,
                                        RestStance::Anatomical};
 
-const char* word_of(
-    RestStance stance);  // word for a stance in files and on the command line: "file", "T", "A", "anatomical"
+// Returns the word for a stance in files and on the command line: "file", "T", "A" or "anatomical".
+const char* word_of(RestStance stance);
 // Returns the stance that a word names ("T", "A", "anatomical", "file"), in upper or lower case. "supine" also names
 // the anatomical stance. Throws Error for any other word.
 RestStance stance_of_word(const std::string& word, const std::string& where);

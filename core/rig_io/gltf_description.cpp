@@ -21,8 +21,8 @@ enum class Kind { Text, Number, Whole, Yes, Numbers, Wholes, Object, Objects };
 struct Property {
   std::string_view owner, key;
   Kind kind;
-  std::string_view inner =
-      {};  // name of the type of the object or objects that are this property's value; empty: not an object
+  // Type of the object, or of the objects in the list, that is this property's value. Empty: the value is no object.
+  std::string_view inner = {};
   bool required = false;
 };
 

@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 10> kTypeNames = {"int8",   "uint8", "int
                                                          "uint32", "int64", "uint64", "float32", "float64"};
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 40;
 // Largest deviation from 1 at which the length of a direction vector is treated as 1, because headers round to 6
-// digits. A larger deviation is meant: the vector's length then scales the spacing.
+// digits. A larger deviation is intended: the vector's length then scales the spacing.
 constexpr double kUnitTolerance = 1e-4;
 // Limits of the triple product of the three voxel axes, which is 1 for axes at right angles and 0 for axes in one
 // plane. At or below kFlat the axes are refused. Below 1 - kRightAngles the reader gives a warning.
