@@ -42,8 +42,8 @@ std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, cons
     pose = std::move(glided.pose);
     joints.push_back(std::move(glided.joints));
   }
-  return_free_memory();  // releases the lists of all bone voxels, whose memory would else stay allocated while the body
-                         // is posed
+  // Releases the lists of all bone voxels, whose memory would else stay allocated while the body is posed.
+  return_free_memory();
   return joints;
 }
 

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kDeviation = 0.25;   // seconds; standard deviation of the Gaussian. A step takes about half a second,
-                                      // so its bounce is smoothed away
+// Standard deviation of the Gaussian, seconds. A step takes about half a second, so its bounce is smoothed away.
+constexpr double kDeviation = 0.25;
 constexpr double kMostFrames = 1000;  // frames; upper limit of the standard deviation, for clips of a very high rate
 constexpr int kReach = 3;             // standard deviations after which the Gaussian is cut off
 

@@ -73,7 +73,7 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
                                const Armature& armature);
 void write_retarget_map(const RetargetMap& map, const Path& path);
 
-// The movement of the body as a whole, which follows the hips of the source.
+// The part of the movement of the source's hips that the whole body follows.
 enum class Travel {
   Locked,   // the body stays at its rest position
   InPlace,  // the body moves only up and down, so that feet on the ground are as high as at rest

@@ -26,7 +26,7 @@ struct WholeBone {
   double residual_mm = 0;         // largest distance of a voxel from the best rigid motion, mm; 0: several bones
 };
 
-// Judges the bones that labels name by the weights. Returns them sorted by label, then side of the body.
+// Uses the weights to judge each bone that a label names. Returns the bones sorted by label, then side of the body.
 //   posed_from_rest  transform of each bone of `weights` from rest to posed
 std::vector<WholeBone> whole_bones(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                                    const Armature& armature, const SkinWeights& weights,

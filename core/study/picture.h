@@ -38,7 +38,7 @@ LabelColours ratio_colours();
 
 // Draws the slice of a volume in the frame's plane. Each pixel gets the colour of the voxel at its position.
 Picture slice_picture(const LabelVolume& volume, const LabelColours& colours, const PictureFrame& frame);
-glm::u8vec3 dulled(const glm::u8vec3& colour);  // the colour in a picture of marked voxels
+glm::u8vec3 dulled(const glm::u8vec3& colour);  // returns the dull colour of a voxel that is not marked
 // Draws the slice of a volume in dull colours, and marked voxels in bright colours. In `marks`, 1 means that the pose
 // moves two pieces of tissue to this voxel, 2 that it moves two bones there.
 Picture marked_picture(const LabelVolume& volume, const LabelVolume& marks, const LabelColours& colours,

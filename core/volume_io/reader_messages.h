@@ -22,25 +22,25 @@ enum class Message : std::uint32_t {
   // Messages from the program to the reader: first Order, which says what to read, then an answer to each question. An
   // Opened message comes with the descriptor of the opened file.
   Order,
-  Done,     // answer to CheckData
-  Opened,   // answer to OpenHeader and OpenData: the file's size, 64 bits
-  Present,  // answer to HasData: 0 or 1
-  Refused,  // answer to any question: an Error's text
+  Done,     // answers CheckData; contains nothing
+  Opened,   // answers OpenHeader and OpenData; contains the file's size, 64 bits
+  Present,  // answers HasData; contains 0 or 1
+  Refused,  // answers any question; contains an Error's text
   // Messages from the reader to the program: first Hello, then Header, then as many voxels as the header promises, then
   // End.
-  Hello,  // kMessageVersion and the Protection in force
+  Hello,  // contains kMessageVersion and the Protection in force
   Header,
-  Voxels,  // the next voxels in storage order: their number of bytes, 64 bits, then the packed bytes (sparse_bytes.h)
-  // FileBytes: where the next voxels are stored in the file of the last Opened message. The program reads them itself.
+  Voxels,  // contains the next voxels: their number of bytes, 64 bits, then the packed bytes (sparse_bytes.h)
+  // Contains FileBytes: the range of the next voxels in the file of the last Opened message. The program reads them.
   PlainVoxels,
-  End,     // the reader's warnings
-  Failed,  // an Error's text
+  End,     // last message; contains the reader's warnings
+  Failed,  // contains an Error's text
   OutOfMemory,
   // Questions from the reader to the program; see VolumeFiles.
-  OpenHeader,  // index of the header file, 64 bits
-  CheckData,   // names of data files
-  OpenData,    // name of a data file
-  HasData,     // name of a data file
+  OpenHeader,  // contains the index of the header file, 64 bits
+  CheckData,   // contains names of data files
+  OpenData,    // contains the name of a data file
+  HasData,     // contains the name of a data file
 };
 
 struct MessageHead {
