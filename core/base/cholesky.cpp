@@ -44,7 +44,8 @@ class OneThread {
 // not suffice. So this function first checks that enough memory can be mapped, and then makes the first call.
 void require_blas_memory() {
   static const bool has_memory = [] {
-    constexpr std::size_t kMost = std::size_t{160} << 20;  // OpenBLAS takes 128 MB of address space
+    // Free address space that is required, bytes. OpenBLAS takes 128 MB.
+    constexpr std::size_t kMost = std::size_t{160} << 20;
     if (!can_map(kMost))
       throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
     using Factorize = void (*)(const char* half, const int* n, double* A, const int* lda, int* info);

@@ -55,6 +55,6 @@ Batch read_batch(const Path& path);
 
 // Returns the cells in the order of their numbers: by body, then pose, then technique.
 std::vector<BatchCell> cells_of(const Batch& batch);
-std::string text_of(const Batch& batch, const BatchCell& cell);  // "man, walk 0005, dqs"
+std::string text_of(const Batch& batch, const BatchCell& cell);  // returns text such as "man, walk 0005, dqs"
 
 }  // namespace limber

@@ -14,7 +14,7 @@ struct DescribedBody {
   std::string name;
   std::string phantom;  // "arm", "body", or empty for a body in files
   Path volume, rig, tissues, bone_map, seams;
-  std::vector<double> bones;      // labels of bone, as values in the volume's file; empty: the tissue table's
+  std::vector<double> bones;      // labels of bone, as values in the volume's file; empty: those of the tissue table
   std::optional<double> spacing;  // voxel spacing to resample the volume to, mm; empty: the volume's own
   std::string weights = "heat";   // how skin weights are computed: a word of binding_words()
   Path weights_file;              // file with existing skin weights; empty: they are computed

@@ -26,7 +26,7 @@ plain_techniques();             // all techniques without the correction that ke
 std::string technique_words();  // the words of these techniques: "mix, lbs, dqs, fem, fem-contact"
 std::string word_of(
     const Technique& technique);  // "fem-contact", "fem-mass-exact": the word in descriptions, folder names and tables
-std::string title_of(const Technique& technique);  // "FEM with contact", "FEM, mass-exact"
+std::string title_of(const Technique& technique);  // returns text such as "FEM with contact", "FEM, mass-exact"
 // Returns the techniques with the given words ("lbs", "fem-contact"). Throws Error for a word that is unknown or occurs
 // twice; `where` names the source of the words in the message.
 std::vector<Technique> techniques_of(const std::vector<std::string>& words, const std::string& where);

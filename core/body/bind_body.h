@@ -28,7 +28,7 @@ using SeamChoice = std::optional<std::shared_ptr<const Seams>>;
 struct BoundBody {
   TissueVoxels tissue;  // the tissue voxels, with the seams
   SkinWeights weights;
-  std::optional<BoneParts> parts;  // see parts_of()
+  std::optional<BoneParts> parts;  // the parts of the body's bone tissue; empty until parts_of() is called
   WeightsReport solve;             // report on the solve of Binding::Heat
   bool is_from_file = false;       // true: the weights were read, so they may be of another rig or program
   std::vector<std::string> warnings;

@@ -25,7 +25,7 @@ struct PosingSettings {
   bool estimates_error = false;    // fem: true: a second solve with larger tets estimates the error
   std::vector<FemObject> objects;  // fem: rigid objects that press on the body
   glm::dvec3 gravity{0};           // fem: acceleration of gravity, m/s2
-  std::string glide = "joint";     // a word of glide_poses.h
+  std::string glide = "joint";     // how far joints may glide: a word of glide_poses.h
   bool fit_joints = false;         // fits the axes of joints to the bones around them first; only for one pose
   ResampleSettings resample;       // settings of resampling; its seams are those of the bound body
 
@@ -35,9 +35,9 @@ struct PosingSettings {
 // Functions that are called during the work; each may be empty.
 struct PosingEvents {
   std::function<void(const std::string&)> on_warning;
-  std::function<void(const Armature& rig, const Pose& pose)> on_pose;  // before each pose is computed
-  std::function<void(const TissueModel&)> on_mesh;                     // fem: before the first iteration
-  std::function<void(const SolveStep&)> on_step;                       // fem: after every iteration
+  std::function<void(const Armature& rig, const Pose& pose)> on_pose;  // called before each pose is computed
+  std::function<void(const TissueModel&)> on_mesh;                     // fem: called before the first iteration
+  std::function<void(const SolveStep&)> on_step;                       // fem: called after every iteration
 };
 
 // The body in one pose of a sequence.

@@ -14,7 +14,7 @@ namespace limber {
 
 // The labels that replace those of erased voxels.
 enum class Erased {
-  Surroundings,  // the labels around them
+  Surroundings,  // the labels of the surrounding voxels
   Air,
 };
 

@@ -15,7 +15,7 @@
 namespace limber {
 
 enum class MeasureKind : std::uint8_t {
-  Distance,   // between two points
+  Distance,   // between two points, mm
   Angle,      // of three points, at the second one
   Girth,      // length of a closed tape whose corners are the points
   Thickness,  // of a tissue: distance between two points on its borders

@@ -61,7 +61,7 @@ struct Constraint {
 };
 
 struct Constraints {
-  std::vector<Constraint> list;  // in the user's order
+  std::vector<Constraint> list;  // in the order that the user set
 
   bool operator==(const Constraints&) const = default;
 };

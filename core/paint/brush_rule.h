@@ -75,7 +75,7 @@ struct DabView {
 // A voxel that a dab touches.
 struct VoxelView {
   glm::ivec3 voxel;
-  int brick, cell;       // defined as in Reached::Brick::brick and Reached::cell
+  int brick, cell;       // index of the voxel's brick; position of the voxel in it, x + 8 y + 64 z
   const Influence& own;  // the voxel's influence before the dab
 };
 

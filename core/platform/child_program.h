@@ -24,8 +24,8 @@ struct ProgramEnd {
   int signal = 0;  // number of the signal that ended the program; 0: it ended by itself
 
   bool by_signal() const { return signal != 0; }
-  bool was_killed() const;          // by kill(), or by the system for lack of memory
-  bool took_too_much_time() const;  // it exceeded its limit of processor time
+  bool was_killed() const;          // true if kill() ended it, or the system for lack of memory
+  bool took_too_much_time() const;  // true if it exceeded its limit of processor time
   std::string signal_text() const;  // for example "Segmentation fault"
 };
 

@@ -17,7 +17,7 @@ struct FileStatus {
   std::int64_t size = 0;                      // bytes
   std::int64_t seconds = 0, nanoseconds = 0;  // time of the last change, since 1970
   bool is_regular = false, is_folder = false;
-  bool is_own = false;  // the file belongs to the user who runs this process
+  bool is_own = false;  // true: the file belongs to the user who runs this process
 
   bool operator==(const FileStatus&) const = default;
   bool is_same_file(const FileStatus& other) const { return device == other.device && number == other.number; }

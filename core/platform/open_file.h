@@ -49,7 +49,7 @@ enum class Opening {
 };
 
 struct OpeningRules {
-  bool is_private = false;    // a file that is created can be read by its owner alone
+  bool is_private = false;    // true: only the owner can read a file that is created
   bool follows_links = true;  // false: fails when the path is a symbolic link
 };
 

@@ -110,7 +110,8 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
     throw Error("this is no orientation", code, "name three axes by L or R, P or A, S or I, for example LPS or RAS");
 
   const Grid& grid = volume.grid;
-  const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);  // for each new axis, the old axis it was
+  // For each new axis, the index of the old axis.
+  const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);
   Grid turned = grid;
   AxisMap map{};
   glm::dvec3 first(0);  // the old voxel that becomes voxel (0, 0, 0)

@@ -67,7 +67,7 @@ class History {
   std::int64_t limit() const { return limit_; }
   void set_limit(std::int64_t bytes);
   std::int64_t dropped() const { return dropped_; }
-  std::string note() const;  // "The 12 oldest steps were dropped to keep undo within 64 MB." or ""
+  std::string note() const;  // says how many steps were dropped: "The 12 oldest steps were dropped ..."; "" if none
 
  private:
   class Ledger;

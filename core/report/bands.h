@@ -20,9 +20,9 @@
 namespace limber {
 
 struct BandLimits {
-  double stretch = 2;              // least stretch of a band, as a multiple of the length at rest
-  double joint_reach = 5;          // a joint's reach: radius where tissue may stretch, in depths of the joint
-  double off_arc = 0.25;           // largest distance from the joint's arc, as a fraction of the joint's reach
+  double stretch = 2;      // least stretch of a band, as a multiple of the length at rest
+  double joint_reach = 5;  // a joint's reach, within which tissue may stretch, as a multiple of the joint's depth
+  double off_arc = 0.25;   // largest distance from the joint's arc, as a fraction of the joint's reach
   std::int64_t least_voxels = 50;  // size of the smallest band, in voxels: smaller ones may be due to rounding
 };
 

@@ -40,6 +40,6 @@ struct QualityGate {
   std::string limit;     // "at most 0.1 %"
   bool strict = false;   // true: a command with --strict fails if this gate fails
 };
-std::string_view to_string(GateState state);  // "passed", "failed", "not checked"
+std::string_view to_string(GateState state);  // returns "passed", "failed" or "not checked"
 
 }  // namespace limber

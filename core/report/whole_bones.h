@@ -23,7 +23,8 @@ struct WholeBone {
   std::string went_with;  // the rig bone that most of the wrong voxels follow; empty: no voxel is wrong
   std::int64_t voxels = 0;
   std::int64_t wrong_voxels = 0;  // voxels that follow a rig bone not allowed by the label's name or the map
-  double residual_mm = 0;         // largest distance of a voxel from the best rigid motion, mm; 0: several bones
+  // Largest distance of a voxel from the best rigid motion, mm; 0 if the label names several bones.
+  double residual_mm = 0;
 };
 
 // Uses the weights to judge each bone that a label names. Returns the bones sorted by label, then side of the body.

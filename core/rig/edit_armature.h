@@ -64,7 +64,7 @@ Armature renamed(const Armature& armature, int bone, const std::string& name);
 // Changes of a bone's name. They are applied in the order of the members.
 struct NameChange {
   std::string find, replace;  // every `find` is replaced by `replace`; empty `find`: no change
-  bool other_side = false;    // "Arm.L" becomes "Arm.R"; a name without a side stays
+  bool other_side = false;    // true: exchanges the sides: "Arm.L" becomes "Arm.R"; a name without a side stays
   std::string prefix, suffix;
 };
 // Applies the changes to the names of bones. Throws Error if a name would be empty or equal to another bone's name.

@@ -20,7 +20,7 @@ struct JointReading {
   double sense = 1;  // 1 if a positive rotation about the axis increases the angle, -1 if it decreases the angle
 };
 
-const char* name_of(JointReading::Kind kind);  // such as "Flexion"
+const char* name_of(JointReading::Kind kind);  // returns the word for a kind, such as "Flexion"
 
 // Returns the angle of a joint that a rotation about `axis` changes. Returns nothing for a joint without limits, or if
 // the axis deviates by more than 60 degrees from the axis of a hinge.

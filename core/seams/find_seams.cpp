@@ -436,7 +436,7 @@ class SeamFinder {
   std::vector<Border> borders_;
   bool has_skin_ = false;
   TissueSet inside_;                          // bones, and the tissue connected to them without crossing skin
-  std::optional<std::vector<SkinRay>> rays_;  // computed when the first limb is parted
+  std::optional<std::vector<SkinRay>> rays_;  // computed when the first limb is separated
 };
 
 }  // namespace

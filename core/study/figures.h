@@ -33,7 +33,7 @@ struct StudyFigures {
   PictureGrid ratios, overlaps;    // one column each, which shows the pose with the largest joint rotation
   std::vector<CloseUp> close_ups;  // sorted: the most compressed or stretched region first
   TissueLegend close_up_legend;
-  std::string no_bodies;  // why there are no 3D pictures of bodies; empty if there are
+  std::string no_bodies;  // why there are no 3D pictures of bodies; "" if there are
 };
 constexpr int kShownPoses = 6;
 

@@ -20,7 +20,7 @@ struct StudyCell {
 };
 // Returns the cells in the order in which they are computed: by spacing, then pose, then technique.
 std::vector<StudyCell> cells_of(const Study& study);
-std::string text_of(const Study& study, const StudyCell& cell);  // "2 mm, +45, FEM"
+std::string text_of(const Study& study, const StudyCell& cell);  // returns text such as "2 mm, +45, FEM"
 
 struct CellOutcome {
   StudyCell cell;

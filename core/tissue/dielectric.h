@@ -29,7 +29,7 @@ struct ColeCole {
 
 struct Dielectric {
   double permittivity = 1;  // relative permittivity
-  double conductivity = 0;  // S/m
+  double conductivity = 0;  // conductivity, S/m
 };
 
 constexpr double kLowestFrequency = 10, kHighestFrequency = 1e11;  // frequency range of the model, Hz

@@ -40,9 +40,10 @@ enum class TissueKind {
 
 // Returns true if tissue of this kind moves rigidly: cortical bone, cancellous bone, marrow and plain bone.
 bool is_bone(TissueKind kind);
-std::string_view to_string(TissueKind kind);                        // as in "cortical bone"
-std::optional<TissueKind> tissue_kind_from_text(std::string_view);  // from the field `kind` or `class` of a table
-TissueKind tissue_kind_from_name(std::string_view tissue_name);     // from words in a name: "Left femur" -> Bone
+std::string_view to_string(TissueKind kind);  // returns the name of a kind, for example "cortical bone"
+std::optional<TissueKind> tissue_kind_from_text(std::string_view);  // parses the field `kind` or `class` of a table
+// Finds the kind of a tissue by words in its name: "Left femur" is Bone.
+TissueKind tissue_kind_from_name(std::string_view tissue_name);
 
 struct Tissue {
   Label label = 0;

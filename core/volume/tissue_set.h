@@ -26,7 +26,7 @@ class TissueSet {
   void spread(const TissueSet& within);
 
  private:
-  using Brick = std::array<std::uint64_t, 8>;  // one word per z slice: bit x + 8 y
+  using Brick = std::array<std::uint64_t, 8>;  // one word per z slice; bit x + 8 y is voxel (x, y)
 
   static std::uint64_t bit(const glm::ivec3& v) { return std::uint64_t{1} << ((v.x & 7) + 8 * (v.y & 7)); }
   std::uint64_t& slice(const glm::ivec3& v) { return bricks_[tissue_.brick_at(v)][v.z & 7]; }

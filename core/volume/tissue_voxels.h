@@ -23,9 +23,10 @@ class TissueVoxels {
   static constexpr int kBrick = 8;
 
   struct Brick {
-    glm::ivec3 corner;                     // lowest voxel
-    std::int64_t first;                    // index of the brick's first tissue voxel in the list of all tissue voxels
-    std::array<std::uint64_t, 8> mask;     // tissue voxels, one word per z slice: bit x + 8 y
+    glm::ivec3 corner;   // lowest voxel
+    std::int64_t first;  // index of the brick's first tissue voxel in the list of all tissue voxels
+    // Marks tissue voxels: one word per z slice, in which bit x + 8 y is voxel (x, y).
+    std::array<std::uint64_t, 8> mask;
     std::array<std::uint16_t, 8> below{};  // number of tissue voxels in the slices below each slice
     int count() const {
       int bits = 0;
