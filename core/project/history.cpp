@@ -138,7 +138,7 @@ class History::Ledger {
   std::int64_t bytes() const { return bytes_ + volumes.bytes(); }
 
   PackedVolumes volumes;
-  // Replaces the volume of a document that is counted.
+  // Replaces the volume of a document and updates the count of bytes.
   const PackedVolumes::SetVolume set_volume = [this](Document& document, std::shared_ptr<const LabelVolume> volume) {
     remove(document);
     document.volume = std::move(volume);

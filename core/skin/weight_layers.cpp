@@ -199,8 +199,8 @@ WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, cons
 
 namespace {
 
-// Composes all layers in one brick. The layer `index` takes part with the weights and mask of `painted` instead of its
-// own.
+// Composes all layers in one brick. The layer `index` is composed with the weights and mask of `painted` instead of
+// its own.
 SkinWeights::Influences composed_with(const WeightLayers& layers, std::size_t index, std::int64_t brick,
                                       const PaintedBrick& painted) {
   const WeightLayer& layer = layer_at(layers, index);

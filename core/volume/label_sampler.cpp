@@ -116,8 +116,8 @@ Label LabelSampler::nearest(const glm::dvec3& point) const {
 }
 
 Label LabelSampler::tissue(const glm::dvec3& point) const {
-  // A point exactly at a voxel's centre gets the label of this voxel. This is frequent: tissue that a pose does not
-  // move.
+  // A point exactly at a voxel's centre gets the label of this voxel. This case is frequent, since a pose does not
+  // move all tissue.
   const glm::ivec3 size = volume_->grid.size;
   if (point.x >= 0 && point.y >= 0 && point.z >= 0 && point.x < size.x && point.y < size.y && point.z < size.z)
     if (const glm::ivec3 voxel(point); glm::dvec3(voxel) == point) return volume_->at(voxel);
