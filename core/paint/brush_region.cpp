@@ -145,8 +145,7 @@ bool BrushReach::place_window(double radius, bool grown) {
   size_ = glm::ivec3(high) - low_ + 1;
   for (int axis = 0; axis < 3; ++axis) {
     squared_[axis].resize(size_[axis] + 2 * kBrick);
-    // The lists extend one brick beyond the window on both sides, since bricks at its rim
-    // also extend beyond it.
+    // The lists extend one brick beyond the window on both sides, since bricks at its rim extend beyond it.
     for (int i = -kBrick; i < size_[axis] + kBrick; ++i) {
       const double way = (low_[axis] + i - centre_[axis]) * volume_.grid.spacing[axis];
       squared_[axis][i + kBrick] = static_cast<float>(way * way);

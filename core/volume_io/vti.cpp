@@ -445,8 +445,7 @@ std::string bytes_of(std::uint64_t number) { return {reinterpret_cast<const char
 void write_blocks(OutputFile& out, const Voxels& voxels) {
   const std::size_t voxel = static_cast<std::size_t>(size_of(voxels.type) * voxels.channels);
   const std::uint64_t total = static_cast<std::uint64_t>(voxels.grid.voxel_count()) * voxel;
-  // Number of whole voxels in a block, so that blocks can be filled one by one.
-  const std::size_t in_block = kBlock / voxel;
+  const std::size_t in_block = kBlock / voxel;  // number of voxels in a block (no voxel is split between two blocks)
   const std::uint64_t block = in_block * voxel, blocks = (total + block - 1) / block;
   const std::int64_t table_at = out.place();
   write_text(out, bytes_of(blocks) + bytes_of(block) + bytes_of(total % block) +
