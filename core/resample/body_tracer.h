@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Traces the voxels of a posed body back to the body at rest: fills the inverse map of any range of output voxels. The
-// posed boxes of bricks and of pieces of bone are sorted into bins, so that a range finds the few that reach it.
+// Traces the voxels of a posed body back to the body at rest: fills the inverse map (posed voxel to position at rest)
+// of any range of output voxels. The bounding boxes of the posed bricks and pieces of bone are sorted into bins, so
+// that only those near the range are examined.
 #pragma once
 
 #include <vector>
@@ -15,7 +16,7 @@ class BodyTracer {
  public:
   // Keeps references to all arguments.
   //   tets      nullptr: posed without finite elements
-  //   depth     depth below air at rest, mm; nullptr: no regions of the body can overlap
+  //   priority  by label: where tissues overlap, the tissue with the higher priority is kept
   //   priority  priority of each label's tissue
   //   output    voxels of the posed volume on the output lattice; tissue beyond them is left out
   //   nearest   true: bone is painted where the nearest voxel at rest is bone, without interpolation

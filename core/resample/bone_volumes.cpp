@@ -14,16 +14,17 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the passes over a bone's tissues, each of which computes all prices again. Passes end earlier if no
-// price changes.
+// Upper limit on the passes over a bone's tissues. Each pass computes the price of every tissue again. The passes end
+// earlier if no price changes.
 constexpr int kSweeps = 16;
 // Upper limit on a tissue's price (the number added to its memberships), in either direction. A tissue that needs a
 // higher price has hardly any voxels near its border, and stays a little too small.
 constexpr float kMostPrice = 0.2f;
 // Upper limit on the number of tissues that compete for one voxel: those with the largest memberships.
 constexpr int kAsked = 3;
-// Upper limit on the random number that is added to each membership. Without it, all voxels along a flat border would
-// have equal memberships and change their tissue together, so a tissue could not gain just some of them.
+// Upper limit on the random number that is added to each membership. Without this number, all voxels along a flat
+// border would have equal memberships and would change their tissue together, so a tissue could not gain just some of
+// them.
 constexpr float kDither = 1e-3f;
 
 using Counts = std::map<Label, std::int64_t>;
@@ -156,7 +157,7 @@ std::int64_t total(const Counts& counts) {
 }
 
 // Returns the number of posed voxels that each tissue of a bone should have, so that its share of the bone's voxels is
-// as at rest.
+// the same as at rest.
 Counts wanted(const Bone& bone) {
   const double scale = double(total(bone.posed)) / double(total(bone.at_rest));
   Counts wanted;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keeps the volume of every tissue of a rotated bone. A rigid motion changes no volume, but reading labels on a rotated
-// grid does: a layer of one voxel, as spongy bone often is, loses up to a twentieth of its voxels to the thicker layers
-// beside it.
+// grid does: a tissue that is one voxel thick, as spongy bone often is, loses up to 5 % of its voxels to thicker
+// tissues beside it.
 //
 // At each voxel every tissue has a membership, the interpolated share of its label there (label_sampler.h). Each tissue
 // of a rig bone gets a price, a number that is added to its memberships, and a voxel goes to the tissue with the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The table of the methods by which a pose moves tissue: every blend, that is a rule of skinning
-// (deform/blend_rule.h), then finite elements. Commands, job files, studies, the guide and the editor read this table.
+// The table of deformation methods: the skinning blends (deform/blend_rule.h), such as linear blending and dual
+// quaternions, and finite elements. Commands, job files, studies, the guide and the editor read this table.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace limber {
 
-enum class Blend;  // of deform/skinning.h
+enum class Blend;  // defined in deform/skinning.h
 
 struct DeformationMethod {
   std::string word;            // id on the command line and in files: "dqs"
@@ -19,21 +19,21 @@ struct DeformationMethod {
   std::string name;            // full name in a study: "Dual quaternions"
   std::string summary;         // short explanation of the method, shown after its word in --help
   std::string description;     // description of the method for a tooltip, a full sentence
-  std::optional<Blend> blend;  // none: finite elements
+  std::optional<Blend> blend;  // skinning blend of the method; none: the method is finite elements
 };
 
 inline constexpr std::string_view kFiniteElements = "fem";
 
 // Returns all methods. The first one is the default.
 std::span<const DeformationMethod> deformation_methods();
-// Returns the method whose `word` (its name on the command line) this is; null: there is none.
+// Returns the method whose `word` (its name on the command line) equals the argument; null: there is no such method.
 const DeformationMethod* find_method(std::string_view word);
 
-// The methods that a command accepts: all of them, or only the blends (skinning), since previews cannot draw finite
+// The methods that a command accepts: all, or only the skinning blends, for previews, which cannot compute finite
 // elements.
 enum class Methods { All, Blends };
 std::vector<std::string> method_words(Methods which);
-// Returns a list of words with their summaries, such as "lbs (linear) or dqs (dual quaternions)".
+// Returns the methods' words with their summaries, such as "lbs (linear) or dqs (dual quaternions)".
 std::string method_summaries(Methods which);
 
 }  // namespace limber

@@ -31,8 +31,8 @@ struct Fem {
   bool contact = false;                     // true: skin is pushed apart instead of passing through skin
   FemQuality quality = FemQuality::Normal;  // number of tets across the thinnest bent limb: 8, 12, or 24 at joints
   std::optional<double> spacing_mm;         // edge length of the tets; none: the quality decides
-  // Length that decides how far around a bent joint tissue is meshed, and what belongs to a joint. None: the edge of
-  // the tets, or that of normal quality if it is longer.
+  // Length in mm that scales how far around a bent joint tissue is meshed, and how far from other bones a bone belongs
+  // to a joint. None: the edge length of the tets, but at least that of normal quality.
   std::optional<double> reach_mm;
   Mesher mesher = Mesher::lattice;
   bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
@@ -46,32 +46,32 @@ struct Fem {
 struct MeshReport {
   std::int64_t tets = 0, nodes = 0;
   std::int64_t inverted = 0;                       // inverted tets (det F <= 0), summed over the ends of all steps
-  double min_det_f = 1;                            // smallest det F of all soft tets in the result
-  std::int64_t joint_tets = 0;                     // soft tets between two bones, not counted in min_det_f
+  double min_det_f = 1;                            // smallest det F (volume ratio posed / rest) of all soft tets
+  std::int64_t joint_tets = 0;                     // soft tets between two bones; min_det_f leaves them out
   double share_below_fifth = 0;                    // share of the soft tets with det F below 0.2, [0, 1]
   std::optional<std::int64_t> self_intersections;  // pairs of crossing triangles of the posed border
-  // Number of nodes of the mesh's surface whose distance from another part of the surface is below 1.5 times the
-  // contact distance. They are also counted where contact is off.
+  // Number of surface nodes that are nearer to another part of the posed surface than 1.5 times the contact distance.
+  // They are counted even if contact is off.
   std::int64_t contact_nodes = 0;
   std::optional<double> min_gap_mm, median_gap_mm;  // smallest and median air gap in front of the contact nodes
   std::map<Label, double> volume_change_percent;    // volume change of each label, by the tets that hold its voxels
   std::map<Label, Stretch> stretch;                 // stretch of each soft tissue that bends, by label
-  std::string fallback;  // tells the user that larger tets or another mesher were used; empty: as requested
+  std::string fallback;  // message for the user: larger tets or another mesher were used; empty: as requested
 };
 
-// What a solve was computed with, after all limits by the size of the body and of its voxels.
+// The parameters that a solve used. Limits that depend on the size of the body and of its voxels are applied.
 struct SolveParameters {
   double tet_mm = 0, finest_tet_mm = 0;            // edge length of the tets, and of the smallest tets around joints
   double step_degrees = 0;                         // largest rotation of any joint in one step
-  double step_tolerance_mm = 0, tolerance_mm = 0;  // see SolveSettings (fem/solve_pose.h)
-  double joint_mm = 0;               // ends of bones within this distance of another bone belong to the joint
+  double step_tolerance_mm = 0, tolerance_mm = 0;  // tolerances of the steps and of the final pose (fem/solve_pose.h)
+  double joint_mm = 0;               // a bone's ends within this distance of another bone belong to the joint
   std::optional<double> contact_mm;  // distance below which skin is pushed apart; none: no contact
 };
 
 struct SolveReport {
   bool converged = false;
   double reached = 0;      // share of the way from rest to the pose that was reached, [0, 1]
-  std::string blocked_by;  // tells the user what blocks the pose; empty if the solve converged
+  std::string blocked_by;  // message for the user: what blocks the pose; empty if the solve converged
   int steps = 0, iterations = 0, factorizations = 0;
   int analyses = 0;        // number of analyses of the matrix's sparsity pattern; contact changes the pattern
   double residual_mm = 0;  // longest motion of a node in the last Newton step, mm

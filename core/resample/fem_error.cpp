@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kOrder = 1.25;  // power of the tets' edge that the error is in proportion to
+constexpr double kOrder = 1.25;  // the error is proportional to (edge length of the tets)^kOrder
 
 glm::dvec3 middle_of(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet) {
   const Eigen::RowVector3d sum = V.row(tet[0]) + V.row(tet[1]) + V.row(tet[2]) + V.row(tet[3]);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Estimates how far a solved shape is from the exact solution of the elastic problem, from a second solve with larger
-// tets. If the error is in proportion to the edge of the tets to the power p, the exact solution lies beyond the finer
-// one, by the difference of the two solutions divided by (ratio of the edges to the power p, minus 1) [Richardson 1911;
-// Roache 1994, Perspective: a method for uniform reporting of grid refinement studies]. For bent limbs p = 1.25 was
-// measured. Where the coarse solve is a rough one, as for draft quality, the estimate is many times larger than the
-// error. It holds for the error of the tets' size only: it knows nothing of materials, weights or labels that are
-// wrong.
+// Estimates how far a solved shape is from the exact solution of the elastic problem, by Richardson extrapolation from
+// a second solve with larger tets. If the error is proportional to (edge length of the tets)^p, then
+//   error of the finer solution = (difference of the two solutions) / ((ratio of the edge lengths)^p - 1)
+// [Richardson 1911; Roache 1994, Perspective: a method for uniform reporting of grid refinement studies]. For bent
+// limbs p = 1.25 was measured. If the second solve is very coarse, as for draft quality, the estimate is many times
+// larger than the error. The estimate contains only the error due to the size of the tets. Errors of materials, weights
+// or labels are not included.
 #pragma once
 
 #include <optional>
@@ -18,26 +18,27 @@ namespace limber {
 struct FemShape;
 struct Grid;
 
-// How far flesh that bends is estimated to be from where the exact solution has it.
+// Estimated distance between the solved positions and the exact solution, for the flesh that bends.
 struct FemError {
-  double rms_mm = 0;      // root of the mean square over the volume of this flesh
-  double most_mm = 0;     // 95 % of this volume are nearer
-  double largest_mm = 0;  // the furthest tet's centre
-  glm::dvec3 place{0};    // where it lies in the pose, world, mm
+  double rms_mm = 0;      // root mean square over the volume of this flesh
+  double most_mm = 0;     // 95th percentile over the volume of this flesh
+  double largest_mm = 0;  // largest value at the centre of any tet
+  glm::dvec3 place{0};    // posed position of that tet's centre, world, mm
   double coarse_tet_mm = 0;
   std::string unknown;  // why there is no estimate; empty: there is one
 };
 
-// Edge of the tets of the second solve, as a multiple of that of the first.
+// Edge length of the tets of the second solve, as a multiple of the first solve's.
 constexpr double kCoarser = 1.5;
 
-// Returns the estimate for the shape `fine`.
-//   coarse  the same pose of the same body, solved with tets that are larger by kCoarser
+// Returns the estimated error of the shape `fine`.
+//   coarse  the same pose of the same body, solved with tets that are kCoarser times as large
 //   grid    grid of the body's volume
 FemError estimated_error(const FemShape& fine, const FemShape& coarse, const Grid& grid);
 
-// Returns the differences of two solutions in mm, at the centres of the soft tets of `shape` that `other` holds as
-// well, and the centres' indices.
+// Distances between the positions in two solutions, at the centres of those soft tets of `shape` that lie in the mesh
+// of `other` too.
+//   tet   indices of these tets in the mesh of `shape`     mm  distance at each of them
 //   grid  grid of the body's volume
 struct ShapeDifference {
   std::vector<int> tet;

@@ -19,21 +19,21 @@ namespace limber {
 
 namespace {
 
-constexpr double kFar = 10000;  // distance from its place at which an object waits while the body is posed, mm
-// The solver takes its steps by the largest rotation of a joint. An object's motion by one edge length of the tets
-// counts as this rotation, degrees.
+constexpr double kFar = 10000;  // distance of waiting objects from their target positions, mm
+// The solver derives the number of steps from the largest rotation of a joint. An object's motion by one edge length of
+// the tets counts as a rotation by this angle, degrees.
 constexpr double kDegreesPerEdge = 22.5;
-// Factor on the tolerance of solves with objects: forces are more sensitive to it than shapes.
+// Factor on the solver's tolerance when objects press: forces react more strongly to it than shapes do.
 constexpr double kTight = 0.02;
-constexpr double kForceTolerance = 0.01;  // largest relative deviation from the force that was asked for
-constexpr int kForceTries = 20;           // largest number of solves to find it
-constexpr double kMostOff = 4;            // upper limit on a force in the search, as a multiple of the one asked for
-constexpr int kRounds = 4;                // largest number of times that each object's force is searched
-constexpr double kStuck = 0.02;           // motion of an object that cannot go on, mm
-constexpr double kFirstMove = 1;          // motion of an object from the first try to the second, mm
-constexpr double kDeepest = 50;           // largest distance by which an object may go beyond its place, mm
-constexpr double kMostPoints = 4e6;       // upper limit on the points of an object's sweep
-constexpr double kNearGap = 2;            // largest gap between skin and object that the report tells, mm
+constexpr double kForceTolerance = 0.01;  // largest relative deviation from the requested force
+constexpr int kForceTries = 20;           // largest number of solves to reach the requested force
+constexpr double kMostOff = 4;    // upper limit on the force error in the search, as a multiple of the requested force
+constexpr int kRounds = 4;        // largest number of times that the forces of all objects are searched
+constexpr double kStuck = 0.02;   // an object that moved less than this is stuck, mm
+constexpr double kFirstMove = 1;  // motion of an object from the first try to the second, mm
+constexpr double kDeepest = 50;   // largest distance by which an object may move beyond its target position, mm
+constexpr double kMostPoints = 4e6;  // upper limit on the number of sample points on an object
+constexpr double kNearGap = 2;       // largest gap between skin and object that is reported, mm
 
 Eigen::RowVector3d row_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 vec_of(const Eigen::RowVector3d& v) { return {v[0], v[1], v[2]}; }
@@ -54,7 +54,7 @@ std::vector<glm::dvec3> away_from_axis(const TriangleMesh& mesh) {
   }
   centre /= std::max(area, 1e-300);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(sum);
-  // Of the three directions, the axis is the one that stands apart from the other two, which are alike.
+  // The object's axis is the eigenvector whose eigenvalue differs most from the other two, which are alike for a tube.
   const Eigen::Vector3d spread = solver.eigenvalues();
   const glm::dvec3 axis =
       vec_of(solver.eigenvectors().col(spread[1] - spread[0] >= spread[2] - spread[1] ? 0 : 2).transpose());
@@ -66,15 +66,15 @@ std::vector<glm::dvec3> away_from_axis(const TriangleMesh& mesh) {
   return ways;
 }
 
-// Returns the number of pieces of at most reach_mm into which the points of a sweep divide each edge of a triangle.
+// Returns the number of segments of at most reach_mm into which sample points divide each edge of a triangle.
 int pieces_of(const TriangleMesh& mesh, const glm::ivec3& f, double reach_mm) {
   double longest = 0;
   for (int k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(mesh.V[f[k]], mesh.V[f[(k + 1) % 3]]));
   return std::max(1, static_cast<int>(std::ceil(longest / reach_mm)));
 }
 
-// Adds points on a triangle, with the motion of each per mm that the object moves away, to a sweep.
-//   ways  for each way, the motions of the triangle's corners
+// Adds sample points on a triangle to a sweep, each with its motion per mm that the object moves away.
+//   ways  for each possible direction of approach, the motions of the mesh's vertices per mm
 void add_points(const TriangleMesh& mesh, const glm::ivec3& f, const std::vector<std::vector<glm::dvec3>>& ways,
                 double reach_mm, ObjectSweep& sweep) {
   const int pieces = pieces_of(mesh, f, reach_mm);
@@ -89,13 +89,14 @@ void add_points(const TriangleMesh& mesh, const glm::ivec3& f, const std::vector
     }
 }
 
-// Searches the distance from its place at which an object presses with the force that was asked for. The force grows as
-// the object comes nearer: the search goes on in growing steps until it has passed that force, then between the nearest
-// distances known on both sides [Illinois algorithm, Dowell & Jarratt 1971].
+// Searches the distance from the target position at which an object presses with the requested force. The force grows
+// as the object moves closer. The search first takes growing steps until the force has passed the requested one, then
+// interpolates between the last distances with too weak and too strong a force [Illinois algorithm, Dowell & Jarratt
+// 1971].
 class ForceSearch {
  public:
   // Returns the next distance to try.
-  //   off  the force at the distance `away`, less the force asked for
+  //   off  force at the distance `away` minus the requested force, N
   double next(double away, double off) {
     const bool strong = off > 0;
     if (known_[strong] && known_[!strong] && strong == was_strong_) off_[!strong] /= 2;
@@ -106,7 +107,8 @@ class ForceSearch {
   }
 
  private:
-  std::array<double, 2> away_{}, off_{};  // of the distances nearest to the one searched: too weak, and too strong
+  // Distance in mm and force error in N of the last try with too weak a force [0] and with too strong a force [1].
+  std::array<double, 2> away_{}, off_{};
   std::array<bool, 2> known_{};
   bool was_strong_ = false;
   double step_ = 0;
@@ -208,7 +210,8 @@ void FemObjects::add_to(FemModel& model) const {
   stay(model);
 }
 
-// Sets away_ to where a solve has left the objects, which may lack a little of their way.
+// Sets away_ to the distances that the objects reached in a solve. A solve that was blocked leaves them short of their
+// target positions.
 void FemObjects::find_away(const NodePositions& there) {
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < objects_.size(); ++k) {
@@ -226,7 +229,7 @@ void FemObjects::stay(FemModel& model) const {
   if (!empty()) model.objects.at = [there = positions(away_)](double) { return there; };
 }
 
-// Moves the objects to a distance from their places, from where they are. `away_` becomes what they have reached.
+// Moves the objects from their present distances to the distances `away`. Sets away_ to the distances that they reach.
 SolvedPose FemObjects::move(FemModel& model, const std::vector<RigidTransform>& pose, const SolvedPose& from,
                             const std::vector<double>& away, const SolveSettings& settings, double spacing,
                             Progress& progress, const std::function<void(const SolveStep&)>& on_step) {
@@ -268,13 +271,15 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
   settings.has_weight_at_start = true;
   std::vector<double> place(objects_.size(), 0);
   for (std::size_t k = 0; k < objects_.size(); ++k) away_[k] = way_[k].clear_mm;
-  // The solved flesh may reach further out than the way was searched for.
+  // The solved flesh may reach further than when the clear distances were computed, so objects that cross the skin move
+  // further away.
   for (int tries = 0; tries < kForceTries; ++tries) {
     const std::vector<std::int64_t> crossing = crossings(model, solved.V);
     for (std::size_t k = 0; k < crossing.size(); ++k) away_[k] += crossing[k] ? spacing : 0;
     if (std::all_of(crossing.begin(), crossing.end(), [](std::int64_t count) { return count == 0; })) break;
   }
-  // The last shape in which no object presses too hard. Each try starts from it: flesh that is squeezed may jam.
+  // The last shape in which no object presses too hard. Every further try starts from it, since a solve that starts
+  // from squeezed flesh may get stuck.
   SolvedPose gentle = solved;
   std::vector<double> gentle_away = away_;
   solved = move(model, pose, solved, place, settings, spacing, progress, on_step);
@@ -286,7 +291,8 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
   const auto is_off = [&](std::size_t k) {
     return asked_n_[k] && std::abs(pressing(solved, k) - *asked_n_[k]) > kForceTolerance * *asked_n_[k];
   };
-  // One object changes what presses another, so that each is searched again until all forces are right.
+  // Moving one object changes the forces of the others. So the objects' forces are searched again, in turn, until all
+  // are right.
   for (int round = 0; round < kRounds; ++round)
     for (std::size_t k = 0; k < objects_.size(); ++k) {
       ForceSearch search;

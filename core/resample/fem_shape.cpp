@@ -20,13 +20,13 @@ namespace limber {
 
 namespace {
 
-// Thickness in mm of an adult's elbow, for which the lengths below were chosen. These lengths are multiplied by (the
-// thickness of the thinnest limb that the pose bends) / kThickness, so that bodies of any size are posed alike.
+// Thickness in mm of an adult's elbow, for which the lengths below were chosen. These lengths are multiplied by
+// (thickness of the thinnest limb that the pose bends) / kThickness, so that bodies of any size are posed alike.
 constexpr double kThickness = 93;
 // Edge length in mm of the tets in an adult's elbow, for draft and for normal quality: 8 and 12 tets across the elbow.
 constexpr double kDraft = 12, kUsual = 8;
-// Upper limit on the volume to mesh, in cubes with the tets' edge length as edge. A seated adult at kUsual needs about
-// as many; for draft quality the limit is lower. A pose that bends both fingers and hips would exceed the limit, so its
+// Upper limit on the volume to mesh, in cubes with the tets' edge length. A seated adult at kUsual needs about this
+// many; for draft quality the limit is lower. A pose that bends both fingers and hips would exceed the limit, so its
 // tets are made larger than requested.
 constexpr double kMostCells = 40'000;
 // Width of the margin that is meshed around tissue whose weights blend several bones, mm. It is needed because skin
@@ -43,10 +43,10 @@ constexpr double kRim = 2.5;
 constexpr double kJoint = 2;
 // Distance between two bones in a pose below which both are part of a joint there.
 constexpr double kClosing = 1;
-// Upper limit on the distance of a bone's node from its exact position, mm. With coarse tets, which follow a bone's
-// shape only roughly, the limit is larger.
+// Upper limit on the distance of a bone's node from its exact position, mm. For coarse tets the limit is larger,
+// because they follow a bone's shape only roughly.
 constexpr double kDrift = 2;
-// Rotation in degrees as whose the start of gravity counts, for the number of steps in which it grows.
+// Gravity grows over as many steps as a rotation by this angle takes, degrees.
 constexpr double kSagging = 45;
 constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; for small tets it is smaller
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
@@ -171,7 +171,7 @@ SolveReport report_of(const SolvedPose& solved) {
           .bone_drift_mm = solved.bone_drift_mm};
 }
 
-// Names the second solve in the progress of the first.
+// Shows the progress of the second solve as "error estimate".
 class ForEstimate : public Progress {
  public:
   explicit ForEstimate(Progress& whole) : whole_(whole) {}
@@ -182,7 +182,8 @@ class ForEstimate : public Progress {
   Progress& whole_;
 };
 
-// Does a step of the second solve. Returns why it failed; empty if it did not. The first solve's result stands anyway.
+// Runs a step of the second solve. Returns why it failed, or an empty string. A failure leaves the first solve's result
+// valid.
 template <class Step>
 std::string why_it_failed(const Step& step) {
   try {
@@ -318,7 +319,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   double angle = largest_angle_degrees(from, to);
   if (fem_.gravity != glm::dvec3(0) && !has_weight_) angle = std::max(angle, kSagging);
   SolvedPose solved = solve_pose(last_.model.fem, path, angle, settings, progress, fem_.on_step, &last_.V);
-  // The solve needs no step although the pose bends joints if no bone that moves holds a node of the mesh.
+  // If the pose bends joints but the solve took no step, no moving bone contains a node of the mesh.
   if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)
     throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
                 "choose a finer quality, or blend instead");
@@ -356,8 +357,8 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
                                                    : error_of(*shape, progress);
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;
-  // If the solve stopped early, the way to the next pose differs from the planned path, and the positions until which
-  // nodes wait are not valid on it. So all nodes become free.
+  // If the solve stopped early, the way to the next pose differs from the planned path, so the positions at which
+  // waiting nodes become free are not valid. All nodes become free now.
   if (shape->reached < 1) waiting_.clear();
   last_.V = shape->V;
   last_.pose = shape->pose;

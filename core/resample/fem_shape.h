@@ -57,19 +57,20 @@ class FemSequence {
   const LabelSet& is_bone_;
   std::vector<Pose> poses_;
   Fem fem_;
-  double size_ = 1;                         // thickness of the thinnest bent limb, relative to an adult's elbow (1)
-  double spacing_ = 0, finest_ = 0;         // edge length of the tets, and of the smallest tets around joints, mm
-  double reach_ = 0;                        // see Fem::reach_mm
-  std::vector<FemModel::Waiting> waiting_;  // nodes that a bone moves at first; `until` is a position on the whole path
-  std::size_t solved_ = 0;                  // number of poses solved so far
+  double size_ = 1;                  // thickness of the thinnest bent limb, relative to an adult's elbow (1)
+  double spacing_ = 0, finest_ = 0;  // edge length of the tets, and of the smallest tets around joints, mm
+  double reach_ = 0;                 // width that scales the meshed region, mm (Fem::reach_mm)
+  // Nodes that follow a bone until the path position `until`, [0, 1] over the whole path.
+  std::vector<FemModel::Waiting> waiting_;
+  std::size_t solved_ = 0;  // number of poses solved so far
   FemObjects objects_;
   double weight_n_ = 0;                  // weight of the body, N
-  bool is_pressed_ = false;              // whether the objects are in their places
-  bool has_weight_ = false;              // whether gravity acts at the start of the next solve
-  Grid grid_;                            // of the body's volume
-  std::unique_ptr<FemSequence> coarse_;  // the same poses with larger tets, to estimate the error; null: not wanted
+  bool is_pressed_ = false;              // true: the objects have reached their target positions
+  bool has_weight_ = false;              // true: gravity acts with full strength at the start of the next solve
+  Grid grid_;                            // grid of the body's volume
+  std::unique_ptr<FemSequence> coarse_;  // solves the same poses with larger tets; null: no error estimate
   std::string no_estimate_;              // why the error cannot be estimated
-  FemShape last_;                        // the shape solved last; at rest before the first solve
+  FemShape last_;                        // the last solved shape; before the first solve the shape at rest
 };
 
 }  // namespace limber

@@ -139,7 +139,7 @@ class BentJoints {
 // Returns a box around the rest positions of some voxels of a bone: those that at least one motion moves into `box`.
 Box taken_into(const Box& box, const BoneTissue& bone, const std::vector<AffineTransform>& motions,
                const glm::dvec3& spacing) {
-  Box from;  // holds every place that a motion moves into `box`; it rejects most voxels without a motion
+  Box from;  // box around all positions that a motion moves into `box`; excludes most voxels cheaply
   for (const AffineTransform& motion : motions) {
     const AffineTransform before = back(motion);
     for (int corner = 0; corner < 8; ++corner)
@@ -163,8 +163,8 @@ VoxelBox voxels_around(const Box& box, const glm::dvec3& spacing) {
   return {low - kMargin, high - low + 1 + 2 * kMargin};
 }
 
-// Returns the shortest shift of joint.bone that separates it from joint.against. The shift's components are along the
-// grid's axes, as if joint.against did not move.
+// Returns the shortest shift of joint.bone that separates it from joint.against. Its components are along the grid's
+// axes, in the frame in which joint.against is at rest.
 LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, const Grid& grid,
                     const ShiftBound& bound) {
   const glm::dmat3 to_grid = glm::inverse(grid.direction);
@@ -177,7 +177,8 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   const BoneTissue &fixed = tissue[joint.against], &turning = tissue[joint.bone];
   std::vector<AffineTransform> way_back;
   for (const AffineTransform& motion : path) way_back.push_back(back(motion));
-  // Boxes around the voxels of each bone that the other bone can reach. Each box makes the next box smaller.
+  // Boxes around the voxels of each bone that the other bone can reach. Each box is computed from the previous one and
+  // is smaller.
   const double reach = bound.most_mm + glm::length(grid.spacing);
   const Box first = taken_into(turning.box.grown(reach), fixed, way_back, grid.spacing);
   const Box near_turning = taken_into(first.grown(reach), turning, path, grid.spacing);
@@ -190,8 +191,7 @@ LeastShift shift_of(const Joint& joint, const std::vector<BoneTissue>& tissue, c
   return least_shift({from_fixed, from_turning, grid.spacing}, path, bound);
 }
 
-// Returns, for each bone, the sum of its own shift and the shifts of its ancestors, by which the bone's tissue is
-// moved.
+// Returns, for each bone, the shift that its tissue gets: the sum of its own shift and the shifts of its ancestors.
 std::vector<glm::dvec3> carried_by(std::vector<glm::dvec3> shifts, const Armature& armature) {
   for (std::size_t b = 0; b < shifts.size(); ++b)
     if (const int parent = armature.bones[b].parent; parent >= 0) shifts[b] += shifts[parent];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lets joints glide. A pose rotates every bone exactly as asked. If the two bones of a joint would then overlap, the
-// rotated bone and all its descendants are shifted by the shortest translation that separates the two bones. The reason
-// is that a rig's joint turns about a fixed axis or centre, while real joints roll, glide and open, and that the axes
-// of rigs are some millimetres off. Axes are not changed here: to fit them is an edit of the rig
+// Lets joints glide. If the two bones of a joint overlap in a pose, the rotated bone and all its descendants are
+// shifted by the shortest translation that separates the two bones; the rotations stay as the pose asks. This is needed
+// because a rig's joint turns about a fixed axis or centre, while real joints roll, glide and open, and because the
+// axes of rigs are some millimetres off. The axes themselves are not changed here: fitting them is an edit of the rig
 // (core/autorig/joint_axis_fit.h).
 //
 // A joint lies between a rig bone with bone tissue and its nearest ancestor with bone tissue. The weights say which

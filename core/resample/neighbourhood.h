@@ -68,8 +68,8 @@ bool air_can_change(const LabelView& volume, const glm::ivec3& voxel);
 // Returns true if all 26 neighbours have the same label as the voxel.
 bool is_enclosed(const LabelView& volume, const glm::ivec3& voxel);
 
-// Returns true if the voxel's tissue can lose the voxel and the voxel is inside the body: is_simple_point() is true,
-// and neither the voxel nor any of its 26 neighbours is air or outside the grid.
+// Returns true if the voxel's tissue can lose the voxel without coming apart, and if neither the voxel nor any of its
+// 26 neighbours is air or outside the grid.
 bool can_spare_inside(const LabelView& volume, const glm::ivec3& voxel);
 
 // Returns a pseudo-random number for a voxel index, always the same for the same index. Lists of equally good voxels

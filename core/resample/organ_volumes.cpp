@@ -14,8 +14,8 @@ namespace {
 
 // Upper limit on the layers of voxels that one pass adds to an organ's surface or removes from it.
 constexpr int kLayers = 6;
-// Connected components with fewer voxels than this are not changed. Otherwise a component could fall below 50 voxels,
-// or reach them, and so change the number of counted components: only those of 50 voxels or more count.
+// Connected components with fewer voxels than this are not changed. Only components of 50 voxels or more are counted,
+// and a smaller component that changes its size could cross this limit and change the count.
 constexpr std::int64_t kFrozen = 2 * kSmallestPart;
 // Number of passes over all organs. An organ that gave voxels in the first pass may be too small afterwards.
 constexpr int kRounds = 2;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keeps the volume of small muscles and organs. An organ that lost voxels in a fold or a joint takes voxels back from
 // the tissue around it, layer by layer at its surface. An organ with too many voxels gives voxels to that tissue. So
-// where two regions of the body overlap, small organs are pushed aside and not erased.
+// small organs are pushed aside, not erased, where two regions of the body overlap.
 //
 // A soft tissue of kOrgan voxels or more whose volume has changed by more than kMostOff is brought back to a change of
 // kMostOff. Only neighbouring tissues give or take voxels, and only while their own change stays below kMostOff. Bones,
 // skin, air and voxels beside air are not changed, no tissue is torn, and no two connected components of a tissue are
-// joined. Tissue_volumes.h reaches exact volumes of all tissues at once, at a higher cost.
+// joined. keep_tissue_volumes() (tissue_volumes.h) reaches the exact volumes of all tissues at once, but takes longer.
 #pragma once
 
 #include <map>

@@ -28,7 +28,7 @@ VoxelRange posed_tissue(const PosedLattice& lattice, const RigidBones& bones, co
   for (std::int64_t brick = 0; brick < std::ssize(lattice.tissue().bricks()); ++brick) {
     if (tets && tets->shares(brick)) continue;
     const auto& box = lattice.bounds(brick);
-    // Rounds as the rasterizer does: a sliver of tissue that lies between two voxel centres gets the nearer voxel.
+    // Rounds like the rasterizer: a sliver of tissue between two voxel centres gets the nearer voxel.
     const VoxelRange voxels{(box.low + (kFixedOne - 1)) >> 16, box.high >> 16};
     range = united(range, {glm::min(voxels.low, voxels.high), glm::max(voxels.low, voxels.high)});
   }

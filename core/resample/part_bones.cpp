@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 // Number of passes over the voxels at which two components touch. In the first pass only the larger component gives
-// voxels to another tissue, then both do.
+// voxels to another tissue, in later passes both do.
 constexpr int kRounds = 4;
 
 std::map<Label, int> large_parts(const Components& components, const LabelSet& soft) {
@@ -48,7 +48,8 @@ class Parting {
   std::int64_t part(Label label) {
     find_fused(label);
     std::int64_t changed = 0;
-    // A voxel that is given to another tissue can only end contacts, so voxels without contact are not examined again.
+    // Giving a voxel to another tissue never creates a contact, so voxels that have no contact need not be examined
+    // again.
     std::vector<glm::ivec3> touching = std::move(fused_);
     for (int round = 0; round < kRounds && !touching.empty(); ++round) {
       std::vector<glm::ivec3> still;
@@ -92,9 +93,9 @@ class Parting {
       if (sources[component].size() > 1) fused_.push_back(v);
   }
 
-  // Finds the large component at rest (50 voxels or more) that each voxel of a run along x comes from. Only every
-  // fourth voxel is looked up. If two of these come from the same component, so do the voxels between them, by
-  // assumption.
+  // Finds the large component at rest (50 voxels or more) that each voxel of a run along x comes from. Looks up every
+  // fourth voxel. If two successive lookups give the same component, the voxels between them are assumed to come from
+  // it too.
   void find_sources(const glm::ivec3& first, int count, Label label, int* parts) const {
     constexpr int kStep = 4;
     for (int done = -1; done < count - 1;) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Separates connected components of bone tissue that are separate at rest. The wall between two marrow cavities, or
 // between spongy regions of a bone, is often one voxel thick. When a bone is rotated on the grid, such a wall gets
-// pinholes. Where a rig moves one bone into another, the marrows of the two bones touch. Then a label has fewer
-// components than at rest, though no bone has fused.
+// holes of single voxels. Where a rig moves one bone into another, the marrows of the two bones touch. Then a label has
+// fewer components than at rest, though no bone has fused.
 //
 // A bone tissue is changed if it has fewer components (26-connected, of 50 voxels or more) than at rest. If one of its
 // voxels touches a voxel that comes from another component at rest, the voxel is given to another bone tissue: the one

@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-constexpr double kBesideMesh = 10;  // largest distance from the mesh at which a point moves with it, mm
+constexpr double kBesideMesh = 10;  // points within this distance of the mesh move with it, mm
 
 // Returns, for each point, the position to which the mesh moves it; none: the mesh does not move the point, for example
 // because the point is in tissue that is not meshed.

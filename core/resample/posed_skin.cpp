@@ -36,8 +36,8 @@ std::int64_t close_skin(LabelEdit posed, const std::vector<UnderSkin>& under_ski
 std::int64_t thin_skin(LabelEdit posed, std::vector<InnerSkin>& inner_skin, std::int64_t most, const LabelSet& flesh,
                        const LabelSet& skin) {
   if (most == 0) return 0;
-  // The deepest voxels come first, in the order of their indices where they are equally deep. Few of all voxels are
-  // looked at, so a heap finds them in less time than sorting all would take.
+  // Orders the heap by depth, deepest first, then by voxel index. Only the few deepest voxels are needed, and a heap
+  // finds them faster than a full sort.
   const auto comes_later = [&](const InnerSkin& a, const InnerSkin& b) {
     return a.depth != b.depth ? a.depth < b.depth : posed.grid.index(voxel_of(a)) > posed.grid.index(voxel_of(b));
   };

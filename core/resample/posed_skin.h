@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps the skin of a posed volume closed and thin. An index of a voxel counts x fastest.
+// Keeps the skin of a posed volume closed and thin. Voxel indices count x fastest.
 #pragma once
 
 #include <array>
@@ -17,11 +17,12 @@ struct UnderSkin {
   Label skin;       // label of the skin that touches the tissue at rest; 0: none does
 };
 
-// Drops voxels that touch no air from a list that grows while layer after layer of the posed volume is written. Layers
-// that are not written yet count as air, so the list's end from the layer below the newest on is looked at again.
-//   unsure   what the last call returned; at first 0
+// Removes the voxels that touch no air from a list of candidates. The list grows while the posed volume is written
+// layer by layer along z. Slices that are not written yet look like air, so voxels in the newest layer are checked
+// again in the next call.
+//   unsure   the value that the last call returned; 0 in the first call
 //   low      lowest slice of the newest layer
-//   returns  the index of the first voxel that the next call looks at
+//   returns  index of the first voxel that the next call must check
 std::ptrdiff_t drop_covered(const LabelView& posed, std::vector<UnderSkin>& under_skin, std::ptrdiff_t unsure, int low);
 
 // A posed voxel of skin that does not touch air. A fine body has millions of them, so they are stored in 12 bytes.

@@ -29,7 +29,7 @@ namespace {
 
 constexpr glm::ivec3 kTile = RestPoints::kTile;  // size of a tile, output voxels; its inverse map takes 3 MB
 constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points (48 MB)
-constexpr int kReach = 8;  // largest distance from a rest point at which a missing label is searched, voxels
+constexpr int kReach = 8;  // voxels: radius around a rest point within which a missing label is searched
 // Smallest tissue in voxels that the mass limit applies to: resampling alone changes smaller tissues by more.
 constexpr std::int64_t kJudged = 5000;
 
@@ -60,8 +60,8 @@ struct SoftBorders {
   std::vector<BorderMove> moves;
 };
 
-// Returns the number of rest points for which to reserve memory: for a small body, such as a limb, one per tissue voxel
-// and a quarter more, since a pose may enlarge it; for a large body none.
+// Returns the number of rest points for which to reserve memory. For a small body, such as a limb, this is 1.25 times
+// the number of tissue voxels, since a pose may enlarge the body. For a large body it is 0.
 std::int64_t room_for_rest(const TissueVoxels& tissue) {
   const std::int64_t room = tissue.size() + tissue.size() / 4;
   return room <= kMostRest ? room : 0;
@@ -117,11 +117,11 @@ class PosedVoxels {
     forget_corners_below(INT_MAX);
   }
 
-  // The posed labels, unless lay_in_rows() has moved them to the posed volume.
+  // Returns the posed labels. Call this only if lay_in_rows() has not moved them to posed_.volume.
   TiledLabels take_tiles() { return std::move(tiles_); }
   void lay_in_rows() { posed_.volume = in_rows(std::move(tiles_)); }
 
-  // Gives each soft tissue as many voxels as come from it by the inverse map. This is needed because interpolated
+  // Gives each soft tissue as many voxels as the inverse map finds in its cells. This is needed because interpolated
   // labels favour thick tissues over thin ones.
   void keep_soft_volumes(Progress& progress) {
     SoftBorders borders = soft_borders(progress);
@@ -332,12 +332,12 @@ class PosedVoxels {
       }
   }
 
-  // Where a voxel of the output lies in volumes, and where in tiles.
+  // Index of a voxel in volumes (x fastest) and its index in tiles_.
   struct Place {
     std::int64_t at, in_tiles;
   };
 
-  // Writes one voxel. Returns true if it is bone.
+  // Writes one posed voxel. Returns true if the voxel is bone.
   bool write_voxel(const InverseMap& map, std::int64_t i, const glm::ivec3& v, const Place& place, TileCounts& counts) {
     const std::int64_t at = place.at;
     const Label label = label_of(map, i);
@@ -386,7 +386,7 @@ class PosedVoxels {
     return soft ? soft : label;
   }
 
-  // Writes the displacement of a voxel of the posed volume, where one is wanted.
+  // Writes the displacement of a posed voxel (posed - rest position, mm) into the fields that the settings request.
   void write_displacement(const glm::ivec3& voxel, const Place& place, const glm::dvec3& rest) const {
     if (!settings_.displacement && !settings_.tiled_displacement) return;
     const glm::dvec3 to(output_.range.low + voxel);
@@ -469,9 +469,9 @@ class PosedVoxels {
   LabelSet flesh_;          // soft tissues without skin
   RestPoints rest_points_;  // rest points of the posed voxels as they are before any repair
   std::vector<UnderSkin> under_skin_;
-  std::ptrdiff_t unsure_ = 0;  // index in under_skin_ of the first voxel that may turn out to touch no air
+  std::ptrdiff_t unsure_ = 0;  // index in under_skin_ of the first voxel that drop_covered() must check again
   std::vector<InnerSkin> inner_skin_;
-  RowSet rows_, bone_rows_;  // 1 for each row of the output that has tissue, that has bone tissue
+  RowSet rows_, bone_rows_;  // 1 for each row of the output that contains tissue; that contains bone tissue
   TiledLabels posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
   const LabelSampler sampler_;
   TiledLabels tiles_;  // the posed labels

@@ -15,7 +15,7 @@
 
 namespace limber {
 
-// Properties of the tissues, indexed by label.
+// Properties of the tissues, by label.
 struct LabelSets {
   LabelSet bone = LabelSet(65536, 0), soft = LabelSet(65536, 1), skin = LabelSet(65536, 0);
   std::vector<int> priority = std::vector<int>(65536, 0);
@@ -44,10 +44,10 @@ struct PosedBody {
   bool mends;  // true: repairs tears and lost volumes
 };
 
-// Fills the fields of `posed` that the settings ask for, and the voxel counts of its report. Returns the posed labels,
-// so that a caller can free the deformation before it lays them in rows (in_rows). Where volumes of soft tissue had to
-// be corrected, returns nothing: the labels are in posed.volume. Throws Error where a tissue would have to change by
-// more than settings.mass_limit_percent to keep its mass.
+// Fills the fields of `posed` that the settings ask for, and the voxel counts of its report. Returns the posed labels
+// in tiles, so that the caller can free the deformation before the labels are laid out in rows (in_rows). If volumes of
+// soft tissue had to be corrected, the labels are already in posed.volume, and nothing is returned. Throws Error if a
+// tissue would have to change by more than settings.mass_limit_percent to keep its mass.
 std::optional<TiledLabels> write_voxels(const PosedBody& body, const ResampleSettings& settings, Posed& posed,
                                         Progress& progress);
 

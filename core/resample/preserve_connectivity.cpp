@@ -16,17 +16,17 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the voxels of a bridge between two components. A longer bridge would invent anatomy.
+// Upper limit on the voxels of a bridge between two components. A longer bridge would create tissue that the anatomy
+// does not have.
 constexpr int kLongestBridge = 4;
-// Upper limit on the voxels of a bridge that follows the tissue's trace: all its voxels come from positions inside or
-// beside the tissue at rest.
+// Upper limit on the voxels of a bridge whose voxels all come from positions inside or beside the tissue at rest.
 constexpr int kLongestTrace = 64;
 // Upper limit on the rest points (positions at rest) that are computed to find long bridges, since each takes time.
 constexpr std::size_t kTraced = 20000;
-// Upper limit on the bridges that are tried for one component. Each new bridge avoids the voxels that could not be
-// taken before.
+// Upper limit on the bridges that are tried for one component. Each new bridge avoids the voxels that the earlier ones
+// failed to take.
 constexpr int kAttempts = 32;
-// Least size, in voxels, of a posed component that is filled up to 50 voxels.
+// Smallest size, in voxels, of a posed component that is enlarged to 50 voxels.
 constexpr int kSmallestKept = kSmallestPart / 2;
 // Number of voxels of a posed component whose rest points are computed to find where the component comes from.
 constexpr int kSamples = 4;
@@ -119,7 +119,7 @@ class Mending {
     return torn;
   }
 
-  // Returns the components at rest from which a posed component comes, as far as kSamples of its voxels tell.
+  // Returns the components at rest from which a posed component comes, judged from kSamples of its voxels.
   std::set<int> sources(Label label, int part) const {
     const auto& stretches = stretches_.at(part);
     std::set<int> from;
@@ -130,8 +130,8 @@ class Mending {
     return from;
   }
 
-  // Shrinks components of bone tissue to below 50 voxels if they have fewer than 50 at rest. Resampling alone gave such
-  // components a few voxels.
+  // Shrinks those components of bone tissue to below 50 voxels that have fewer than 50 at rest and gained some by
+  // resampling.
   void trim(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0 && parts[i].voxels < kSmallestPart + kSmallestKept; ++i) {
       const auto from = sources(label, parts[i].component);
@@ -177,7 +177,7 @@ class Mending {
     return found;
   }
 
-  // Fills up to 50 voxels those components that have 50 or more at rest and lost a few of them by resampling.
+  // Enlarges those components to 50 voxels that have 50 or more at rest and lost some of them by resampling.
   void grow(Label label, const std::vector<Part>& parts, std::int64_t too_few) {
     find_stretches(label);
     std::set<int> found;
@@ -242,15 +242,15 @@ class Mending {
     return taken != taken_.end() ? taken->second : component_at(of_posed_, posed_, v);
   }
 
-  // Returns the bridge with the fewest voxels from a component to another large component of its tissue. The search is
-  // breadth-first and starts at all voxels of the component. Each layer of it adds one voxel to the bridge; voxels of
-  // small components of the tissue cost nothing.
+  // Returns the bridge with the fewest voxels from a component to another large component of its tissue. Breadth-first
+  // search from all voxels of the component: each layer adds one voxel to the bridge, and voxels of small components of
+  // the tissue cost nothing.
   //   along_trace  true: allows a longer bridge, whose voxels all come from positions inside or beside the tissue at
   //                rest. This repairs a thin sheet that the pose has stretched so far that it misses voxel centres
   std::optional<Bridge> shortest_bridge(Label label, int part, bool along_trace) {
     const int own = joined(part), longest = along_trace ? kLongestTrace : kLongestBridge;
-    // Predecessor of each visited voxel outside the component, by voxel index. Voxels that cannot be taken have one
-    // too.
+    // Predecessor of each visited voxel outside the component, by voxel index; also set for voxels that cannot be
+    // taken.
     std::unordered_map<std::int64_t, std::int64_t> came_from;
     std::vector<glm::ivec3> layer = voxels_of(own);
     const size_t own_voxels = layer.size();
@@ -392,8 +392,8 @@ class Mending {
   std::vector<int> joined_;  // index of the component that each component was joined to, or its own index
   std::unordered_map<std::int64_t, int> taken_;  // new component of each taken voxel, by voxel index
   std::vector<glm::ivec3> bridges_;
-  // Voxel at rest from which each posed voxel tried for a long bridge comes, by voxel index. Empty for all voxels that
-  // were tried after the first kTraced ones.
+  // Voxel at rest from which each posed voxel that was tried for a long bridge comes, by voxel index. Only the first
+  // kTraced voxels have a value.
   std::unordered_map<std::int64_t, std::optional<glm::ivec3>> comes_from_;
   // Voxels that bridges of the current component may not take.
   std::unordered_set<std::int64_t> barred_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keeps the number of connected components (26-connected, of 50 voxels or more) that each tissue has at rest. A posed
-// voxel volume may look torn though the body is not: the fold of a joint moves the voxels of a thin sheet or strand
-// apart, another tissue gets the voxel between them, or a small bone has a few voxels less after a rotation.
+// voxel volume may look torn though the body is not: in the fold of a joint the voxels of a thin sheet or strand move
+// apart and another tissue gets the voxel between them, or a small bone loses a few voxels by a rotation.
 //
 // First, components of bone tissues that have fused are separated (part_bones.h). Then, in every tissue with too many
 // components, components are joined until their number is as at rest. Each component, smallest first, is joined to

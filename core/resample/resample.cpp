@@ -36,7 +36,7 @@ bool settles_flesh(const Method& method) {
   return std::holds_alternative<Blend>(method) && rule_of(std::get<Blend>(method)).settles_flesh;
 }
 
-// Returns true if regions of the body may overlap in the pose. They cannot if all bones have the same motion.
+// Returns true if regions of the body may overlap in the pose: at least two bones have different motions.
 bool can_fold(const std::vector<RigidTransform>& motions) {
   return std::any_of(motions.begin(), motions.end(), [&](const RigidTransform& m) {
     return m.rotation != motions[0].rotation || m.translation != motions[0].translation;
@@ -86,7 +86,7 @@ struct RigidBody {
   }
 };
 
-// Poses the body. Returns its labels, unless they are in posed.volume already (write_voxels).
+// Poses the body. Returns its labels in tiles, or nothing if the labels are already in posed.volume (write_voxels).
 //   shape  the mesh that finite elements have solved for the pose; null: skinning
 std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
                                        const Method& method, const ResampleSettings& settings, Posed& posed,
@@ -131,7 +131,8 @@ std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, 
   return posed_labels;
 }
 
-// Returns the volume of the body in one pose. Its rows are written when the deformation takes no memory any more.
+// Returns the volume of the body in one pose. To save memory, the labels are laid out in rows after the data of the
+// deformation are freed.
 Posed resample_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
                     const Method& method, const ResampleSettings& settings, Progress& progress) {
   Posed posed;

@@ -33,9 +33,9 @@ struct ResampleSettings {
   bool nearest = false;
   // true: gives soft tissues their rest volumes by moving borders (tissue_volumes.h); not with `nearest`.
   bool mass_exact = false;
-  // Upper limit on the volume change, in %, by which mass_exact corrects a soft tissue; beyond it, Error is thrown.
+  // Upper limit on the volume change, in %, that mass_exact may correct in a soft tissue; beyond it, Error is thrown.
   double mass_limit_percent = 3;
-  std::optional<double> spacing;    // output spacing along all axes, mm; none: as the input
+  std::optional<double> spacing;    // voxel size of the output along all axes, mm; none: that of the input
   bool displacement = false;        // true: Posed::displacement is filled
   bool tiled_displacement = false;  // true: Posed::tiled_displacement is filled
   bool jacobian = false;  // true: Posed::jacobian is filled (det of the Jacobian of the map from rest to pose)
@@ -45,7 +45,7 @@ struct ResampleSettings {
   std::shared_ptr<const Seams> seams;
 };
 
-// Report of the correction that mass_exact has made, to give soft tissues their volumes at rest.
+// Report of the correction by mass_exact, which gives soft tissues their volumes at rest.
 struct MassExactReport {
   struct Tissue {
     // Number of the tissue's posed voxels: wanted, before the correction, and after it.
@@ -110,8 +110,8 @@ Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Arma
                const ResampleSettings& settings = {}, Progress& progress = no_progress());
 
 // Computes the posed volume of each pose of a sequence, such as the frames of a motion, and calls on_posed(index,
-// volume) for each. Finite elements mesh once for all poses. Each solve starts from the shape that the previous solve
-// reached (fem_shape.h), also if that shape is short of its pose.
+// volume) for each. Finite elements use one mesh for all poses. Each solve starts from the shape that the previous
+// solve reached (fem_shape.h), even if that solve did not reach its pose.
 void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                        const SkinWeights& weights, const std::vector<Pose>& poses, const Method& method,
                        const ResampleSettings& settings,

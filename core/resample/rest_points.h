@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the rest point (position at rest) of every voxel of a posed volume. The inverse map, which contains rest
-// points, is computed and deleted tile by tile. Rest points of tiles are stored as far as the room suffices. Others are
-// computed again on request.
+// Finds the rest point (position at rest) of every voxel of a posed volume. The inverse map, which contains the rest
+// points, is computed and deleted tile by tile. The rest points of tiles are stored until the reserved memory is full.
+// All others are computed again on request.
 #pragma once
 
 #include <atomic>

@@ -66,8 +66,8 @@ bool SkinAtRest::is_bare(const glm::ivec3& voxel) const {
   return label && soft_[label] && !skin_[label] && touches_air(volume_, voxel) && touches_outside(voxel);
 }
 
-// Returns true if a voxel is deep below the outside air. Air that the body encloses does not count (in TissueDepth it
-// does).
+// Returns true if a voxel is deep below the outside air. Air that the body encloses does not count here, unlike in
+// TissueDepth.
 bool SkinAtRest::is_deep(const glm::ivec3& voxel) const {
   if (depth_.at_voxel(voxel) > deep_) return true;
   if (enclosed_air_.empty()) return false;

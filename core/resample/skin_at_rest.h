@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Determines where the surface of a body at rest is skin, and which tissue must stay covered in a pose: tissue that is
-// covered at rest. In a pose such tissue may come to lie bare, since stretch opens skin that is one voxel thick, and
-// since there is no skin at a seam (sheet of voxel faces where two limbs touch at rest).
+// Determines where the surface of a body at rest is skin, and which tissue is covered at rest and so must stay covered
+// in a pose. In a pose such tissue may be exposed, because stretch opens skin that is one voxel thick, or because there
+// is no skin at a seam (sheet of voxel faces where two limbs touch at rest).
 //
-// In a volume of coarse slices, each slice has skin around it, but the steps between slices have none. When such a body
-// is rotated, its surface would need far more skin than there is. So it counts as having open skin: its flesh may lie
-// bare, but not tissue from deep inside.
+// In a volume of coarse slices, each slice has skin around it, but the steps between slices have none. A rotated body
+// of this kind would need far more skin than there is to cover its surface. So its skin counts as open: its flesh may
+// be exposed in a pose, but tissue from deep inside may not.
 #pragma once
 
 #include <unordered_set>
@@ -21,7 +21,7 @@ namespace limber {
 
 class SkinAtRest {
  public:
-  // Keeps references to all arguments and to the labels that `volume` shows.
+  // Keeps references to all arguments and to the labels of `volume`.
   SkinAtRest(const LabelView& volume, const TissueVoxels& tissue, const TissueDepth& depth, const LabelSet& soft,
              const LabelSet& skin);
 

@@ -13,13 +13,13 @@ namespace limber {
 
 namespace {
 
-// A voxel whose own membership exceeds the new tissue's by this keeps its label.
+// A voxel keeps its label if its membership of its own tissue exceeds that of the new tissue by at least this number.
 constexpr double kMostSure = 0.8;
 // Cost that is added to the cost of every move (change of a voxel's label), so that paths over few tissues are
 // preferred.
 constexpr double kEach = 0.1;
-// Connected components with fewer voxels than this are not changed. Otherwise a component could fall below 50 voxels,
-// or reach them, and so change the number of counted components: only those of 50 voxels or more count.
+// Connected components with fewer voxels than this are not changed. Only components of 50 voxels or more are counted,
+// and a smaller component that changes its size could cross this limit and change the count.
 constexpr std::int64_t kFrozen = 2 * kSmallestPart;
 // Upper limit on the rounds. Each round tries again the moves that were not possible in the previous one.
 constexpr int kRounds = 8;
@@ -56,8 +56,8 @@ class Exchange {
           borders_[{under, 0}].moves.push_back({move.at, under, 0, move.cost});
   }
 
-  // Adds the moves by which the body may grow: they turn air beside soft tissue into tissue. They are cheapest where
-  // the air voxel is nearly surrounded by tissue.
+  // Adds the moves that turn air beside soft tissue into tissue, so that the body may grow. A move is cheaper the more
+  // of the air voxel's 26 neighbours are tissue.
   void add_air() {
     const glm::ivec3 size = posed_.grid.size;
     glm::ivec3 v;
@@ -86,7 +86,7 @@ class Exchange {
     for (int round = 0; round < kRounds && (moved || new_layer); ++round) {
       if (new_layer && missing_.at(0) < 0) add_air();
       moved = exchange();
-      // Offers a further layer of air voxels only after no move into the previous layer is possible any more.
+      // Adds the next layer of air voxels only after no move into the previous layer is possible any more.
       new_layer = !moved && !new_layer;
       if (new_layer) std::erase_if(borders_, [](const auto& border) { return border.first.first == 0; });
     }
@@ -173,7 +173,8 @@ class Exchange {
     bool moved = false;
     for (size_t i = 0; i + 1 < way.size(); ++i) {
       Border& border = borders_.at({way[i], way[i + 1]});
-      // Ends the path early if an earlier move on it has made the next one impossible. This tissue keeps the voxel.
+      // Ends the path early if an earlier move of the path has made the next one impossible. The current tissue then
+      // keeps the voxel.
       if (!next_cost(border)) break;
       const BorderMove move = border.moves[border.next++];
       for (const Change& change : changes(move)) make(change);

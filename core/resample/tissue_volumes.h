@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Gives soft tissues their wanted volumes by moving the borders between them. Volumes are wrong because labels read on
-// a rotated grid make layers and cords of one voxel thinner, and because skinning loses tissue where a joint folds. As
-// few voxels as possible are changed, first those whose tissue is least certain. Bones are never changed.
+// Gives soft tissues their wanted volumes by moving the borders between them. Volumes are wrong because layers and
+// cords that are one voxel thick become thinner when labels are read on a rotated grid, and because skinning loses
+// tissue where a joint folds. As few voxels as possible are changed, first those whose tissue is least certain. Bones
+// are never changed.
 //
 // Tissues with too many voxels are the sources of a flow, tissues with too few its sinks, and the borders between
 // tissues its edges. Each unit of flow changes the label of one voxel, and the cheapest path comes first (successive
@@ -37,7 +38,7 @@ void add_moves(const LabelVolume& posed, const glm::ivec3& voxel, const LabelSam
 
 struct TissueVolumes {
   std::int64_t changed = 0;               // number of label changes
-  std::map<Label, std::int64_t> missing;  // wanted minus present voxels, for each tissue that has not its wanted volume
+  std::map<Label, std::int64_t> missing;  // wanted minus present voxels of each tissue where they differ
 };
 
 // Moves the borders of soft tissues until they have the wanted volumes.
