@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Functions that blend the motions of the bones that a point follows. They are inline because they run for every corner
-// of every tissue voxel. They are written once for both kinds of numbers: doubles, and FourNumbers for four points at a
-// time (four_points.h). Influences are spans of (bone, weight) of any length; weights need not sum to one. A point
-// stays at rest where its weights sum to zero.
+// of every tissue voxel. Each is a template over its number type: double for one point, or FourNumbers for four points
+// at a time (four_points.h). Influences are spans of (bone, weight) of any length; weights need not sum to one. A point
+// whose weights sum to zero stays at rest.
 #pragma once
 
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace limber {
 
-// Returns the image of a point under the affine map `m`: three columns, then the translation.
+// Returns the image of a point under the affine map `m`: the three columns of the matrix, then the translation.
 template <class Number>
 LIMBER_INLINE PointOf<Number> transform(const ArrayOf<Number, 12>& m, const PointOf<Number>& p) {
   return {m[0] * p.x + m[3] * p.y + m[6] * p.z + m[9], m[1] * p.x + m[4] * p.y + m[7] * p.z + m[10],
           m[2] * p.x + m[5] * p.y + m[8] * p.z + m[11]};
 }
 
-// Returns the image of a point under a dual quaternion, which may have any length: it is normalized and applied in one
+// Returns the image of a point under a dual quaternion of any length other than zero: normalizes and applies it in one
 // step [Kavan 2008, 4.1].
 template <class Number>
 LIMBER_INLINE PointOf<Number> transform(const ArrayOf<Number, 8>& dq, const PointOf<Number>& p) {
@@ -32,7 +32,8 @@ LIMBER_INLINE PointOf<Number> transform(const ArrayOf<Number, 8>& dq, const Poin
   return p + 2.0 / squared_length * move;
 }
 
-// Adds weight * q or weight * -q to the sum, whichever points in the sum's direction: q and -q are the same rotation.
+// Adds weight * q or weight * -q to the sum, whichever has a positive dot product with the sum: q and -q are the same
+// rotation.
 template <class Sum, class Number>
 LIMBER_INLINE void add_aligned(Sum& sum, const std::array<double, 8>& q, const Number& weight) {
   const Number dot = sum[0] * q[0] + sum[1] * q[1] + sum[2] * q[2] + sum[3] * q[3];
@@ -40,11 +41,11 @@ LIMBER_INLINE void add_aligned(Sum& sum, const std::array<double, 8>& q, const N
   for (int i = 0; i < 8; ++i) sum[i] += signed_weight * q[i];
 }
 
-// The functions below return the blended point.
+// Each kernel's blend() returns the blended point.
 //   Influence  BoneWeight or FourWeights
-//   Stretched  whether bones may stretch
+//   Stretched  true: bones may stretch
 
-// Blends the displacements of the bones. They already contain stretches.
+// Blends the displacements of the bones linearly. The displacements already contain the bones' stretches.
 struct LinearKernel {
   template <bool Stretched, class Influence, class Number>
   LIMBER_INLINE static PointOf<Number> blend(std::span<const SkinTransform> bones,
@@ -79,7 +80,7 @@ struct DualKernel {
   }
 };
 
-// The functions of a BlendRule that blend by `Kernel`.
+// Instances of `Kernel` for the function pointers of a BlendRule.
 template <class Kernel, bool Stretched>
 glm::dvec3 blend_one(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                      const glm::dvec3& p) {

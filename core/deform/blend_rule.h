@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A table of the methods that blend the motions of bones. Resampling, previews, commands, studies and the editor's
-// lists of methods read it. To add a blend, add one source file in core/deform/blends and one line to kBlends in
-// blend_rule.cpp.
+// lists of methods read this table. To add a blend, add one source file in core/deform/blends and one line to kBlends
+// in blend_rule.cpp.
 #pragma once
 
 #include <span>
@@ -24,20 +24,20 @@ struct BlendRule {
   using Four = void (*)(std::span<const SkinTransform> bones, std::span<const FourWeights> influences,
                         FourPoints& points);
 
-  const char* word;         // on the command line and in files: "dqs"
-  const char* label;        // in lists and columns: "DQ"
-  const char* name;         // in a study: "Dual quaternions"
-  const char* summary;      // behind the word in --help: "dual quaternions"
-  const char* description;  // one sentence, for a tooltip
+  const char* word;         // id on the command line and in files: "dqs"
+  const char* label;        // short name in lists and table columns: "DQ"
+  const char* name;         // full name in a study: "Dual quaternions"
+  const char* summary;      // short explanation after the word in --help: "dual quaternions"
+  const char* description;  // tooltip, one sentence
 
   Point point;            // returns the posed point if no bone stretches
   Point stretched_point;  // returns the posed point if bones may stretch
-  // Replace four rest points by the points that `point` returns for each, bit for bit. The second needs AVX2.
+  // Replace four rest points by their posed points, equal to those of `point` bit for bit. four_points_wide needs AVX2.
   Four four_points, four_points_wide;
 
-  bool sums_displacements;     // blending SkinTransforms needs the sum of the bones' displacements
-  bool sums_dual_quaternions;  // blending SkinTransforms needs the sum of the bones' dual quaternions
-  bool settles_flesh;          // corrects the volume of flesh after blending (settled_flesh.h)
+  bool sums_displacements;     // true: the blend needs the bones' summed displacements (SkinTransform)
+  bool sums_dual_quaternions;  // true: the blend needs the bones' summed dual quaternions
+  bool settles_flesh;          // true: the volume of flesh is corrected after blending (settled_flesh.h)
 };
 
 // Returns the rows of the table; the first is the default method. Row i is the rule of Blend i.

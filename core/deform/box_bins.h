@@ -13,7 +13,7 @@ namespace limber {
 class BoxBins {
  public:
   BoxBins() = default;
-  //   boxes  boxes to search; empty ones are never found
+  //   boxes  boxes to search; empty boxes are never found
   //   bin    edge of a bin, voxels
   BoxBins(std::vector<VoxelRange> boxes, int bin) : boxes_(std::move(boxes)), bin_(bin) {
     VoxelRange all;
@@ -30,7 +30,7 @@ class BoxBins {
     for_each_entry([&](std::int64_t bin_at, int box) { entries_[end[bin_at]++] = box; });
   }
 
-  // Writes the indices of the boxes that intersect `range` into `found`, ascending.
+  // Writes the indices of the boxes that intersect `range`, in ascending order, into `found`.
   template <class Index>
   void meeting(const VoxelRange& range, std::vector<Index>& found) const {
     found.clear();

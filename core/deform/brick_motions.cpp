@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSeveral = BrickMotions::kSeveral;
 
-// Returns, for each bone, the first bone with the same motion, up to the rounding errors of a long chain of bones.
+// Returns, for each bone, the first bone that has the same motion, up to rounding errors.
 std::vector<int> first_alike(const std::vector<RigidTransform>& motions) {
   const auto alike = [](const RigidTransform& a, const RigidTransform& b) {
     const double turn = std::abs(glm::dot(a.rotation, b.rotation));
@@ -28,7 +28,8 @@ std::vector<int> first_alike(const std::vector<RigidTransform>& motions) {
   return first;
 }
 
-// Returns the bone whose motion all influences of a chunk (the influences of one brick's voxels) follow, or kSeveral.
+// Returns the one bone whose motion all voxels of a brick follow, or kSeveral if they follow different motions.
+//   chunk  influences of the brick's voxels
 int motion_of_all(const SkinWeights::Chunk& chunk, const std::vector<int>& moves_as) {
   const int first = moves_as[chunk.front().bone[0]];
   const bool same = std::all_of(chunk.begin(), chunk.end(), [&](const Influence& influence) {
@@ -39,7 +40,7 @@ int motion_of_all(const SkinWeights::Chunk& chunk, const std::vector<int>& moves
   return same ? first : kSeveral;
 }
 
-// Calls body(brick) for the brick itself and for each of its 26 neighbours that has tissue.
+// Calls body(brick) for a brick and for each of its 26 neighbours that contains tissue.
 template <class Body>
 void for_each_around(const TissueVoxels& tissue, std::int64_t brick, const Body& body) {
   const glm::ivec3 here = tissue.bricks()[brick].corner / TissueVoxels::kBrick;

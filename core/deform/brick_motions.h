@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds the bricks (blocks of 8^3 voxels) whose tissue moves with one bone. Much of a posed limb follows one bone with
-// full weight, or several bones with the same motion. Bones with the same motion count as one: the first of them.
+// full weight, or several bones with the same motion. The first bone with a motion stands for all bones that have this
+// motion.
 #pragma once
 
 #include <vector>
@@ -15,7 +16,7 @@ struct BrickMotions {
   static constexpr int kSeveral = -1;
 
   std::vector<int> moves_as;  // for each bone, the first bone with the same motion
-  std::vector<int> around;    // for each brick, the bone that it and its neighbours follow, or kSeveral
+  std::vector<int> around;    // for each brick, the bone that it and its neighbours all follow, or kSeveral
 
   //   posed_from_rest  motions of the bones of `weights`
   BrickMotions(const TissueVoxels& tissue, const SkinWeights& weights,

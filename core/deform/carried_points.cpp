@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 constexpr int kBin = 8;         // edge of a search bin, voxels
-constexpr double kEdge = 1e-9;  // tolerance of barycentric coordinates: points on a face count as inside
+constexpr double kEdge = 1e-9;  // tolerance of barycentric coordinates, so that points on a face count as inside
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
 

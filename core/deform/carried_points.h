@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Points that a tet mesh carries: located in the mesh once at rest, then posed as often as the mesh moves. A point in
-// the mesh moves with its tet. A point near the mesh moves with the nearest point of the mesh's border, and rotates
-// with the tet there. A point may have an anchor other than its own position: it then moves as if it were fixed to the
-// tissue at the anchor, however far away the point is. So the corners of a lattice cell follow the finger that they
-// belong to, and not the one beside it.
+// Points that move with a tet mesh. They are located in the mesh at rest once and can then be posed any number of
+// times. A point in the mesh moves with its tet. A point near the mesh moves with the nearest point of the mesh's
+// border, and rotates with the tet there. A point may have an anchor at another position: the point then moves as if it
+// were fixed to the tissue at its anchor, however far away that is. So the corners of a lattice cell follow the finger
+// to which the cell belongs, and not a finger beside it.
 #pragma once
 
 #include <array>
@@ -23,18 +23,18 @@ struct PointToCarry {
 
 class CarriedPoints {
  public:
-  //   furthest_mm  points whose anchor is further than this from the mesh are not carried
+  //   furthest_mm  points whose anchor is further than this from the mesh do not move with it
   CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid, const std::vector<PointToCarry>& points,
                 double furthest_mm);
 
   const std::shared_ptr<const TetMesh>& mesh() const { return mesh_; }
-  // Returns the posed points in voxel coordinates; nothing for points that the mesh does not carry.
+  // Returns the posed points in voxel coordinates; nothing for points that do not move with the mesh.
   //   posed  #V by 3 posed nodes, world, mm
   std::vector<std::optional<glm::dvec3>> posed(const Eigen::MatrixX3d& posed) const;
 
  private:
   struct Hold {
-    int tet = -1;  // -1: the mesh does not carry the point
+    int tet = -1;  // -1: the point does not move with the mesh
     std::array<int, 4> nodes{};
     std::array<double, 4> shares{};
     glm::dvec3 off{0};  // offset of the point from the weighted mean of its nodes, at rest, mm

@@ -7,7 +7,7 @@ namespace limber {
 
 namespace {
 
-// Disjoint sets of pieces' corners; the corners in one set become one node (union-find).
+// Disjoint sets of corners of pieces (union-find). The corners in one set become one node.
 class Joined {
  public:
   explicit Joined(std::size_t count) : first_(count) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Numbers the nodes at the corners of the pieces of cells (cell_pieces.h). Pieces whose tissue touches share the four
-// nodes of the face between them. Pieces that only lie beside each other, such as two fingers or the two sides of a
-// seam, have their own nodes [the virtual nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing
-// mesh topology].
+// Numbers the nodes at the corners of pieces, the connected components of the tissue in each cell (cell_pieces.h).
+// Pieces whose tissue touches share the four nodes of the face between them. Neighbouring pieces whose tissue does not
+// touch, such as two fingers or the two sides of a seam, have separate nodes [the virtual nodes of Molino, Bao & Fedkiw
+// 2004, A virtual node algorithm for changing mesh topology].
 #pragma once
 
 #include <array>

@@ -14,8 +14,8 @@ namespace {
 
 using Voxels = std::array<std::uint64_t, 8>;
 
-// Factor on the weights that a voxel gives to the corners of its cell if the voxel follows one bone with full weight.
-// It keeps bones stiff up to their border.
+// Factor on the weights that a voxel gives to its cell's corners if the voxel follows one bone with full weight. The
+// large factor keeps bones rigid up to their border.
 constexpr double kHold = 1000;
 constexpr int kGrain = 16;  // bricks per task
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101, kLastColumn = kFirstColumn << 7;
@@ -25,7 +25,7 @@ bool is_empty(const Voxels& voxels) {
 }
 
 // Returns the connected component that contains the first of `voxels`.
-//   cuts  voxel faces that a seam cuts, so that the two voxels beside such a face are not connected there; null: none
+//   cuts  voxel faces that a seam cuts: the two voxels beside such a face are not connected through it; null: none
 Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
   const auto open = [&](int axis, int z) { return cuts ? ~(*cuts)[axis][z] : ~std::uint64_t{0}; };
   Voxels piece{};
@@ -56,7 +56,7 @@ Voxels voxels_of(const TissueVoxels::Brick& brick, const glm::ivec3& low, int st
   return voxels;
 }
 
-// Returns which faces of a cell's voxels a seam cuts; null: none.
+// Returns which faces of a cell's voxels are cut by a seam; null: none.
 //   lowest  the cell's lowest voxel
 std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels, const glm::ivec3& lowest) {
   CellCuts cuts{};
@@ -149,7 +149,7 @@ class Gather {
     }
   }
 
-  // Adds a voxel to the members `places`, `away` and (if the voxel follows one bone with full weight) `stiff` of its
+  // Adds a voxel to the members `places`, `away` and, if the voxel follows one bone with full weight, `stiff` of its
   // piece.
   //   voxel  position relative to the cell's lowest voxel
   void add(const Influence& influence, CellPiece& piece, const glm::ivec3& voxel) {

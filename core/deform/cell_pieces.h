@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Splits the tissue in coarse cells of step^3 voxels into pieces: the connected components (by faces) of the tissue in
-// one cell. Two fingers that pass through one cell are two pieces, and so are the two sides of a seam. Each piece has
-// the bone weights that it gives to the corners of its cell: sums over its voxels, each voxel with the trilinear weight
-// that the corner has there. Tissue that follows one bone with full weight, as bone does, counts a thousand times as
-// much as blended tissue, so that bones stay stiff up to their border.
+// one cell. Two fingers that pass through one cell are two pieces, and so are the two sides of a seam. Each piece gives
+// bone weights to the corners of its cell: the sum of its voxels' weights, each multiplied by the corner's trilinear
+// weight at the voxel. Tissue that follows one bone with full weight, as bone does, counts a thousand times as much as
+// blended tissue, so that bones stay rigid up to their border.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ struct CellPiece {
     std::uint64_t places;
   };
 
-  glm::ivec3 cell;                      // the cell contains the voxels cell * step .. cell * step + step - 1
+  glm::ivec3 cell;                      // the cell contains the voxels from cell * step to cell * step + step - 1
   std::array<std::uint64_t, 8> voxels;  // the piece's voxels: voxel (x, y, z) of the cell is bit x + 8 y of word z
   std::uint64_t places = 0;             // bits for the 4^3 subcells that contain tissue of the piece, x fastest
   std::array<float, 8> away;            // squared distance of each corner from the piece's nearest voxel, mm2
@@ -44,13 +44,13 @@ struct CellPiece {
   std::shared_ptr<const CellCuts> cuts = nullptr;  // faces that a seam cuts; null: none
 };
 
-// Returns the pieces of all cells in the order of their bricks. Pieces of one cell follow each other, and a cell lies
-// in one brick.
+// Returns the pieces of all cells in the order of their bricks. Pieces of one cell are adjacent. A cell never extends
+// over several bricks.
 //   step     edge of a cell in voxels: 2, 4 or 8
 //   spacing  size of a voxel, mm
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing);
-// Returns the pieces in the given bricks only.
+// The same as cell_pieces() above, but only for the given bricks (indices into tissue.bricks()).
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing, std::span<const std::int64_t> bricks);
 

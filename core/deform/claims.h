@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Enters claims into an inverse map, by the rules of inverse_map.h. A claim says that the posed image of a cell (a cube
-// or a tet) covers a voxel's centre; its cell is the rest voxel around the claim's rest point.
+// Writes claims into an inverse map, by the rules of inverse_map.h. A claim says that the posed image of a cell (a cube
+// or a tet) covers a voxel's centre. `cell` is the index of the rest voxel that contains the claim's rest point.
 #pragma once
 
 #include "core/deform/inverse_map.h"
@@ -9,9 +9,10 @@ namespace limber {
 
 class Claims {
  public:
-  //   priority  priority of each label's tissue
-  //   depth     depth of each rest point below the body's surface. In a fold, where several cells cover a voxel, the
-  //             deepest cell gets it. nullptr: the pose makes no fold
+  //   priority  by label: where cells overlap, the one whose tissue has the higher priority wins
+  //   depth     depth of rest points below the body's surface: in a fold, where several cells cover a voxel, the
+  //   deepest
+  //             cell wins. nullptr: the pose makes no fold
   Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
       : map_(map),
         volume_(volume),
@@ -29,8 +30,8 @@ class Claims {
     if (wins) write(cell, claim, at);
   }
 
-  // Enters the claim only if no other cell has the voxel yet.
-  //   near  cells that are at most this many voxels apart at rest do not overlap but are pressed together
+  // Writes the claim only if no other cell has claimed the voxel yet. Otherwise counts an overlap.
+  //   near  cells that are at most this many voxels apart at rest count as pressed together, not as overlapping
   void claim_empty(std::uint32_t cell, const glm::ivec3& rest_voxel, const CellClaim& claim, int near) {
     const std::int64_t at = map_.index(claim.voxel);
     if (map_.cell[at] == InverseMap::kNoCell) write(cell, claim, at);
@@ -42,10 +43,10 @@ class Claims {
     return glm::all(glm::lessThanEqual(glm::abs(a - b), glm::ivec3(near)));
   }
 
-  // Marks an overlap at a voxel that another cell has already, unless both cells are near each other at rest.
+  // Marks an overlap at a voxel that another cell has already claimed, unless both cells are near each other at rest.
   //   rest_voxel  cell of the new claim
-  //   loser       whichever of the two cells does not get the voxel
-  //   near        largest distance of near cells along each axis, voxels; 1: neighbours
+  //   loser       the one of the two cells that does not get the voxel
+  //   near        largest distance along each axis at which cells count as near, voxels; 1: neighbours
   void count_overlap(const glm::ivec3& rest_voxel, std::int64_t at, std::uint32_t loser, int near = 1) {
     const std::uint32_t holder = map_.cell[at];
     const glm::ivec3 size = volume_.grid.size;

@@ -40,7 +40,8 @@ bool all_within(const FourNumbers& numbers, double limit) {
   return below[0] & below[1] & below[2] & below[3];
 }
 
-// Rounds to the nearest whole number as std::lrint does: the last bit of a number as large as kLarge counts ones.
+// Rounds to the nearest whole number, as std::lrint does. Doubles near kLarge have no fractional bits, so adding kLarge
+// rounds.
 FourIntegers rounded(const FourNumbers& numbers) {
   constexpr double kLarge = 6755399441055744.0;  // 1.5 * 2^52
   return __builtin_convertvector((numbers + kLarge) - kLarge, FourIntegers);
@@ -81,7 +82,7 @@ FixedPoint CornerPoser::posed_by(int bone, const glm::ivec3& corner, const glm::
   return fixed(rest, shift_[bone] * rest + shift, bone);
 }
 
-// The lanes compute what the functions above compute for one corner, in the same order, so that the results are equal.
+// Computes each lane in the same order of operations as posed() for a single corner, so that the results are equal.
 CornerPoser::FourFixed CornerPoser::posed(const FourPoints& rest, const CornerWeights::Four& weights,
                                           const FourPoints* shift) const {
   const auto single = weights.bones == 1;
@@ -115,7 +116,7 @@ FourPoints CornerPoser::moved(const FourPoints& rest, std::span<const FourWeight
   return moved / total;
 }
 
-// Replaces the displacements of the corners that follow one bone by that of the bone, without blending.
+// For corners that follow one bone, replaces the blended displacement by that bone's displacement.
 void CornerPoser::replace_single(const FourPoints& rest, const CornerWeights::Four& weights, FourPoints& moved) const {
   for (const auto& [bone, weight] : weights.influences) {
     const auto follows = (weight > 0.0) & __builtin_convertvector(weights.bones == 1, decltype(weight > 0.0));
@@ -124,7 +125,7 @@ void CornerPoser::replace_single(const FourPoints& rest, const CornerWeights::Fo
   }
 }
 
-// Throws the Error for the first of four corners that is too far away.
+// Throws the Error "the pose tears the tissue too far apart" for the first of four corners that is too far away.
 void CornerPoser::throw_torn(const FourPoints& at, std::span<const FourWeights> influences) const {
   for (int i = 0; i < 4; ++i) {
     const double furthest = std::max({std::abs(at.x[i]), std::abs(at.y[i]), std::abs(at.z[i])});
@@ -135,15 +136,15 @@ void CornerPoser::throw_torn(const FourPoints& at, std::span<const FourWeights> 
   throw_torn(influences.front().bone);
 }
 
-// Throws the Error for a corner that is too far away.
+// Throws an Error that names a bone whose tissue is moved too far away.
 void CornerPoser::throw_torn(int bone) const {
   throw Error("the pose tears the tissue too far apart", "bone " + (*names_)[bone],
               "check the pose and the rig, or use a coarser spacing");
 }
 
-// Rounds a posed point to fixed point.
+// Returns a posed point in fixed point.
 //   moved  posed - rest, in voxel coordinates
-//   bone   named in the error's message
+//   bone   the bone that the error's message names
 FixedPoint CornerPoser::fixed(const glm::dvec3& rest, const glm::dvec3& moved, int bone) const {
   const glm::dvec3 at = output_.from_rest(rest + moved);
   if (!(std::abs(at.x) < kFurthestPosed && std::abs(at.y) < kFurthestPosed && std::abs(at.z) < kFurthestPosed))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses single corners of voxels, in fixed point (lattice.h).
+// Computes the posed positions of voxel corners, in fixed point (lattice.h).
 #pragma once
 
 #include <array>
@@ -16,27 +16,27 @@ namespace limber {
 
 class CornerPoser {
  public:
-  //   names            of the bones, for messages; must outlive this object
+  //   names            names of the bones, for messages; must outlive this object
   //   posed_from_rest  motions of the bones
   CornerPoser(const Grid& grid, const std::vector<std::string>& names,
               const std::vector<RigidTransform>& posed_from_rest, Blend blend);
 
-  // Sets the transform to the output lattice. To be called before any of the functions below.
+  // Sets the transform to the output lattice. Must be called before posed() and posed_by().
   void set_output(const OutputLattice& output) { output_ = output; }
 
-  // Returns the posed position of a corner. Throws Error if it is too far away.
+  // Returns the posed position of a corner. Throws Error if the position is too far away.
   //   influences  ascending by bone; at least one
   //   shift       correction that is added to the blended position, voxels
   FixedPoint posed(const glm::ivec3& corner, std::span<const BoneWeight> influences, const glm::dvec3& shift) const;
-  // Returns the same for a corner that follows one bone.
+  // Returns the posed position of a corner that follows one bone.
   FixedPoint posed_by(int bone, const glm::ivec3& corner, const glm::dvec3& shift = glm::dvec3(0)) const;
 
   struct FourFixed {
     FourIntegers x, y, z;
   };
-  // Returns the same for four corners.
+  // Returns the posed positions of four corners.
   //   rest   the corners at rest, in voxel coordinates
-  //   shift  as above; nullptr: none
+  //   shift  corrections that are added to the blended positions, voxels; nullptr: none
   FourFixed posed(const FourPoints& rest, const CornerWeights::Four& weights, const FourPoints* shift) const;
 
  private:

@@ -8,16 +8,15 @@ namespace limber {
 
 namespace {
 
-// The number of set bits of each byte. std::popcount is a function call where the processor's own instruction may not
-// be used.
+// The number of set bits of each byte value. A table is used because std::popcount may compile to a function call.
 constexpr std::array<std::uint8_t, 256> kBitCount = [] {
   std::array<std::uint8_t, 256> count{};
   for (int i = 1; i < 256; ++i) count[i] = static_cast<std::uint8_t>(count[i / 2] + (i & 1));
   return count;
 }();
 
-// Return the first and the last voxel, in the neighbouring brick at the offset `step`, that touch the central brick.
-// Along each axis these are 7 and 7 for a brick below, 0 and 0 for a brick above, and 0 and 7 for the offset 0.
+// Return the first and the last voxel of the neighbouring brick at the offset `step` (-1, 0 or 1 per axis) that touch
+// the central brick. Along each axis these are 7 and 7 for -1, 0 and 0 for 1, and 0 and 7 for 0.
 glm::ivec3 first_of(const glm::ivec3& step) { return glm::ivec3(glm::lessThan(step, glm::ivec3(0))) * 7; }
 glm::ivec3 last_of(const glm::ivec3& step) { return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7; }
 
@@ -39,7 +38,7 @@ CornerWeights::CornerWeights(const TissueVoxels& tissue, const SkinWeights& weig
   sum_over_corners();
   order_.resize(bones_.size());
   influences_.resize(bones_.size());
-  four_.resize(bones_.size() + 1);  // one more, since at() may write behind the last
+  four_.resize(bones_.size() + 1);  // one more, since at() may write one element beyond the last
   for (size_t s = 0; s < order_.size(); ++s) order_[s] = static_cast<int>(s);
   std::sort(order_.begin(), order_.end(), [&](int a, int b) { return bones_[a] < bones_[b]; });
 }
@@ -58,7 +57,7 @@ CornerWeights::Four CornerWeights::at(const FourIntegers& i, const FourIntegers&
   FourWeights* end = four_.data();
   for (const int s : order_) {
     const std::uint32_t* sums = &sums_[s * kHaloCount];
-    // Sums are at most eight times the full weight, so that they are not negative as signed numbers.
+    // A sum is at most eight times kFullWeight, so it also fits a signed integer.
     const FourIntegers sum = {static_cast<int>(sums[here[0]]), static_cast<int>(sums[here[1]]),
                               static_cast<int>(sums[here[2]]), static_cast<int>(sums[here[3]])};
     const FourIntegers follows = sum != 0;
@@ -90,7 +89,7 @@ void CornerWeights::gather(const TissueVoxels::Brick& brick, const SkinWeights::
   }
 }
 
-// Most voxels follow the same bones as the voxel before.
+// Most voxels follow the same bones as the previous voxel, so the slots are looked up only if the bones differ.
 void CornerWeights::add(const Influence& influence, int here) {
   if (const auto bones = std::bit_cast<std::uint64_t>(influence.bone); bones != last_bones_) {
     last_bones_ = bones;
@@ -112,8 +111,8 @@ int CornerWeights::slot_of(int bone) {
   return slot;
 }
 
-// Computes sums over 2 x 2 x 2 voxels in place, axis by axis. The last column, row and slice become meaningless and
-// are never read.
+// Computes sums over 2 x 2 x 2 voxels in place, axis by axis. The results in the last column, row and slice are
+// meaningless and are never read.
 void CornerWeights::sum_over_corners() {
   for (size_t slot = 0; slot < bones_.size(); ++slot) {
     std::uint32_t* sum = &sums_[slot * kHaloCount];

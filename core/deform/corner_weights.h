@@ -16,7 +16,7 @@ namespace limber {
 class CornerWeights {
  public:
   // Keeps a reference to `moves_as`, which must outlive this object.
-  //   moves_as  per bone: the first bone with the same motion, which gets the weight instead (BrickMotions)
+  //   moves_as  for each bone, the first bone with the same motion; that bone gets the weight (BrickMotions)
   CornerWeights(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
                 std::int64_t brick);
 
@@ -28,7 +28,7 @@ class CornerWeights {
     std::span<const FourWeights> influences;  // ascending by bone
     FourIntegers bones;                       // number of bones that each corner follows
   };
-  // Returns the same for four corners.
+  // Returns the influences of four corners at once. Lane n of i, j and k is the position of corner n.
   Four at(const FourIntegers& i, const FourIntegers& j, const FourIntegers& k);
 
  private:
@@ -41,11 +41,11 @@ class CornerWeights {
   void sum_over_corners();
 
   const std::vector<int>& moves_as_;
-  // A slot holds the weights of one bone. slot_of_: by bone, -1: none; bones_: by slot; order_: slots ascending by
-  // bone.
+  // A slot holds the weights of one bone. slot_of_[bone] is the bone's slot, or -1; bones_[slot] is the slot's bone;
+  // order_ lists the slots, ascending by bone.
   std::vector<int> slot_of_, bones_, order_;
-  std::vector<std::uint32_t> sums_;  // kHaloCount for each slot
-  // The bones of the voxel that was added last, as one number, and their slots; -1: not looked up.
+  std::vector<std::uint32_t> sums_;  // kHaloCount sums of weights for each slot
+  // The four bones of the voxel that was added last, packed into one integer, and their slots; -1: not looked up.
   std::uint64_t last_bones_ = 0;
   std::array<int, 4> last_slots_{-1, -1, -1, -1};
   std::vector<BoneWeight> influences_;

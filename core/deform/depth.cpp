@@ -22,25 +22,25 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr int kBrickVoxels = TissueDepth::kBrickVoxels;
-constexpr int kRows = 4;  // number of rows of a brick, eight voxels each, whose lines are searched at once
+constexpr int kRows = 4;  // number of rows of eight voxels in a brick whose lines are searched at once
 
-// One voxel of each of the neighbouring lines that are searched at once.
+// SIMD register with one voxel of each of the neighbouring lines that are searched at once.
 template <class Value>
 using Across = std::conditional_t<std::is_same_v<Value, float>, FloatLanes<kRows * kBrick / 4>, StepLanes<kRows>>;
 
-// Returns the square of a number of steps; for whole numbers at most the largest of the type.
+// Returns the squared length of a number of steps of `spacing`, clamped to the largest value of the type.
 template <class Value>
 Value squared_length(double steps, double spacing) {
   return static_cast<Value>(
       std::min(spacing * spacing * steps * steps, static_cast<double>(std::numeric_limits<Value>::max())));
 }
 
-// Lines of voxels that bricks of tissue make up. Air, with the value zero, bounds them at both ends.
+// Parallel lines of voxels through a column of tissue bricks. There is air, with the value zero, beyond both ends.
 template <class Value>
 struct Lines {
-  std::vector<Across<Value>> f;      // the values at each position
-  std::vector<Across<Value>> least;  // the least values of each brick
-  std::vector<Value> rise;           // squared length of a number of steps
+  std::vector<Across<Value>> f;      // the value of each line at each position along the column
+  std::vector<Across<Value>> least;  // the least value of each line within each brick
+  std::vector<Value> rise;           // rise[n]: squared length of n steps
 
   Lines(std::size_t bricks, double spacing) : f(bricks * kBrick), least(bricks), rise(bricks * kBrick + 1) {
     for (std::size_t steps = 0; steps < rise.size(); ++steps)
@@ -55,8 +55,8 @@ struct Lines {
   }
 };
 
-// Returns the minimum over j of f[j] + rise[|i - j|], for all lines at once. Bricks whose least values cannot lower it
-// any more are passed over.
+// Returns the minimum over j of f[j] + rise[|i - j|], for all lines at once. Skips bricks whose least values are too
+// large to give a smaller result.
 template <class Value>
 Across<Value> lowest_around(const Lines<Value>& lines, int i) {
   const int own = i / kBrick, bricks = static_cast<int>(lines.least.size());
@@ -79,7 +79,7 @@ Across<Value> lowest_around(const Lines<Value>& lines, int i) {
   return lowest;
 }
 
-// Calls body(bricks) for each run of adjacent tissue bricks along the axis. Either end of a run borders on air.
+// Calls body(bricks) for each run of adjacent tissue bricks along the axis. There is air beyond both ends of a run.
 template <class Body>
 void for_each_column(const TissueVoxels& tissue, int axis, const Body& body) {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -125,7 +125,7 @@ void pass_along_x(const TissueVoxels& tissue, double spacing, Value* squared) {
   });
 }
 
-// Adds the squared distances along y or z.
+// Replaces each value by the squared distance that also takes air along y or z into account (lowest_around).
 template <class Value>
 void pass_across(const TissueVoxels& tissue, int axis, double spacing, Value* squared) {
   const int along = axis == 1 ? kBrick : kBrick * kBrick,
@@ -151,7 +151,7 @@ void pass_across(const TissueVoxels& tissue, int axis, double spacing, Value* sq
   });
 }
 
-// Returns whether no number is above `most`.
+// Returns true if no number is above `most`.
 bool are_all_within(const ZeroedVector<std::uint16_t>& numbers, int most) {
   std::atomic<bool> within = true;
   parallel_for(std::ssize(numbers), 1 << 18, [&](std::int64_t begin, std::int64_t end) {
@@ -191,7 +191,7 @@ double TissueDepth::operator()(const glm::dvec3& rest) const {
   const auto is_inside = [](const glm::ivec3& low, const glm::ivec3& end) {
     return glm::all(glm::greaterThanEqual(low, glm::ivec3(0))) && glm::all(glm::lessThan(low, end));
   };
-  // True if the eight voxels around the point lie in one brick.
+  // True if the eight voxels around the point are in one brick.
   if (is_inside(in, glm::ivec3(7)) && is_inside(v, tissue_->grid_size())) {
     const int brick = tissue_->brick_at(v);
     if (brick < 0) return 0;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes how deep a rest point lies below air: the exact Euclidean distance from every tissue voxel's centre to the
-// nearest air voxel's centre (everything outside the grid is air), interpolated between centres, so that it is
-// continuous. Depth resolves folds: if two parts of the body are posed into one voxel, the deeper one stays, and the
-// border between them runs where both are equally deep.
+// nearest air voxel's centre (everything outside the grid is air), trilinearly interpolated between centres. Depth
+// decides folds: if two parts of the body are posed into one voxel, the deeper part keeps the voxel, so the border
+// between the two runs where both are equally deep.
 //
 // There is one pass per axis over columns of tissue bricks. Along x, the nearest air is at the nearer end of a run of
 // tissue. Along y and z every voxel searches outwards, several lines at a time, until it is further away than the
-// distance found so far [as Saito & Toriwaki 1994]. It passes over bricks whose least value is too large, so that deep
-// inside a body it takes one step for eight voxels.
+// distance found so far [as Saito & Toriwaki 1994]. The search skips bricks whose least value is too large, so that
+// deep inside a body it takes one step for eight voxels.
 //
-// Where voxels are cubes, squared depths are whole multiples of a voxel's squared edge. They are computed and stored as
-// these numbers: exactly, and in half the memory of floats.
+// If voxels are cubes, squared depths are whole multiples of a voxel's squared edge length. They are computed and
+// stored as these integers, which is exact and takes half the memory of floats.
 #pragma once
 
 #include <cmath>
@@ -24,8 +24,9 @@ class TissueDepth {
  public:
   // Keeps a reference to `tissue`, which must outlive this object.
   //   spacing     size of a voxel, mm
-  //   most_steps  the squared depth, in squared edges of voxels, above which depth is computed again as floats, for
-  //               cubes too; at most 65 534
+  //   most_steps  for cubic voxels: if a squared depth, in squared voxel edges, exceeds this limit, all depths are
+  //   computed
+  //               as floats instead of integers; at most 65 534
   TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing, int most_steps = 65534);
 
   static constexpr int kBrickVoxels = 512;
@@ -43,7 +44,7 @@ class TissueDepth {
   double operator()(const glm::dvec3& rest) const;
 
  private:
-  // Computes squared depths, in the square of the unit of `spacing`.
+  // Computes the squared depth of every voxel, in the squared unit of `spacing`.
   template <class Value>
   void measure(ZeroedVector<Value>& squared, const glm::dvec3& spacing) const;
 
@@ -52,10 +53,10 @@ class TissueDepth {
   }
 
   const TissueVoxels* tissue_;
-  // 512 squared depths per tissue brick, in one of these two.
-  ZeroedVector<float> squared_;        // mm^2; empty: see steps_
-  ZeroedVector<std::uint16_t> steps_;  // in units of squared_step_
-  double squared_step_ = 0;            // mm^2
+  // Squared depths, 512 values per tissue brick. Only one of squared_ and steps_ is used.
+  ZeroedVector<float> squared_;        // mm2; empty: the depths are in steps_
+  ZeroedVector<std::uint16_t> steps_;  // in units of squared_step_; empty: the depths are in squared_
+  double squared_step_ = 0;            // value of one unit of steps_, mm2
 };
 
 }  // namespace limber

@@ -12,8 +12,8 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the number of cells that the tissue would fill completely. The size of cells is chosen to meet it: a
-// body of 3 mm voxels gets cells of 6 mm, a body of 2 mm voxels gets cells of 8 mm.
+// Upper limit on the number of cells, counted as if tissue filled each of them completely. The size of cells is chosen
+// to meet this limit: a body of 3 mm voxels gets cells of 6 mm, a body of 2 mm voxels gets cells of 8 mm.
 constexpr std::int64_t kMostCells = 250'000;
 constexpr int kGrain = 1024;
 
@@ -26,7 +26,8 @@ std::vector<std::int64_t> bending_bricks(const BrickMotions& motions) {
   return bricks;
 }
 
-// Returns the smallest step (cell edge in voxels: 2, 4 or 8) that gives at most kMostCells cells; 8 if none does.
+// Returns the smallest step (cell edge in voxels: 2, 4 or 8) that gives at most kMostCells cells; 8 if even that gives
+// more.
 int step_for(const TissueVoxels& tissue, std::span<const std::int64_t> bricks) {
   std::int64_t voxels = 0;
   for (const std::int64_t b : bricks) voxels += tissue.bricks()[b].count();
@@ -62,7 +63,7 @@ void blend_nodes(const std::vector<CellPiece>& pieces, const Grid& grid,
   });
 }
 
-// Returns whether a node touches tissue of a brick that moves as one rigid body. Such nodes are fixed to that tissue.
+// Returns true if a node touches a brick that moves as one rigid body. Such nodes are fixed.
 bool is_beside_rigid(const TissueVoxels& tissue, const BrickMotions& motions, const glm::ivec3& lowest_voxel) {
   for (int c = 0; c < 8; ++c) {
     const glm::ivec3 v = lowest_voxel - corner_of(c);

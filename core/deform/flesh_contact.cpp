@@ -11,14 +11,13 @@ namespace limber {
 namespace {
 
 constexpr int kGrain = 2048;
-// Lower limit on the distance at rest of two points that count as flesh in contact, as a multiple of the sum of their
-// depths below air. Points that are nearer to each other at rest belong to flesh that the pose only compresses or
-// bends.
+// Two points count as flesh in contact only if their distance at rest is at least this multiple of the sum of their
+// depths below air. Points that are closer at rest belong to flesh that the pose only compresses or bends.
 constexpr double kApart = 1.5;
-constexpr double kMostlyBone = 0.2;   // in cell volumes: a node with at least this much bone around it counts as bone
+constexpr double kMostlyBone = 0.2;   // a node with at least this much bone around it counts as bone; in cell volumes
 constexpr double kLeastVolume = 0.1;  // cells whose posed volume is below this share of their rest volume are ignored
-// Lower limit on the length of the depth's gradient in a cell, mm per mm. Where the gradient is shorter, as in the
-// middle of a limb, it does not show the direction to the surface.
+// Lower limit on the length of the depth's gradient in a cell, mm per mm. A shorter gradient, as in the middle of a
+// limb, does not show the direction to the surface.
 constexpr double kLeastSlope = 0.3;
 constexpr double kFurthest = 3;  // upper limit on the motion that way_apart() returns, in cell edges
 constexpr std::int64_t kMostBins = 8'000'000;

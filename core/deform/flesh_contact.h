@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds where a pose folds flesh into other flesh, and how to move the two apart. If a node lies inside a cell from
-// another part of the body, both have passed through a surface. The sum of their depths below air at rest tells how
-// far. The node moves back by half of this sum along the surface normal at the cell. If node and cell are nearer to
-// each other at rest than 1.5 times the sum plus two cell diagonals, the flesh is only compressed or inverted, which is
-// not contact.
+// Finds where a pose moves flesh into other flesh, and how to separate the two. If a node is inside a cell from another
+// part of the body, it has entered through that part's surface. The depth of this penetration is the sum of the depths
+// of node and cell below air at rest. The node is moved back by half of this sum along the surface normal at the cell.
+// If node and cell are nearer to each other at rest than 1.5 times the sum plus two cell diagonals, the flesh is only
+// compressed or inverted, and there is no contact.
 //
 // Lengths are in mm along the volume's own axes, as in flesh_cells.h.
 #pragma once
@@ -22,18 +22,18 @@ class FleshContact {
   //   spacing  size of a voxel, mm
   FleshContact(const FleshCells& cells, const TissueDepth& depth, const glm::dvec3& spacing);
 
-  // Stores the posed positions and sorts the posed cells into bins, for way_apart().
+  // Stores the posed positions and sorts the posed cells into bins; way_apart() uses them.
   //   posed  posed position of each node
   void look(const std::vector<glm::dvec3>& posed);
-  // Returns the motion that moves a node half of the way out of other flesh; nothing if it was in no other flesh at the
-  // last look().
+  // Returns the motion that moves a node half of the way out of other flesh; nothing if the node was in no other flesh
+  // when look() was last called.
   std::optional<glm::dvec3> way_apart(std::int32_t node) const;
 
  private:
   struct Cell {
     glm::dvec3 middle;  // posed position of the cell's centre
     glm::dmat3 rest_from_posed;
-    bool is_flesh;  // the cell is neither mostly bone nor inverted
+    bool is_flesh;  // true: the cell is neither mostly bone nor inverted
   };
   glm::ivec3 bin_of(const glm::dvec3& at) const { return glm::ivec3(glm::floor((at - first_) / bin_)); }
   std::size_t place(const glm::ivec3& bin) const {
@@ -50,7 +50,7 @@ class FleshContact {
   double bin_ = 0;
   glm::dvec3 first_{0};
   glm::ivec3 bins_{0};
-  std::vector<std::int64_t> begin_;  // #bins + 1: where the cells of each bin begin in cells_of_bins_
+  std::vector<std::int64_t> begin_;  // #bins + 1: index in cells_of_bins_ of the first cell of each bin
   std::vector<std::int32_t> cells_of_bins_;
 };
 

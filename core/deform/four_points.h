@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Four points at a time, one in each lane of a SIMD register. A lane computes what a single double would, bit for bit.
+// Computes four points at a time, one in each lane of a SIMD register. Each lane gives the same result as a scalar
+// double, bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace limber {
 using FourNumbers = double __attribute__((vector_size(32)));
 using FourIntegers = std::int32_t __attribute__((vector_size(16)));
 
-// In the structures below the alignment is explicit, since that of FourNumbers depends on the processor for which a
+// The alignment of the structures below is explicit, since that of FourNumbers depends on the processor for which a
 // function is compiled.
 
 // A point whose coordinates are doubles or FourNumbers.
@@ -54,7 +55,7 @@ template <class Number>
 LIMBER_INLINE PointOf<Number> cross(const PointOf<Number>& a, const PointOf<Number>& b) {
   return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
 }
-// Returns a where the condition holds, else b.
+// Returns a where the condition is true, and b elsewhere.
 template <class Condition, class Number>
 LIMBER_INLINE PointOf<Number> select(const Condition& condition, const PointOf<Number>& a, const PointOf<Number>& b) {
   return {condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z};

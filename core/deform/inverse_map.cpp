@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-// A range of points on a straight row of equidistant points. Point 0 is the start of the row. The range is empty if
-// first > last.
+// A range of the equidistant points on a straight row. Point 0 is the start of the row. The range is empty if first >
+// last.
 struct Steps {
   int first, last;
 };
@@ -34,16 +34,17 @@ Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& po
 }
 
 // Returns the posed cell of one voxel of a brick.
-//   place  position of the voxel in the brick, 0 .. 7 on each axis
+//   place  position of the voxel in the brick, 0 to 7 on each axis
 PosedCell cell_at(const PosedLattice::Corners& corners, const glm::ivec3& brick_corner, const glm::ivec3& place) {
   return PosedCell(&corners[PosedLattice::place(place.x, place.y, place.z)], PosedLattice::place(0, 1, 0),
                    PosedLattice::place(0, 0, 1), brick_corner + place);
 }
 
-// The posed cells of a brick that bends. Cells share corners; near a seam, each has its own corners.
+// The posed cells of a brick that a pose bends. Neighbouring cells share corners, except near a seam, where each cell
+// has its own.
 class BentBrick {
  public:
-  // Writes the brick's corners into `room`, unless each voxel has its own. `room` must outlive this object.
+  // Writes the brick's corners into `room`, unless each voxel has its own corners. `room` must outlive this object.
   BentBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lowest_(lattice.tissue().bricks()[brick].corner) {
     if (lattice.is_split(brick))
@@ -63,10 +64,11 @@ class BentBrick {
 };
 
 // A brick whose cells all move as one rigid body. The inverse of their bone's motion gives the cell and the rest point
-// at once. Only near a cell's border, where the rounded (fixed-point) corners decide, are cells rasterized one by one.
+// directly. Only near a cell's border, where the rounding of corners to fixed point matters, are cells rasterized one
+// by one.
 class RigidBrick {
  public:
-  // Writes the brick's corners into `room` if cells must be rasterized one by one. `room` must outlive this object.
+  // Writes the brick's corners into `room` once cells must be rasterized one by one. `room` must outlive this object.
   RigidBrick(const PosedLattice& lattice, std::int64_t brick, PosedLattice::Corners& room)
       : lattice_(lattice),
         brick_(brick),
@@ -107,8 +109,8 @@ class RigidBrick {
   }
 
  private:
-  // Rasterizes the cells (least .. most) for one output voxel. Its centre is so near a border between these cells that
-  // only the rounded corners decide which cell contains it.
+  // Rasterizes the cells `least` to `most` for one output voxel. The voxel's centre is so near a border between these
+  // cells that only the rounded corners decide which cell contains it.
   template <class Claim>
   void ask(const glm::ivec3& least, const glm::ivec3& most, const glm::ivec3& voxel, const Claim& claim) {
     if (!corners_) corners_ = &lattice_.corners(brick_, room_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The inverse map: for each voxel of a tile of the output, the rest point that the pose moves there. It exists only for
-// tiles, one per running thread. A cell (posed image of a rest voxel or tet) claims the voxels whose centres it covers.
-// Each tile is filled by the cells that reach it, in the order of the cells.
+// The inverse map: for each voxel of a tile of the output, the rest point that the pose moves to the voxel. Only one
+// tile per running thread is in memory. A cell (posed image of a rest voxel or tet) claims the voxels whose centres it
+// covers. The cells that reach a tile fill it in ascending order.
 //
 // If two cells claim a voxel, these rules decide, in this order:
 //    the cell that is not inverted wins;
@@ -10,8 +10,9 @@
 //    the cell with the smaller index wins.
 // Two cells overlap only if they are not neighbours at rest (share no corner).
 //
-// Bones are then painted rigidly over the cells, because cells at a bone's border share corners with soft tissue and
-// would bend the bone. A voxel is painted if the inverse of a rig bone's motion leads to bone tissue of that rig bone.
+// Bones are painted over the cells afterwards, with their rigid motions, because cells at a bone's border share corners
+// with soft tissue and would bend the bone. A voxel is painted with a rig bone's tissue if the inverse of the bone's
+// motion moves the voxel to tissue of this bone.
 #pragma once
 
 #include <array>
@@ -37,10 +38,10 @@ struct InverseMap {
   std::vector<std::uint32_t> cell;  // index of the rest voxel whose cell covers each voxel, or kNoCell
   std::vector<std::uint16_t> bone;  // rig bone whose tissue is painted at each voxel, or kNoBone
   std::vector<std::uint8_t> flags;
-  bool has_volume_ratio = true;       // whether posed_per_rest is computed
+  bool has_volume_ratio = true;       // true: posed_per_rest is computed
   std::vector<float> posed_per_rest;  // local ratio of posed to rest volume at each voxel
-  std::vector<Label> lost;            // label of each claim that lost against a cell that is not its neighbour at rest
-  RowSet row_used;                    // 1 for each row of voxels in which some voxel is covered
+  std::vector<Label> lost;            // label of each claim that lost against a cell that was not its neighbour at rest
+  RowSet row_used;                    // 1 for each row of voxels with at least one covered voxel
 
   // Clears the map and sets its range of voxels.
   void reset(const VoxelRange& new_range);
@@ -58,27 +59,27 @@ struct InverseMap {
 // A subset of the tissue, as one bit mask per brick, in the layout of TissueVoxels::Brick::mask.
 using TissueMask = std::vector<std::array<std::uint64_t, 8>>;
 
-// Enters the output voxels that the posed cells of `bricks` (ascending) cover into the map.
-//   priority  priority of each label's tissue
+// Writes the output voxels that the posed cells of `bricks` (ascending) cover into the map.
+//   priority  by label: where cells overlap, the one whose tissue has the higher priority wins
 //   depth     depth of rest points below air, which decides between cells in a fold; nullptr: the pose makes no fold
-//   without   cells to leave out, since a tet mesh carries their tissue; nullptr: none
+//   without   cells to leave out, since their tissue moves with a tet mesh; nullptr: none
 void rasterize_cells(InverseMap& map, const PosedLattice& lattice, const std::vector<std::int64_t>& bricks,
                      const std::vector<int>& priority, const TissueDepth* depth, const TissueMask* without = nullptr);
 
-// The bone tissue, which is posed rigidly.
+// The bone tissue of a volume, which is posed rigidly.
 class RigidBones {
  public:
-  // The extent of one rig bone's tissue in one brick.
+  // The tissue of one rig bone in one brick.
   struct Piece {
     int bone;
     std::int64_t brick;
-    VoxelRange rest;           // bounding box of the piece's voxels, wider by the voxel that interpolation reaches
+    VoxelRange rest;           // bounding box of the piece's voxels, plus one voxel for interpolation
     VoxelRange posed;          // voxels of the output lattice that the posed box `rest` can reach
     VoxelRange posed_centres;  // voxels whose centres lie in the posed bounding box of the bone voxels themselves
   };
 
-  // Every voxel of bone tissue is posed rigidly by its first influence's bone. All other influences are ignored.
-  //   is_bone  by label; all zero if the volume has no bone tissue
+  // Every voxel of bone tissue moves rigidly with the bone of its first influence. Other influences are ignored.
+  //   is_bone  1 for each label that is bone tissue; may be all zero
   RigidBones(const PosedLattice& lattice, const SkinWeights& weights, const LabelSet& is_bone,
              const std::vector<RigidTransform>& posed_from_rest);
 
@@ -92,7 +93,7 @@ class RigidBones {
   // Returns 1 + the rig bone for every voxel of bone tissue at rest, 0 elsewhere.
   TiledLabels numbered() const;
   RowSet rest_rows() const;  // rows of the rest volume that may contain bone tissue
-  // Returns whether there is bone tissue of this rig bone at a rest point.
+  // Returns true if there is tissue of this rig bone at a rest point.
   bool has(int bone, const glm::dvec3& rest, const LabelSampler& sampler, bool nearest) const;
 
   // Paints the bone tissue of `pieces` into the map.

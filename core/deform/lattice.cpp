@@ -15,7 +15,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kShareForCorners = 4;  // corners of bending bricks are kept in at most this part of the free memory
+constexpr int kShareForCorners = 4;  // the stored corners of bent bricks may take at most 1/4 of the free memory
 constexpr int kSeveral = BrickMotions::kSeveral;
 
 bool is_full(const TissueVoxels::Brick& brick) {
@@ -23,7 +23,7 @@ bool is_full(const TissueVoxels::Brick& brick) {
                      [](std::uint64_t slice) { return slice == ~std::uint64_t{0}; });
 }
 
-// Calls body(i, j, k) for the eight corners of the whole brick, as opposed to the corners of its voxels.
+// Calls body(i, j, k) for the eight corners of the whole brick.
 template <class Body>
 void for_each_outermost(const Body& body) {
   for (int c = 0; c < 8; ++c)
@@ -34,7 +34,7 @@ void for_each_outermost(const Body& body) {
 template <class Body>
 void for_each_corner(const TissueVoxels::Brick& brick, const Body& body) {
   constexpr int kSide = PosedLattice::kSide;
-  std::array<unsigned, kSide * kSide> row{};  // per row of corners along x: a bit for each corner to visit
+  std::array<unsigned, kSide * kSide> row{};  // for each row of corners along x: one bit for each corner to visit
   for (int z = 0; z < TissueVoxels::kBrick; ++z)
     for (int y = 0; y < TissueVoxels::kBrick; ++y) {
       const unsigned voxels = brick.mask[z] >> (8 * y) & 0xff, corners = voxels | voxels << 1;
@@ -165,7 +165,7 @@ glm::ivec3 PosedLattice::base(const RigidTransform& posed_from_rest) const {
   return glm::ivec3(glm::floor(at + 0.5));
 }
 
-// Collects the posed corners of a brick and their bounds.
+// Collects the posed corners of a brick and their bounding box.
 class PosedLattice::CollectedCorners {
  public:
   CollectedCorners(const OutputLattice& output, const glm::ivec3& brick, Corners& corners) : corners_(corners) {
@@ -183,7 +183,7 @@ class PosedLattice::CollectedCorners {
     add(none + i, none + j, none + k, {none + posed.x, none + posed.y, none + posed.z});
   }
 
-  // Adds four corners.
+  // Adds four corners at once.
   void add(const FourIntegers& i, const FourIntegers& j, const FourIntegers& k, const CornerPoser::FourFixed& posed) {
     const FourIntegers at = i + kSide * (j + kSide * k);
     for (int lane = 0; lane < 4; ++lane) corners_[at[lane]] = {posed.x[lane], posed.y[lane], posed.z[lane]};
@@ -213,7 +213,7 @@ class PosedLattice::CollectedCorners {
   Corners& corners_;
   FixedPoint first_{0};  // rest position of corner (0, 0, 0)
   bool may_be_still_;
-  FourIntegers moved_{};  // not 0 where a corner is not at its rest position
+  FourIntegers moved_{};  // nonzero if a corner is not at its rest position
   FourIntegers low_[3], high_[3];
 };
 

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Poses a volume's tissue as a lattice of cells. Every tissue voxel is a cell, and its eight corners are vertices. A
 // vertex follows the mean of the influences of the tissue voxels around it (up to eight). So cells that share a vertex
-// at rest share it in the pose, and the posed cells leave no gap.
+// at rest share it in the pose, and there are no gaps between the posed cells.
 //
 // Coordinates. A *rest point* is in voxel coordinates of the volume (voxel centres are whole numbers). A *posed point*
-// is in voxels of the output lattice, relative to a whole-number base near the tissue, stored in fixed point: whole
-// numbers of 1/65536 voxel. So the rasterizer's decisions are exact, and the rest pose, whose corners are halves of
-// whole numbers, is exact too. The output lattice is the volume's own, or one with another spacing that shares its
-// outermost corner.
+// is in voxels of the output lattice, relative to an integer base near the tissue, in fixed point: integers in units of
+// 1/65536 voxel. So the rasterizer's decisions are exact, and so is the rest pose, whose corners are multiples of 1/2.
+// The output lattice is the volume's own lattice, or one with another spacing that has the same outermost corner.
 //
-// Corners are computed brick by brick, and kept until the output needs them no more (kept_corners.h). All bricks that
-// share a corner compute it equally, bit for bit: weights are added as whole numbers, with bones in ascending order.
+// Corners are computed brick by brick, and stored as long as the output needs them (kept_corners.h). All bricks that
+// share a corner compute the same position for it, bit for bit: weights are added as integers, in ascending order of
+// the bones.
 //
-// Much of a posed limb follows one bone with full weight, or bones with the same motion: a hand whose fingers keep
-// still moves with the forearm. Bones with the same motion count as one, the first of them. Corners that follow one
-// bone take its motion in voxel coordinates without blending. If the bone does not move, they keep their rest position,
-// bit for bit.
+// Much of a posed limb follows one bone with full weight, or bones with the same motion: a hand whose fingers do not
+// bend moves with the forearm. The first bone with a motion stands for all bones that have this motion. Corners that
+// follow one bone take its motion in voxel coordinates without blending. If the bone does not move, its corners stay at
+// their rest positions, bit for bit.
 #pragma once
 
 #include <array>
@@ -51,19 +51,19 @@ inline VoxelRange intersect(const VoxelRange& a, const VoxelRange& b) {
 class PosedLattice {
  public:
   static constexpr int kSide = KeptCorners::kSide;
-  // The posed corners of a brick's voxels. Corner (i, j, k), 0 .. 8 each, is the lowest corner of voxel brick.corner +
+  // The posed corners of a brick's voxels. Corner (i, j, k), 0 to 8 each, is the lowest corner of voxel brick.corner +
   // (i, j, k). Corners that belong to no tissue voxel of the brick are not set.
   using Corners = KeptCorners::Corners;
   static int place(int i, int j, int k) { return i + kSide * (j + kSide * k); }
 
-  // The posed corners of a brick near a seam, where every voxel has its own. The eight corners of voxel (i, j, k) of
-  // the brick begin at 8 * (i + 8 * (j + 8 * k)); bits 0, 1, 2 of a corner's index are x, y, z. Corners of air voxels
-  // are not set.
+  // The posed corners of a brick near a seam, where every voxel has its own corners. The eight corners of voxel (i, j,
+  // k) of the brick begin at index 8 * (i + 8 * (j + 8 * k)); bits 0, 1, 2 of a corner's index are x, y, z. Corners of
+  // air voxels are not set.
   using SplitBrick = std::array<FixedPoint, 8 * TissueVoxels::kBrick * TissueVoxels::kBrick * TissueVoxels::kBrick>;
 
-  // Keeps references: volume, tissue, weights and settled must outlive the lattice.
+  // Keeps references to `volume`, `tissue`, `weights` and `settled`, which must outlive the lattice.
   //   posed_from_rest  motions of the bones of `weights`
-  //   settled          corrections of flesh that are added to blending; nullptr: none
+  //   settled          corrections of flesh that are added to the blended positions; nullptr: none
   //   throws Error if the pose moves tissue further than 32 000 output voxels or to a position that is not finite
   PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
@@ -74,8 +74,8 @@ class PosedLattice {
   const TissueVoxels& tissue() const { return *tissue_; }
   // Returns the bounding box of the brick's posed corners.
   const FixedBox& bounds(std::int64_t brick) const { return bounds_[brick]; }
-  // Returns true if the pose moves no cell of the brick. Always false if output voxels have another size than the
-  // volume's.
+  // Returns true if the pose moves no cell of the brick. Always false if output voxels and the volume's voxels differ
+  // in size.
   bool is_still(std::int64_t brick) const { return still_[brick]; }
   // Returns the bone that the brick and all tissue around it follow with full weight, so that its cells move as one
   // rigid body; -1: several bones.
@@ -84,10 +84,10 @@ class PosedLattice {
   const AffineTransform& rest_from_posed(int bone) const { return rest_from_posed_[bone]; }
   // Writes the brick's posed corners into `room` and returns them.
   const Corners& corners(std::int64_t brick, Corners& room) const;
-  // Gives back the memory of corners of bricks that lie entirely below `z` in the output. They are computed anew if
-  // they are asked for later. No other function of the lattice may run meanwhile.
+  // Frees the memory of the corners of bricks that are entirely below `z` in the output. Later requests compute these
+  // corners again. No other function of the lattice may run at the same time.
   void forget_corners_below(int z) const { kept_.forget_below(z); }
-  // Returns whether the brick bends and a seam is near, so that each of its voxels has its own corners.
+  // Returns true if the pose bends the brick and a seam is near, so that each of its voxels has its own corners.
   bool is_split(std::int64_t brick) const { return split_[brick]; }
   void split_corners(std::int64_t brick, SplitBrick& corners) const;
 
@@ -115,7 +115,7 @@ class PosedLattice {
   std::vector<AffineTransform> rest_from_posed_;  // values of rest_from_posed() for each bone
   std::vector<int> moves_as_;                     // for each bone, the first bone with the same motion
   std::vector<int> rigid_;                        // values of only_bone() for each brick
-  mutable KeptCorners kept_;                      // corners of the bricks that bend; what is missing is computed anew
+  mutable KeptCorners kept_;                      // stored corners of bent bricks; all others are computed on request
 };
 
 }  // namespace limber

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds, for a rest point outside a tet mesh, the nearest point on the mesh's border. The point outside moves with this
-// border point.
+// Finds, for a rest point outside a tet mesh, the nearest point on the mesh's border, with which the rest point moves.
 #pragma once
 
 #include <array>
@@ -43,7 +42,7 @@ class MeshBorder {
   BoxBins bins_;
 };
 
-// Returns the rotation in a tet's motion; exactly the identity if the tet is only translated.
+// Returns the rotational part of a tet's motion; exactly the identity if the tet is only translated.
 //   moved  #V motions of the nodes (posed - rest), mm
 Eigen::Matrix3d rotation_of(const TetMesh& mesh, const Eigen::MatrixX3d& moved, int tet);
 

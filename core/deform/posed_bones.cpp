@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBin = 16;  // edge of a search bin, in mean voxel edges
 constexpr std::int64_t kMostBins = 4'000'000;
-constexpr double kHalf = 0.5;  // in voxels: the surface is midway between a bone voxel's centre and its neighbour's
+constexpr double kHalf = 0.5;  // in voxels: the surface is halfway between a bone voxel's centre and its neighbour's
 
 }  // namespace
 
@@ -41,7 +41,7 @@ PosedBones::PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, co
     rest_from_posed_.push_back(in_mm(inverse(motion)));
   }
 
-  // The posed bounding box of the voxels that one bone has in one brick.
+  // Posed bounding box of the voxels of one bone in one brick.
   struct Around {
     int bone;
     glm::dvec3 low, high;
@@ -94,7 +94,7 @@ void PosedBones::fill_bins(const std::vector<Box>& boxes) {
   }
 }
 
-// Returns whether the voxel at a rest point is bone tissue that follows the given bone.
+// Returns true if the voxel at a rest point is bone tissue that follows the given bone.
 //   rest  voxel coordinates
 bool PosedBones::holds(int bone, const glm::dvec3& rest) const {
   const glm::ivec3 voxel(glm::floor(rest + 0.5));

@@ -14,8 +14,8 @@ namespace limber {
 
 class PosedBones {
  public:
-  //   is_bone          by label: whether it is bone
-  //   posed_from_rest  motions of the bones of `weights`; bone tissue follows the first bone of its influence
+  //   is_bone          1 for each label that is bone tissue
+  //   posed_from_rest  motions of the bones of `weights`; each bone voxel follows the first bone of its influence
   PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,
              const std::vector<RigidTransform>& posed_from_rest);
 
@@ -26,7 +26,7 @@ class PosedBones {
  private:
   struct Box {
     int bone;
-    glm::ivec3 low, high;  // first and last bin
+    glm::ivec3 low, high;  // first and last bin that the box overlaps
   };
   glm::ivec3 bin_of(const glm::dvec3& posed) const { return glm::ivec3(glm::floor((posed - first_) / bin_)); }
   bool holds(int bone, const glm::dvec3& rest) const;
@@ -42,7 +42,7 @@ class PosedBones {
   double bin_ = 0;
   glm::dvec3 first_{0};
   glm::ivec3 bins_{0};
-  std::vector<std::int32_t> begin_;  // #bins + 1: where the bones of each bin begin in bones_
+  std::vector<std::int32_t> begin_;  // #bins + 1: index in bones_ of the first bone of each bin
   std::vector<std::int16_t> bones_;  // bones of each bin, ascending
 };
 

@@ -14,9 +14,9 @@ namespace limber {
 namespace {
 
 constexpr double kFurthest = 32000;  // largest coordinate, output voxels from the base; fixed point allows 32 768
-constexpr int kPosedBin = 16;        // edge of a search bin, voxels: a quarter of an output tile's
-// Distance at rest, voxels, up to which a rider and other tissue of a crease may be pressed together: riders stick out
-// of the mesh by two voxels on either side of the crease, and its bottom is one voxel wide.
+constexpr int kPosedBin = 16;        // edge of a search bin, voxels: a quarter of an output tile's edge
+// If a rider (a tissue voxel that sticks out of the mesh) and other tissue are at most this far apart at rest, voxels,
+// a crease may press them together: riders stick out by two voxels on both sides, and the crease is one voxel wide.
 constexpr int kCrease = 5;
 constexpr int kSide = TissueVoxels::kBrick + 1;
 
@@ -76,12 +76,12 @@ class PosedTets::Border {
         rest_bins_(rest_bins),
         border_(*tets.mesh_, tets.lattice_->volume().grid) {}
 
-  // Returns the posed position of a rest point outside the mesh. It stays as far from the mesh's border as at rest. If
-  // another part of the mesh is near, the point takes at most half of the air between both parts; the other half is for
-  // tissue outside that part's border.
+  // Returns the posed position of a rest point outside the mesh. The point keeps its distance from the mesh's border.
+  // If another part of the mesh is near, the point uses at most half of the air between the two parts; the other half
+  // is for tissue outside the other part's border.
   FixedPoint carried(const glm::dvec3& rest) const {
     const Grid& grid = tets_.lattice_->volume().grid;
-    const auto place = border_.nearest(rest);  // there always is one, since a mesh has a border
+    const auto place = border_.nearest(rest);  // always exists, since every mesh has a border
     glm::dvec3 from(0), moved(0);              // rest position of the border's nearest point, and its motion; mm
     for (int i = 0; i < 3; ++i) {
       from += place->shares[i] * in_mm(tets_.mesh_->V, place->corners[i]);
@@ -96,7 +96,7 @@ class PosedTets::Border {
     };
 
     const glm::dvec3 whole = at(1);
-    static_cast<void>(tets_.fixed(whole));  // throws if the point is too far away
+    static_cast<void>(tets_.fixed(whole));  // throws Error if the point is too far away
     const double way = free_way(tets_.bins_, at(0), whole, place->corners, [&](int t) {
       const auto corners = tets_.posed_corners(t);
       std::array<glm::dvec3, 4> places;
@@ -111,17 +111,17 @@ class PosedTets::Border {
   }
 
  private:
-  // Range of the search for another part of the mesh, as a multiple of the point's distance from the border. Twice this
-  // distance is enough, since the point may use half of the air between the two parts.
+  // Range of the search for another part of the mesh, as a multiple of the point's distance from the border. Two is
+  // enough, since the point may use half of the air between the two parts.
   static constexpr double kBoth = 2;
   static constexpr double kRounding = 1.0 / 64;  // tolerance of the results of free_way()
-  // Share of its half of the air that a point may use. It is below 1, so that the tissue of the two parts of the mesh
-  // never claims the same voxel centre.
+  // Share that a point may use of its half of the air. The share is below 1, so that the tissue of the two parts never
+  // claims the same voxel centre.
   static constexpr double kApart = 0.98;
 
-  // Returns where the line from `from` through `to` first enters another part of the mesh: 0 is at `from`, 1 at `to`,
-  // and kBoth means not before there. A tet so flat that its bounding box contains no voxel centre is not found, but
-  // its neighbours are.
+  // Returns where the line from `from` through `to` first enters another part of the mesh: 0 at `from`, 1 at `to`,
+  // kBoth: not before kBoth. A tet so flat that its bounding box contains no voxel centre is not found, but its
+  // neighbours are.
   template <class CornersOf>
   double free_way(const BoxBins& bins, const glm::dvec3& from, const glm::dvec3& to, const std::array<int, 3>& own,
                   const CornersOf& corners_of) const {
@@ -210,7 +210,7 @@ void PosedTets::find_instead_of() {
   parallel_for(std::ssize(in_mesh_), 64, [&](std::int64_t begin, std::int64_t end) {
     for (auto brick = begin; brick < end; ++brick) {
       const glm::ivec3 first = tissue.bricks()[brick].corner;
-      bool borders = false;  // whether the brick is next to tissue that the mesh does not carry
+      bool borders = false;  // true: the brick is next to tissue that does not move with the mesh
       for_each_neighbour_brick(tissue, first,
                                [&](int near) { borders |= in_mesh_[near] != tissue.bricks()[near].mask; });
       if (!borders) continue;
@@ -254,7 +254,7 @@ std::array<glm::dvec3, 4> PosedTets::rest_corners(int tet) const {
   return {rest_[corners[0]], rest_[corners[1]], rest_[corners[2]], rest_[corners[3]]};
 }
 
-// Returns the posed position of a rest point in a tet, which moves with that tet.
+// Returns the posed position of a rest point inside a tet, by the tet's motion.
 FixedPoint PosedTets::carried(int tet, const glm::dvec3& rest) const {
   const glm::dvec4 shares = shares_in(rest_corners(tet), rest);
   glm::dvec3 moved(0);

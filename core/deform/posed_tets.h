@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses tissue that a tet mesh carries. In PosedLattice every tissue voxel is a cell; here the mesh's tets are the
-// cells. Each posed voxel centre in a tet is the image of a rest point, which the tet's affine map gives. The posed
-// voxel gets the tissue of the voxel around that rest point; if that voxel is air, the tet does not claim it. Tets are
-// rasterized by the exact half-open rule of rasterize.h, after rounding to fixed point as in lattice.h, so the rest
-// pose is exact.
+// Poses tissue that moves with a tet mesh. In PosedLattice every tissue voxel is a cell; here the mesh's tets are the
+// cells. The inverse of a tet's affine map gives the rest point of each voxel centre that the posed tet contains. The
+// voxel gets the label of the voxel that contains this rest point; if that is air, the tet does not claim the voxel.
+// Tets are rasterized by the exact half-open rule of rasterize.h, after rounding to fixed point as in lattice.h, so the
+// rest pose is exact.
 //
-// A mesh follows the tissue's border only approximately. Tissue voxels of the mesh whose centre or a corner lies
-// outside it are *riders*, which are posed as separate cubes. A corner inside the mesh moves with its tet. A corner
+// A mesh follows the tissue's border only approximately. Tissue voxels of the mesh whose centre or a corner is outside
+// the mesh are *riders*, which are posed as separate cubes. A corner inside the mesh moves with its tet. A corner
 // outside moves with the nearest point of the mesh's border and rotates with the tet there. If another part of the mesh
-// has come near, it moves closer to the border than at rest: tissue outside the border is pressed flat where skin
-// presses on skin. Riders fill only voxels that no tet covers. A rider whose voxel is taken counts as an overlap,
-// unless both lay within a few voxels of each other at rest, on either side of a crease: there the fold squeezes them
-// together.
+// comes near, the corner is moved closer to the border than at rest: where skin presses on skin, tissue outside the
+// border is flattened. Riders fill only voxels that no tet covers. A rider whose voxel is already covered counts as an
+// overlap, unless the two were within a few voxels of each other at rest, on both sides of a crease, where the fold
+// presses them together.
 //
-// A mesh need not contain the whole body. The lattice (lattice.h) carries all other tissue. It also carries one layer
-// of voxels of the mesh next to that tissue: lattice and mesh move equally there, and no rounding error opens a gap.
+// A mesh need not contain the whole body. The lattice (lattice.h) poses all other tissue. It also poses the layer of
+// the mesh's voxels next to that tissue: there lattice and mesh have the same motion, so no rounding error opens a gap.
 #pragma once
 
 #include <array>
@@ -30,27 +30,26 @@ namespace limber {
 
 class PosedTets {
  public:
-  // Keeps references: mesh and lattice must outlive this object.
+  // Keeps references to `mesh` and `lattice`, which must outlive this object.
   //   posed     #V by 3 posed nodes, world, mm
   //   lattice   gives the volume, its tissue and the output lattice
-  //   in_mesh   tissue voxels that the mesh carries
+  //   in_mesh   tissue voxels that move with the mesh
   //   throws Error if the pose moves the mesh further than 32 000 output voxels or to a position that is not finite
   PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice, TissueMask in_mesh,
             Progress& progress = no_progress());
 
-  // Returns the cells that the lattice must not pose because the mesh carries them.
+  // Returns the voxels that the lattice must not pose because they move with the mesh.
   const TissueMask& instead_of() const { return instead_of_; }
   std::int64_t rider_count() const { return std::ssize(riders_); }
-  // Returns whether the mesh carries any of the brick's tissue.
+  // Returns true if any of the brick's tissue moves with the mesh.
   bool shares(std::int64_t brick) const { return in_mesh_[brick] != std::array<std::uint64_t, 8>{}; }
-  // Returns the range of output voxels that the posed tissue can reach, for all bricks with tissue that the mesh
-  // carries.
+  // Returns the range of output voxels that the posed tissue of all bricks with shares() can reach.
   const VoxelRange& posed_tissue() const { return posed_tissue_; }
 
-  // Enters the output voxels that the posed tets cover into the map.
+  // Writes the output voxels that the posed tets cover into the map.
   void rasterize(InverseMap& map, const std::vector<int>& priority, const TissueDepth* depth) const;
-  // Enters the riders (tissue voxels that stick out of the mesh, posed as separate cubes) into the map where it is
-  // still empty. Call it after everything else is entered.
+  // Writes the riders (tissue voxels that stick out of the mesh, posed as separate cubes) into the voxels of the map
+  // that are still empty. Must be called last.
   void rasterize_riders(InverseMap& map, const std::vector<int>& priority, const TissueDepth* depth) const;
   bool reaches(const VoxelRange& range) const;
 
@@ -74,7 +73,7 @@ class PosedTets {
   const TetMesh* mesh_;
   const PosedLattice* lattice_;
   TissueMask in_mesh_, instead_of_;
-  std::vector<glm::dvec3> rest_;   // #V node positions at rest, voxel coordinates, whole numbers of 1/65536
+  std::vector<glm::dvec3> rest_;   // #V node positions at rest, voxel coordinates, rounded to 1/65536
   std::vector<FixedPoint> posed_;  // #V posed node positions
   Eigen::MatrixX3d moved_;         // #V motions of the nodes (posed - rest), world, mm
   BoxBins bins_, rider_bins_;      // posed bounding boxes of the tets and of the riders, in output voxels

@@ -17,13 +17,13 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the number of tissue voxels for cells of 4^3 voxels; above it, cells have 8^3 voxels. At 2 mm a limb
-// has 0.65 million tissue voxels, a body 10 million.
+// Up to this number of tissue voxels, cells have 4^3 voxels; above it, they have 8^3 voxels. At 2 mm a limb has 0.65
+// million tissue voxels, a body 10 million.
 constexpr std::int64_t kMostFineVoxels = 1'500'000;
 constexpr int kGrain = 256;                  // cells per task
-constexpr double kLeastWeight = 1.0 / 1024;  // smaller shares of a vertex's weight are dropped
-// If all corners of a cell have at least this weight on one bone, the cell itself moves rigidly with the bone. The
-// bone's tissue then needs no stiff part (CellPart) of its own.
+constexpr double kLeastWeight = 1.0 / 1024;  // a bone's share of a vertex's weight that is smaller than this is dropped
+// If all corners of a cell have at least this weight on one bone, the whole cell counts as moving rigidly with the
+// bone, and the bone's tissue in it needs no stiff part (CellPart).
 constexpr double kStiff = 0.999;
 constexpr float kUnknown = std::numeric_limits<float>::infinity();
 // Two unconnected pieces of tissue in a cell are posed separately only if, at some corner of the cell, at least this
@@ -97,7 +97,7 @@ std::vector<std::uint8_t> cells_in_use(const PreviewLattice& lattice, const Tiss
 }
 
 // The pieces of tissue in a cell and in the 26 cells around it, grouped into sides. Pieces of different sides are not
-// connected within these cells, and follow different bones.
+// connected within these cells and follow different bones.
 class Sides {
  public:
   Sides(const PreviewLattice& lattice, const PiecesByCell& pieces, const glm::ivec3& cell)
@@ -139,8 +139,8 @@ class Sides {
       if (side_[i] == static_cast<int>(i)) found.push_back(static_cast<int>(i));
     return found;
   }
-  // Returns the bone weights at the cell's corners, taken only from the tissue of one side. A corner without such
-  // tissue gets the weights of the other corners, by their inverse squared distance.
+  // Returns the bone weights at the cell's corners that come from the tissue of one side only. A corner without such
+  // tissue gets the mean of the other corners' weights, weighted by inverse squared distance.
   std::array<Influences, 8> influences(int side) const {
     std::array<Influences, 8> corners;
     for (size_t i = 0; i < pieces_.size(); ++i) {
@@ -165,7 +165,7 @@ class Sides {
     }
     return all;
   }
-  // Returns bits for the cell's subcells that contain tissue of a side.
+  // Returns one bit for each of the cell's 4^3 subcells: 1 if it contains tissue of the side.
   std::uint64_t places(int side) const {
     std::uint64_t places = 0;
     for (size_t i = 0; i < pieces_.size(); ++i)
@@ -173,7 +173,7 @@ class Sides {
     return places;
   }
 
-  // Returns the member CellPart::apart for a side: the distance of each subcell from the tissue of other sides.
+  // Returns CellPart::apart for a side: the distance of each subcell from the tissue of other sides.
   std::array<std::int8_t, 64> to_others(int side) const {
     std::vector<glm::vec3> others;
     for (size_t i = 0; i < pieces_.size(); ++i) {
@@ -206,7 +206,7 @@ class Sides {
   const PreviewLattice& lattice_;
   glm::ivec3 cell_;
   std::vector<const CellPiece*> pieces_;
-  std::vector<int> side_;  // first piece of each piece's side
+  std::vector<int> side_;  // for each piece, the first piece of its side
 };
 
 // Returns true if the vertices of the cell and of the 26 cells around it do not all follow the same bone, so that a
@@ -226,8 +226,8 @@ bool may_part(const PreviewLattice& lattice, const std::vector<Influences>& infl
   return false;
 }
 
-// Returns the parts of a cell that have their own posed corners: first its sides (unconnected tissue that follows
-// different bones), then its stiff parts (tissue that follows one bone with full weight), ascending by bone.
+// Returns the parts of a cell that have their own posed corners: first the cell's sides (unconnected tissue that
+// follows different bones), then its stiff parts (tissue that follows one bone with full weight), ascending by bone.
 std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell& pieces,
                                const std::vector<Influences>& influences, std::int32_t index) {
   const glm::ivec3 cell = lattice.cells[index];
@@ -237,7 +237,7 @@ std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell
     const Sides sides(lattice, pieces, cell);
     const std::vector<int> found = sides.sides();
     bool differs = found.size() > 1;
-    if (found.size() == 1) {  // the cell's vertices may still follow tissue across a gap
+    if (found.size() == 1) {  // with one side, the cell's vertices may still follow tissue across a gap
       const std::array<Influences, 8> alone = sides.influences(found[0]);
       for (int c = 0; c < 8; ++c)
         differs = differs || apart(alone[c], influences[lattice.place(cell + corner_of(c))]) > kStrays;
@@ -319,8 +319,8 @@ PreviewLattice preview_lattice(const Grid& grid, const TissueVoxels& tissue, con
     }
   }
 
-  // Normalizes the influences of vertices that have tissue around them. Then vertices without tissue follow their
-  // neighbours, ring by ring, until all follow some bone.
+  // Normalizes the influences of vertices that have tissue around them. Vertices without tissue then take the mean
+  // influences of their neighbours, ring by ring, until all vertices have influences.
   at = 0;
   std::vector<glm::ivec3> open;
   const glm::ivec3 last = lattice.first + lattice.size;

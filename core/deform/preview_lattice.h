@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The coarse lattice that poses a live preview. Its cells, `step` voxels along each edge, are those with tissue and one
-// ring of cells around them, so that the body's surface lies well inside. Its vertices follow the bones with the mean
-// of the influences of the tissue voxels in the cells around them, each weighted by its trilinear share of the vertex.
+// The coarse lattice that poses a live preview. It consists of all cells (`step` voxels along each edge) with tissue
+// and one ring of cells around them, so that the body's surface is well inside. A vertex follows the mean of the
+// influences of the tissue voxels in the cells around it; each voxel counts with its trilinear weight at the vertex.
 // Tissue that follows one bone with full weight, as bone does, counts a thousand times as much, so that bones do not
 // bend. Vertices without tissue around them follow the mean of their neighbours.
 //
-// Some cells also have *parts*, which are posed by their own corners:
-//    stiff  tissue that follows one bone with full weight, in a cell with corners that follow other bones too
-//    side   one of several pieces of tissue in a cell that are connected only far from the cell and can move apart, as
-//           hand and thigh or two fingers: each side follows its own bones, and the cell itself is not posed. A cell
-//           with only one side has this part too if the cell's vertices also follow tissue across a gap. [the virtual
+// Some cells also have *parts*, which are posed by corners of their own:
+//    stiff  the tissue in a cell that follows one bone with full weight, if the cell's corners also follow other bones
+//    side   the tissue in a cell on one side of a gap, such as hand and thigh or two fingers. The sides are connected
+//           only far from the cell and can move apart, so each follows its own bones, and the cell itself is not posed.
+//           A
+//           cell with only one side has this part too if the cell's vertices also follow tissue across a gap. [the
+//           virtual
 //           nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology]
 //
-// Coordinates. Cell c covers the voxels c * step .. c * step + step - 1. In *cell coordinates* its centre is the whole
-// number c, and its lowest corner, vertex c, lies at c - 1/2; so cells of this lattice are like voxels in lattice.h.
+// Coordinates. Cell c covers the voxels c * step to c * step + step - 1. In *cell coordinates* its centre is the
+// integer c and its lowest corner, vertex c, is at c - 1/2, in the same way as for the voxels of lattice.h.
 #pragma once
 
 #include <array>
@@ -25,17 +27,19 @@
 
 namespace limber {
 
-// Returns the number of voxels along a cell's edge: 4, as for a limb, or 8 if there is so much tissue that posing it
-// would take too long.
+// Returns the number of voxels along a cell's edge: 4 for a small volume, such as a limb; 8 if there is so much tissue
+// that posing it with cells of 4 voxels would take too long.
 int preview_step(const TissueVoxels& tissue);
 
 struct CellPart {
-  std::int32_t cell;                                  // index into PreviewLattice::cells
-  bool is_stiff;                                      // true: tissue that follows one bone; false: one side of a gap
-  std::uint64_t places;                               // bits for the 4^3 subcells that the part poses, x fastest
+  std::int32_t cell;  // index into PreviewLattice::cells
+  // true: tissue that follows one bone; false: tissue on one side of a gap
+  bool is_stiff;
+  // one bit for each of the 4^3 subcells, x fastest: 1 if the part poses it
+  std::uint64_t places;
   std::array<std::vector<BoneWeight>, 8> influences;  // weights of each corner: sum 1, ascending by bone
-  // Distance of each of the 4^3 subcells from the tissue of other sides, in units of a cell edge / kStepApart.
-  // kFarApart: further away than can be stored.
+  // Distance of each of the 4^3 subcells from the tissue of other sides, in units of 1 / kStepApart cell edge.
+  // kFarApart: the distance is too large to be stored.
   std::array<std::int8_t, 64> apart;
 
   static constexpr int kStepApart = 63, kFarApart = 127;
@@ -57,13 +61,13 @@ struct PreviewLattice {
   glm::ivec3 first{0}, size{0};         // lowest cell and size of the box of all cells
   std::vector<glm::ivec3> cells;        // cells in use, x fastest
   std::vector<glm::ivec3> vertices;     // vertices in use, x fastest
-  std::vector<std::int64_t> offsets;    // #vertices + 1: where the influences of each vertex begin
+  std::vector<std::int64_t> offsets;    // #vertices + 1: index of the first influence of each vertex
   std::vector<BoneWeight> influences;   // weights of each vertex: sum 1, ascending by bone
-  std::vector<std::uint8_t> has_sides;  // 1 for each cell with parts that are sides
+  std::vector<std::uint8_t> has_sides;  // 1 for each cell that has parts that are sides
   std::vector<CellPart> parts;          // in the order of their cells
-  std::vector<float> depth;  // by place(vertex): depth below air, mm; in air, minus the distance from tissue, mm
+  std::vector<float> depth;             // by place(vertex): depth below air, mm; in air minus the distance from tissue
 
-  // Returns the index of a vertex in arrays with one value for every corner of the box of cells.
+  // Returns the index of a vertex in arrays that have one value for every corner of the box of cells.
   std::int64_t place(const glm::ivec3& vertex) const {
     const glm::ivec3 v = vertex - first;
     return v.x + row() * (v.y + std::int64_t{size.y + 1} * v.z);

@@ -19,13 +19,13 @@ namespace limber {
 
 namespace {
 
-constexpr int kTile = 8;             // nodes along the edge of a tile, the unit in which nodes are recomputed
-constexpr int kMargin = 3;           // distance from the grid up to which rest points can be stored, cells
+constexpr int kTile = 8;             // nodes along the edge of a tile; nodes are recomputed by tiles
+constexpr int kMargin = 3;           // rest points can be stored up to this distance outside the grid, cells
 constexpr double kFurthest = 32000;  // largest coordinate of a posed vertex, cells; fixed point allows 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
-constexpr double kHeld = 2;  // a tet mesh carries vertices up to this distance from it, cells
-// Errors of a cell's trilinear map, in cells. Errors below kNear are not corrected, errors above kFar by two Newton
-// steps, and those between by one.
+constexpr double kHeld = 2;  // vertices up to this distance from a tet mesh move with it, cells
+// Errors of a cell's trilinear map, in cells. An error below kNear is not corrected, an error up to kFar is corrected
+// by one Newton step, and a larger one by two.
 constexpr double kNear = 1.0 / 32;
 constexpr double kFar = 1.0 / 8;
 // Largest ratio of the distance of two nodes' rest points to the distance of the nodes themselves. Nodes with a larger
@@ -40,9 +40,8 @@ glm::ivec3 tile_of(const glm::ivec3& node) {
   return {floor_div(node.x, kTile), floor_div(node.y, kTile), floor_div(node.z, kTile)};
 }
 
-// The range of rest coordinates that nodes store as 16-bit integers (fractions of the range). The step from node to
-// node is a whole number of these fractions, and `low` is a whole number of steps away from a node. So the rest pose is
-// exact.
+// The range of rest coordinates. Nodes store rest points as 16-bit fractions of this range. The distance between nodes
+// is a whole number of fractions, and `low` is a whole number of steps away from a node, so the rest pose is exact.
 struct Span {
   glm::dvec3 low, extent;
 };
@@ -53,7 +52,7 @@ Span span_of(const PreviewLattice& lattice) {
           PreviewMap::kFullFraction * step / glm::floor(PreviewMap::kFullFraction * step / least)};
 }
 
-// Returns a node's rest point (fractions) as integers in one register.
+// Returns a node's rest point (16-bit fractions) as integers in one SIMD register.
 Lanes lanes_of(const glm::u16vec4& node) { return Lanes{node.x, node.y, node.z, 0}; }
 Lanes most(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
 Lanes least(const Lanes& a, const Lanes& b) { return a < b ? a : b; }
@@ -109,7 +108,7 @@ std::optional<glm::dvec3> PreviewMap::between(const glm::dvec3& place) const {
   return sum / total;
 }
 
-// Brings the stale rows of a PreviewMap up to date. The input is the rest point that a posed cell claims for each node.
+// Recomputes the stale rows of a PreviewMap from the rest points that posed cells claim for the nodes.
 class LivePreview::Finish {
  public:
   Finish(Made& made, const LivePreview& preview)
@@ -129,7 +128,7 @@ class LivePreview::Finish {
     }
   }
 
-  // Copies the claimed rest points of one layer of nodes, and extrapolates to nodes just outside.
+  // Copies the claimed rest points of one layer of nodes, and extrapolates rest points of nodes just outside.
   void layer(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);
@@ -146,8 +145,8 @@ class LivePreview::Finish {
     }
   }
 
-  // Finds the edges of a layer whose two nodes lie on different sheets of the body, as across a fold. layer() must have
-  // run for all layers.
+  // Finds the edges of a layer whose two nodes are on different sheets of the body, as across a fold. layer() must have
+  // been called for all layers.
   void edges(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);
@@ -161,7 +160,7 @@ class LivePreview::Finish {
     }
   }
 
-  // Finds the states of a layer's cubes of eight nodes. edges() must have run for all layers.
+  // Computes the state of each cube of eight nodes in a layer. edges() must have been called for all layers.
   void cubes(int z) {
     if (z + 1 >= map_.size.z) return;
     for (int y = 0; y + 1 < map_.size.y; ++y) {
@@ -174,9 +173,9 @@ class LivePreview::Finish {
  private:
   const std::array<int, 2>& stale(int y, int z) const { return stale_[y + std::int64_t{map_.size.y} * z]; }
 
-  // Extrapolates the rest point of a node that no cell claims. Each claimed neighbour, with the next node in the same
-  // direction, gives one result; the node gets the mean of all results that agree with the first one. (At the borders
-  // of the grid of nodes, two nodes are never claimed, so all these indices are valid.)
+  // Extrapolates the rest point of a node that no cell claims. Each claimed neighbour, with the node behind it, gives
+  // one result; the node gets the mean of all results that agree with the first one. (The two outermost layers of nodes
+  // are never claimed, so all these indices are valid.)
   void carry_on(std::int64_t at) {
     Lanes sum{}, first{};
     int count = 0, border = CellPart::kFarApart;
@@ -204,7 +203,7 @@ class LivePreview::Finish {
     return glm::dot(steps, steps);
   }
 
-  // Returns whether a node and the next node along an axis lie on different sheets of the body.
+  // Returns true if a node and the next node along an axis are on different sheets of the body.
   bool edge_jumps(std::int64_t at, int axis) const {
     const std::int64_t next = at + strides_[axis];
     if (!map_.nodes[next].w) return false;
@@ -231,7 +230,7 @@ class LivePreview::Finish {
     map_.cubes[at] = jumps ? PreviewMap::kBroken : bordered ? PreviewMap::kBordered : PreviewMap::kWhole;
   }
 
-  // Returns the least and greatest components of a cube's nodes, covered or not. Compares two nodes at a time.
+  // Returns the smallest and largest components of a cube's eight nodes, covered or not. Compares two nodes at a time.
   std::array<glm::u16vec4, 2> bounds(const glm::u16vec4* nodes) const {
     using Shorts = short __attribute__((vector_size(16)));
     // Flipping the sign bit turns the order of unsigned integers into that of signed integers.
@@ -254,8 +253,8 @@ class LivePreview::Finish {
   }
 
   // Returns true if any two of a cube's nodes belong to parts of the body that are apart at rest, such as an arm and
-  // the trunk that it touches. Compares all pairs of nodes and not only the ends of the cube's edges, because nodes
-  // without a rest point cannot be compared. Also sets the bounding box of the nodes' rest points.
+  // the trunk that it touches. Compares all pairs of nodes, not only the ends of edges, because nodes without a rest
+  // point cannot be compared. Also sets the bounding box of the nodes' rest points.
   bool jumps_across(std::int64_t at) {
     std::array<Lanes, 8> c{};
     int count = 0;
@@ -314,7 +313,7 @@ struct LivePreview::Tiles {
   }
 };
 
-// The nodes of one tile, each with the cell that claims (covers) it and the rest point there.
+// The nodes of one tile, with the cell that claims (covers) each node and the rest point there.
 class LivePreview::Tile {
  public:
   Tile(const LivePreview& preview, const glm::ivec3& tile) : preview_(preview), low_(tile * kTile) { cell_.fill(-1); }
@@ -333,7 +332,7 @@ class LivePreview::Tile {
     inverted_[at] = inverted;
   }
 
-  // Writes the claims on the nodes in row y of layer z of this tile to the arrays of all nodes.
+  // Copies the claims on the nodes in row y of layer z of this tile into the arrays of all nodes.
   void write(int y, int z, glm::u16vec4* row, std::int32_t* cells, std::int8_t* apart, const Span& span) const {
     const double step = preview_.lattice_.step;
     const glm::dvec3 fractions = double(PreviewMap::kFullFraction) / span.extent;
@@ -437,7 +436,7 @@ std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTra
   return map_;
 }
 
-// Finds the vertices, and the corners of cell parts (CellPart), that move with a tet mesh.
+// Finds the vertices and the corners of cell parts (CellPart) that move with a tet mesh.
 void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   carried_.reset();
   if (!mesh) return;
@@ -447,8 +446,8 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
   for (const glm::ivec3& vertex : lattice_.vertices)
     points.push_back({voxel(glm::dvec3(vertex) - 0.5), voxel(glm::dvec3(vertex) - 0.5)});
   for (const CellPart& part : lattice_.parts) {
-    // The corners of a part are anchored in the subcell of the part that is furthest from the tissue of other sides, so
-    // that the mesh does not move them with another side.
+    // Anchors the corners of a part in the part's subcell that is furthest from the tissue of other sides, so that the
+    // corners do not follow another side's tets.
     int deepest = 0;
     for (int place = 0; place < 64; ++place)
       if (part.holds(place) && (!part.holds(deepest) || part.apart[place] > part.apart[deepest])) deepest = place;
@@ -471,7 +470,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
     bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation ||
                      posed_from_rest[b].translation != posed_from_rest_[b].translation;
   if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_) return false;
-  map_ = nullptr;  // null until this update ends: after an exception the next one starts anew
+  map_ = nullptr;  // null until this update ends, so that after an exception the next update starts anew
 
   if (mesh.rest != mesh_.rest) hold_by(mesh.rest);
   mesh_ = mesh;
@@ -484,7 +483,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const double step = lattice_.step;
   world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
   cell_from_world_ = voxel_from_world.linear / step;
-  // One map for each bone: vertex index -> motion of the vertex (posed - rest, in cells) if it follows only this bone.
+  // One affine map per bone, for vertices that follow only this bone: vertex index -> posed - rest, in cells.
   std::vector<AffineTransform> moves;
   for (const RigidTransform& bone : posed_from_rest) {
     const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);
@@ -499,7 +498,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
   // Returns the posed position of a vertex. If `motion` is not null, also writes the blended motion of the vertex's
-  // bones to it. Cells that bend need this motion.
+  // bones to it; cells that bend need this motion.
   const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion) {
     glm::dvec3 at = glm::dvec3(vertex) - 0.5;
     if (influences.size() == 1) {
@@ -563,8 +562,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   return true;
 }
 
-// Returns the rest point, in a cell that bends, that the blended motion of the cell's corners moves to a node.
-//   rest  first guess: the rest point that the trilinear map of the posed corners gives
+// Returns the rest point in a bent cell that the blended motions of the cell's corners move to a node.
+//   rest  initial guess: the rest point by the trilinear map of the posed corners
 glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const {
   if (mesh_.rest) return rest;
   const glm::ivec3 middle = this->middle(cell);
@@ -580,7 +579,7 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   glm::dvec3 missing = glm::dvec3(node) - posed(rest);
   const auto is_within = [&](double limit) { return glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(limit))); };
   if (is_within(kNear)) return rest;
-  // The Newton steps use the slope of the trilinear map, which is close enough to that of the blended motion.
+  // The Newton steps use the derivative of the trilinear map, which is close enough to that of the blended motion.
   const glm::dmat3 slope = this->slope(cell);
   if (!(glm::determinant(slope) > 0.05)) return rest;
   const glm::dmat3 back = glm::inverse(slope);
@@ -596,7 +595,7 @@ const FixedPoint& LivePreview::corner(std::int64_t cell, int i) const {
   return part(cell) ? posed_parts_[part_of(cell)][i] : posed_[lattice_.place(middle(cell) + kCorners[i])];
 }
 
-// Returns the index of a cell corner's motion in motion_; -1: the cell does not bend.
+// Returns the index in motion_ of a cell corner's motion; -1: the cell does not bend.
 std::int32_t LivePreview::motion(std::int64_t cell, int corner) const {
   if (!part(cell)) return motion_of_[lattice_.place(middle(cell) + kCorners[corner])];
   const std::int32_t first = first_motion_[part_of(cell)];
@@ -612,12 +611,12 @@ glm::dmat3 LivePreview::slope(std::int64_t cell) const {
   return slope;
 }
 
-// Returns true if two neighbouring nodes do not continue each other: the map of either node's cell, extended to the
-// other node, gives a rest point far from the other node's own rest point.
+// Returns true if two neighbouring nodes are on different sheets: the map of either node's cell, extended to the other
+// node, gives a rest point far from the other node's own.
 //   apart  vector from the node's rest point to that of the next node, voxels
 bool LivePreview::strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const {
-  // The limit is doubled where no gap between sides is near: only a fold separates sheets there, and tissue that a
-  // joint twists strongly in little space is not a fold.
+  // Without a gap nearby only a fold separates sheets, and tissue that a joint twists strongly over a short distance is
+  // not a fold. So the limit is doubled there.
   const bool at_gap = claimed_apart_[node] < CellPart::kFarApart || claimed_apart_[next] < CellPart::kFarApart;
   const double stray = (at_gap ? 1 : 2) * PreviewMap::kStray * lattice_.step;
   for (const std::int64_t each : {node, next}) {
@@ -725,8 +724,8 @@ void LivePreview::rasterize_tile(const glm::ivec3& tile_at, const std::int32_t* 
     }
 }
 
-// Marks all values that depend on the nodes of a tile as stale: nodes that are extrapolated from the tile's nodes,
-// edges to the extrapolated nodes, and cubes around all of them.
+// Marks all values that depend on the nodes of a tile as stale: nodes extrapolated from them, the edges to these nodes,
+// and the cubes around all of them.
 //   low  the tile's lowest node
 void LivePreview::mark_stale(const glm::ivec3& low) {
   const glm::ivec3 from = glm::max(low - 3, glm::ivec3(0)), to = glm::min(low + kTile + 2, size_);
@@ -739,7 +738,7 @@ void LivePreview::mark_stale(const glm::ivec3& low) {
       }
 }
 
-// Returns a map of the current size that no one else uses.
+// Returns a map of the current size to which no other owner holds a pointer.
 LivePreview::Made& LivePreview::spare() {
   Made& made = made_[made_[0].map.use_count() > made_[1].map.use_count()];
   const bool is_free = made.map && made.map.use_count() == 1;

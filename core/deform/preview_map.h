@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The live preview: an inverse map of the posed body, coarse enough to be recomputed for every frame while a bone is
-// dragged. A PreviewMap stores the rest points of nodes that lie `step` voxels apart over the posed body, and
+// dragged. A PreviewMap stores the rest points of nodes that are `step` voxels apart over the posed body, and
 // interpolates linearly between them. The posed cells of preview_lattice.h give each node its rest point; if two cells
-// claim a node, the rules of inverse_map.h decide. A cell that bends is curved, so the straight (trilinear) map of its
-// corners would flatten bulges. Inside it, the corners' motions are therefore blended like those of bones, and Newton
-// steps from the straight map's rest point find the one that this blended motion moves to the node.
+// claim a node, the rules of inverse_map.h decide. A cell that bends is curved, so the trilinear map of its corners
+// would flatten bulges. Inside such a cell, the corners' motions are therefore blended like those of bones. Newton
+// steps, which start from the rest point of the trilinear map, find the rest point that the blended motion moves to the
+// node.
 //
 // Nodes just outside all cells extrapolate their neighbours linearly, so that all eight nodes around any point of the
-// body have rest points. If these eight jump, in a fold, two sheets of the body meet between them. A point there is
-// extrapolated from its nearest node and the point mirrored through that node, and so stays on one sheet. Extrapolation
-// may lead into tissue of another side (preview_lattice.h), which is posed elsewhere. So each node stores its distance
-// from such tissue; where the distance falls below zero, beyond the sheet's border, the map is empty.
+// body have rest points. If the rest points of these eight nodes jump, as in a fold, two sheets of the body meet
+// between them. A point there is then extrapolated from its nearest node and from the point mirrored at that node, and
+// so stays on one sheet. Extrapolation may lead into tissue of another side (preview_lattice.h), which is posed
+// elsewhere. So each node stores its distance from such tissue; where the distance is negative, beyond the sheet's
+// border, the map is empty.
 //
-// Where a tet mesh carries tissue, as while a FEM solve runs, vertices near the mesh move with the mesh
-// (carried_points.h) instead of with their bones. All cells are then read by the straight map of their corners.
+// Where tissue moves with a tet mesh, as while a FEM solve runs, vertices near the mesh move with the mesh
+// (carried_points.h) instead of with their bones. All cells then use the trilinear map of their corners.
 //
-// Only the surroundings of cells that moved are recomputed, in the memory of the map before last if no one else uses
-// it. The result never depends on earlier poses.
+// Only nodes near cells that moved are recomputed. The result is written into the memory of the map before the last
+// one, unless another owner still uses it. The result never depends on earlier poses.
 #pragma once
 
 #include <array>
@@ -50,8 +52,8 @@ struct PreviewMap {
   // Rest points as fractions of [low, low + extent]. The last component is kFullFraction for nodes with a rest point
   // (covered nodes), else 0.
   std::vector<glm::u16vec4> nodes;
-  // Distance at rest of each node from tissue beyond the border of the node's sheet, in units of a step /
-  // CellPart::kStepApart. Negative for a node beyond the border; 0 for a node without a rest point.
+  // Distance at rest of each node from tissue beyond the border of the node's sheet, in units of step /
+  // CellPart::kStepApart voxels. Negative for a node beyond the border; 0 for a node without a rest point.
   std::vector<std::int8_t> apart;
   std::vector<std::uint8_t> cubes;  // state of each cube, at the index of its lowest node
   std::vector<RestBox> reach;       // bounding box of each cube's covered nodes; undefined if it has none
@@ -72,15 +74,14 @@ struct PreviewMap {
   }
   glm::dvec3 rest_of_node(const glm::ivec3& n) const { return rest_of_node_at(index(n)); }
   glm::dvec3 rest_of_node_at(std::int64_t at) const { return rest_of(glm::u16vec3(nodes[at])); }
-  // Largest distance at rest between neighbouring nodes of one sheet, voxels. (A joint twisted by a right angle moves
-  // them as much as 3 steps apart without a fold.)
+  // Largest distance at rest between neighbouring nodes of one sheet, voxels. (A joint twisted by 90 degrees moves
+  // neighbouring nodes up to 3 steps apart without a fold.)
   double jump() const { return 5.0 * step; }
-  // Upper limit, in steps, on the error at a node when the map of a neighbouring node's cell is extended to the node. A
-  // larger error means that the two nodes lie on different sheets. The limit is doubled where no gap between sides is
-  // near.
+  // Upper limit, in steps, on the error when the map of a node's cell is extended to a neighbouring node. A larger
+  // error means that the two nodes are on different sheets. If no gap between sides is near, twice this limit is used.
   static constexpr double kStray = 1.5;
-  // Upper limit on the change of rest points from node to node, if they are extrapolated beyond the nodes of a sheet,
-  // voxels per step. Steeper changes are not extrapolated.
+  // Upper limit on the change of rest points between neighbouring nodes, voxels per step, up to which rest points are
+  // extrapolated beyond a sheet's nodes.
   double steepest() const { return 1.5 * step; }
 
   // Returns the rest point of a posed point, both in voxel coordinates; nothing if the point is not near the body.
@@ -91,7 +92,7 @@ struct PreviewMap {
   double apart_between(const glm::dvec3& place) const;
 };
 
-// A tet mesh and its posed nodes. Equal pointers mean equal contents.
+// A tet mesh and its posed nodes. Equal pointers are taken as equal contents.
 struct MeshPose {
   std::shared_ptr<const TetMesh> rest;
   std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V by 3 posed nodes, world, mm
@@ -106,9 +107,9 @@ class LivePreview {
   LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
               const SkinWeights& weights, int step);
 
-  // Returns the map of a pose. It is the same pointer as before if the pose is the same.
+  // Returns the map of a pose. If nothing has changed since the last call, returns the same pointer.
   //   posed_from_rest  motions of the bones of the weights
-  //   mesh             a mesh that carries the tissue near it; empty: none
+  //   mesh             a mesh with which the tissue near it moves; empty: none
   //   throws Error if the pose moves tissue too far
   std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
                                            const MeshPose& mesh = {});
@@ -124,11 +125,12 @@ class LivePreview {
   // A map, and the rows of nodes that must be recomputed before it matches the current pose.
   struct Made {
     std::shared_ptr<PreviewMap> map;
-    std::vector<std::uint8_t> jumps;        // bits of the axes along which each node's next one is on another sheet
-    std::vector<std::array<int, 2>> stale;  // first and end of the stale nodes in each row (y, then z)
+    // for each node, bits of the axes along which the next node is on another sheet
+    std::vector<std::uint8_t> jumps;
+    std::vector<std::array<int, 2>> stale;  // begin and end of the stale nodes in each row (y, then z)
   };
 
-  // In these functions `cell` is an index into one list: first all cells of the lattice, then all its parts.
+  // In the functions below, `cell` is an index into a list of all cells of the lattice followed by all its parts.
   std::int64_t cell_count() const { return std::ssize(range_); }
   std::int64_t part_of(std::int64_t cell) const { return cell - std::ssize(lattice_.cells); }
   const CellPart* part(std::int64_t cell) const { return part_of(cell) < 0 ? nullptr : &lattice_.parts[part_of(cell)]; }
@@ -153,29 +155,30 @@ class LivePreview {
 
   std::shared_ptr<const LabelVolume> volume_;
   PreviewLattice lattice_;
-  std::vector<int> priority_;  // priority of each label's tissue; air has the lowest
-  // By PreviewLattice::place(vertex): index into motion_; -1: no cell bends there.
+  std::vector<int> priority_;  // by label: the tissue with the higher priority wins; air has the lowest
+  // By PreviewLattice::place(vertex): index into motion_; -1: no cell at this vertex bends.
   std::vector<std::int32_t> motion_of_;
-  std::vector<std::int32_t> first_motion_;   // index in motion_ of each part's corner 0; -1: cannot bend
+  std::vector<std::int32_t> first_motion_;   // index in motion_ of corner 0 of each part; -1: the part cannot bend
   std::vector<BoneWeight> part_influences_;  // influences of corner c of part p begin at part_offsets_[8 * p + c]
   std::vector<std::int32_t> part_offsets_;
 
   AffineTransform world_from_cell_;
-  glm::dmat3 cell_from_world_{1};  // converts vectors, not points
+  glm::dmat3 cell_from_world_{1};  // for vectors, not for points
 
   // The state of the last pose that was computed.
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   MeshPose mesh_;
-  std::optional<CarriedPoints> carried_;  // points that mesh_ may carry: all vertices, then eight corners per part
-  std::vector<FixedPoint> posed_;         // by PreviewLattice::place(vertex): posed position of the vertex
-  std::vector<SkinTransform> motion_;     // blended motions at corners of cells that can bend
+  // points that may move with mesh_: all vertices, then eight corners of each part
+  std::optional<CarriedPoints> carried_;
+  std::vector<FixedPoint> posed_;      // posed position of each vertex, by PreviewLattice::place(vertex)
+  std::vector<SkinTransform> motion_;  // blended motions at corners of cells that can bend
   std::vector<std::array<FixedPoint, 8>> posed_parts_;
-  // 1 for each vertex (in the order of PreviewLattice::place()) and for each part that this update moves.
+  // 1 for each vertex (by PreviewLattice::place(vertex)) and for each part that this update moves.
   std::vector<std::uint8_t> moved_, part_moved_;
   std::vector<std::uint8_t> bone_moved_;
-  // Range of nodes that the posed image of each cell can contain, in this update and in the one before. Node (0, 0, 0)
-  // is the first node of the voxel grid, not first_.
+  // Range of nodes that the posed image of each cell can contain, in this update and in the previous one. Node (0, 0,
+  // 0) is the first node of the voxel grid, not first_.
   std::vector<VoxelRange> range_, before_;
   glm::ivec3 first_{0}, size_{0};      // range of nodes, in whole tiles
   std::vector<glm::u16vec4> claimed_;  // rest point that a cell claims for each node, as in PreviewMap::nodes

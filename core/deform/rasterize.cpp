@@ -7,8 +7,9 @@ namespace limber {
 
 namespace {
 
-// The corners of a cube's five tets, positively oriented: first the central tet, then each tet cut off at the corner
-// that is listed first. The first row is for cubes whose lowest corner's coordinates add up to an even number.
+// Indices of the corners of a cube's five tets, positively oriented: first the central tet, then each tet that is cut
+// off at a corner; the cut-off corner comes first. Row 0 is for cubes whose lowest corner has an even sum of
+// coordinates.
 constexpr int kTetCorners[2][5][4] = {
     {{0, 5, 3, 6}, {1, 0, 5, 3}, {2, 3, 6, 0}, {4, 5, 0, 6}, {7, 6, 3, 5}},
     {{7, 4, 2, 1}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}},
@@ -27,12 +28,12 @@ double largest_row_sum(const glm::dmat3& m) {
   return largest;
 }
 
-// Extent in fixed point (1024 voxels) above which cubes are rasterized tet by tet, since the sum of eight corners must
-// fit an int.
+// If a cube's extent in fixed point exceeds this limit (1024 voxels), the cube is rasterized tet by tet, since the sum
+// of eight corners must fit an int.
 constexpr int kLargestExtent = 1 << 26;
 
-// Returns the eight coefficients, times 8, of a cube's trilinear map from its corners (a Hadamard transform). The bits
-// of a coefficient's index tell which of x, y, z it multiplies.
+// Returns 8 times the eight coefficients of a cube's trilinear map, from its corners (a Hadamard transform). Bits 0, 1,
+// 2 of a coefficient's index say whether it multiplies x, y, z.
 std::array<Lanes, 8> trilinear_coefficients(std::array<Lanes, 8> c) {
   for (int bit : {1, 2, 4})
     for (int i = 0; i < 8; ++i)

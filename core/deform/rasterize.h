@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds which voxel centres lie in a posed cell, and which rest point the pose moves to each of them.
 //
-// A cube is split into five tets: one on the four corners whose coordinates add up to an even number, and four cut off
-// at the odd corners. Neighbouring cubes are mirror images, so their diagonals meet. (A split into six tets around a
-// main diagonal would put every voxel centre of the rest pose on an edge of all six; here it lies in the middle of
-// one.)
+// A cube is split into five tets: one on the four corners with an even sum of coordinates, and four cut off at the
+// other corners. Neighbouring cubes are mirror images, so the diagonals on their common face coincide. (A split into
+// six tets around a main diagonal would put every voxel centre of the rest pose on an edge of all six; here the centre
+// is in the middle of one tet.)
 //
-// Exactly one tet claims every voxel centre that a mesh of such cells covers. Vertices are whole numbers of 1/65536
-// voxel, so the side of a face on which a centre lies is computed exactly. A centre *on* a face counts as moved by
-// (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity]. This is the
-// half-open rule of triangle rasterizers, extended to tets. It holds where no tet is inverted and no tets overlap.
+// Exactly one tet claims every voxel centre that a mesh of such cells covers. Vertices are integers in units of 1/65536
+// voxel, so the side of a face on which a centre lies is computed exactly. A centre *on* a face is treated as if it
+// were moved by (d, d^2, d^3) for an infinitely small d > 0 [Edelsbrunner & Mucke 1990, Simulation of simplicity]. This
+// is the half-open rule of triangle rasterizers, extended to tets. It holds if no tet is inverted and no tets overlap.
 //
-// Exact tests are the last resort. The map from a cube at rest to the posed cube is nearly affine. The inverse of its
-// affine part gives each centre's position in the cube, with an error that is at most the *slack*. Only centres that
-// are nearer to a face than the slack are tested exactly. If the slack is tiny, the position in the cube also gives the
-// rest point, and no tet is needed.
+// Exact tests are only made where they are needed. The map from a cube at rest to the posed cube is nearly affine. The
+// inverse of its affine part gives each centre's position in the cube, with an error that is at most the *slack*. Only
+// centres that are nearer to a face than the slack are tested exactly. If the slack is tiny, the position in the cube
+// also gives the rest point, and no tet is needed.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ VoxelRange voxels_in_box(const std::array<FixedPoint, N>& points) {
   return {(low + (kFixedOne - 1)) >> 16, high >> 16};
 }
 
-constexpr int kSmallExtent = 16;  // largest extent of a tet whose products fit std::int64_t, voxels
+constexpr int kSmallExtent = 16;  // up to this extent in voxels, the products of a tet's face tests fit std::int64_t
 
 // Computes exactly on which side of each of a tet's four faces a voxel centre lies. `Whole` is the integer type of the
 // products: std::int64_t for tets within kSmallExtent, __int128 for larger ones.
@@ -71,8 +71,8 @@ class TetFaces {
 
   int orientation() const { return determinant_ > 0 ? 1 : determinant_ < 0 ? -1 : 0; }
 
-  // Returns a positive number if the voxel centre lies on the inner side of face f of the tet, otherwise zero or less.
-  // A centre exactly on the face counts as moved by (d, d^2, d^3) for an infinitely small d > 0.
+  // Returns a positive number if the voxel centre is on the inner side of face f of the tet, otherwise zero or less. A
+  // centre exactly on the face is treated as if it were moved by (d, d^2, d^3) for an infinitely small d > 0.
   Whole side(int f, const glm::ivec3& voxel) const {
     const auto& n = normal_[f];
     return n[0] * (Whole(voxel.x) * kFixedOne - from_[f].x) + n[1] * (Whole(voxel.y) * kFixedOne - from_[f].y) +
@@ -91,8 +91,8 @@ class TetFaces {
   Whole determinant_;
 };
 
-// Clips a row of voxels `first` .. `last` to the voxels whose side() is above 0. They form an interval. Its ends are
-// computed by integer division, since side() changes by `step` from voxel to voxel.
+// Clips a row of voxels `first` to `last` to those whose side() is above 0. These voxels form an interval, since side()
+// changes by the constant `step` from voxel to voxel. Integer division gives the interval's ends.
 template <class Whole>
 void clip_row(Whole side_at_first, Whole step, Whole& first, Whole& last) {
   auto floor_div = [](Whole a, Whole b) { return a / b - (a % b < 0 ? 1 : 0); };  // requires b > 0
@@ -110,7 +110,7 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
   const TetFaces<Whole> faces(posed);
   const int orientation = faces.orientation();
   if (orientation == 0) return;
-  const bool is_short = range.high.x - range.low.x < 4;  // testing each voxel is then faster than dividing
+  const bool is_short = range.high.x - range.low.x < 4;  // for short rows, testing each voxel is faster than dividing
   for (int z = range.low.z; z <= range.high.z; ++z)
     for (int y = range.low.y; y <= range.high.y; ++y) {
       if (is_short) {
@@ -125,7 +125,7 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
       Whole first = range.low.x, last = range.high.x;
       for (int f = 0; f < 4 && first <= last; ++f)
         clip_row<Whole>(faces.side(f, {int(first), y, z}), faces.step_x(f), first, last);
-      if (first > last) continue;  // `first` may then be too large for an int, if a face is nearly parallel to the row
+      if (first > last) continue;  // then `first` may be too large for an int, if a face is nearly parallel to the row
       for (int x = int(first); x <= int(last); ++x) visit(glm::ivec3(x, y, z), orientation);
     }
 }
@@ -159,7 +159,7 @@ struct CellClaim {
 CellClaim claim_in_tet(const std::array<FixedPoint, 4>& posed, const std::array<glm::dvec3, 4>& rest,
                        const glm::ivec3& voxel);
 
-// Four integers in one SIMD register; the last is unused.
+// SIMD register of four integers; the last one is unused.
 using Lanes = int __attribute__((vector_size(16)));
 
 // Loads two adjacent points by two unaligned loads of 16 bytes.
@@ -175,8 +175,9 @@ inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
 // The posed cube of a tissue voxel.
 class PosedCell {
  public:
-  //   lowest      the corner with least x, y and z at rest, in an array in which the next corner along x, y and z is 1,
-  //               `row` and `slice` elements further on; the array must outlive the cell
+  //   lowest      the corner with the smallest x, y and z at rest. In its array, the next corner along x, y and z is 1,
+  //   `row`
+  //               and `slice` elements further. The array must outlive the cell
   //   rest_voxel  the voxel whose centre is the centre of the cube at rest
   PosedCell(const FixedPoint* lowest, int row, int slice, const glm::ivec3& rest_voxel)
       : lowest_(lowest),
@@ -231,13 +232,13 @@ class PosedCell {
   // Upper limit on Inverse::slack; cubes with a larger slack are rasterized tet by tet. With a slack below 0.2 no tet
   // of the cube can be inverted (its edge matrix stays diagonally dominant).
   static constexpr double kLargestSlack = 0.1;
-  // Upper limit on Inverse::slack of cubes whose map counts as affine: their rest points are correct to within 0.005
-  // voxel.
+  // A cube's map counts as affine if its Inverse::slack is at most this; its rest points are then correct to within
+  // 0.005 voxel.
   static constexpr double kAffineSlack = 0.01;
 
   // The inverse of the affine part of the map from a cube's rest position to its posed position.
   struct Inverse {
-    glm::dmat3 place_from_posed{1};  // posed point - middle -> position in the cube, [-1, 1]^3
+    glm::dmat3 place_from_posed{1};  // (posed point - middle) -> position in the cube, [-1, 1]^3
     glm::dvec3 middle{0};            // posed centre of the cube
     double posed_per_rest = 0;
     double slack = 1;  // upper limit on the error of a position in the cube along each axis

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-constexpr float kNothing = 1e-3f;  // in voxels: smaller shifts are rounding errors, and set to zero
+constexpr float kNothing = 1e-3f;  // in voxels: smaller shifts are rounding errors and are set to zero
 
 }  // namespace
 
@@ -54,8 +54,8 @@ SettledFlesh::Shares SettledFlesh::shares_in(std::int32_t cell, const glm::ivec3
   return shares;
 }
 
-// Returns the cell that contains a voxel. -1: air, or tissue of a brick that moves as one rigid body; sets is_rigid in
-// the latter case.
+// Returns the cell that contains a voxel; -1: the voxel is air, or its brick moves as one rigid body. Only in the
+// second case sets is_rigid.
 std::int32_t SettledFlesh::cell_at(const glm::ivec3& voxel, bool& is_rigid) const {
   if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, tissue_->grid_size())))
     return -1;
@@ -82,8 +82,8 @@ glm::vec3 SettledFlesh::corner_shift(const glm::ivec3& lowest, unsigned around) 
   return count ? mean_shift({cells.data(), static_cast<std::size_t>(count)}, lowest + 1) : glm::vec3(0);
 }
 
-// Returns the mean shift of all `cells` at a voxel corner that they share. Most cells share their nodes there, and so
-// have the same shift.
+// Returns the mean shift of all `cells` at a voxel corner that they share. Most of these cells have the same nodes at
+// the corner, and so the same shift.
 glm::vec3 SettledFlesh::mean_shift(std::span<const std::int32_t> cells, const glm::ivec3& corner) const {
   const Shares first = shares_in(cells[0], corner);
   const auto shift_of = [&](const Shares& shares) {

@@ -13,12 +13,13 @@ namespace limber {
 
 namespace {
 
-constexpr float kSurface = 98 / 255.0f;  // the blurred share of tissue at which the renderer's rays stop
-constexpr int kLayersInside = 6;         // number of half-voxel steps inwards in which visible tissue is searched
+constexpr float kSurface = 98 / 255.0f;  // blurred share of tissue at which the renderer's rays stop
+constexpr int kLayersInside = 6;         // visible tissue is searched up to this many half-voxel steps inwards
 constexpr std::int64_t kGrain = 4096;
-constexpr double kMostCells = 16e6;  // upper limit on the number of the finest cells; each takes 8 bytes for a while
+constexpr double kMostCells = 16e6;  // upper limit on the number of the finest cells; each needs 8 bytes temporarily
 
-// Blurs the cells' shares of tissue as the renderer does. Then adds a constant, so that the surface lies at one half.
+// Blurs the cells' shares of tissue as the renderer does. Then adds a constant, so that the surface is at a share of
+// 0.5.
 //   voxels  number of voxels along an edge of a cell
 void soften(Occupancy& body, float voxels) {
   const glm::ivec3 size = body.grid.size;
@@ -39,7 +40,8 @@ void soften(Occupancy& body, float voxels) {
   for (float& share : body.share) share += (0.5f - kSurface) / voxels;
 }
 
-// Returns the first visible label on the line from slightly outside the surface inwards; `otherwise` if there is none.
+// Returns the first visible label on a line that starts slightly outside the surface and runs inwards; `otherwise`:
+// none was found.
 Label label_inside(const LabelVolume& volume, const LabelSet& shown, const AffineTransform& to_voxel,
                    const glm::dvec3& place, const glm::dvec3& normal, Label otherwise) {
   const glm::dvec3 inward = -(to_voxel.linear * normal),
@@ -56,14 +58,14 @@ SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& ti
                                const LabelSet& labels, std::int64_t vertices) {
   LabelSet shown = labels;
   shown[0] = 0;  // air never counts as visible
-  // The finest cells are single voxels, if there are not too many of them; coarser cells are then made from these.
+  // The finest cells are single voxels unless these are too many. Coarser cells are made from the finest ones.
   const auto finest_of = [](const Grid& grid) { return std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}); };
   const double edge = std::ceil(std::cbrt(double(volume.grid.voxel_count()) / kMostCells));
   Occupancy fine = occupancy_of(volume, shown, edge * finest_of(volume.grid));
   soften(fine, static_cast<float>(std::cbrt(double(volume.grid.voxel_count()) / double(fine.grid.voxel_count()))));
   TriangleMesh mesh = surface_of(fine);
   for (double coarser = 1; std::ssize(mesh.V) > vertices;) {
-    // The number of vertices is about the surface's area in cell faces, so it falls with the square of the cells' edge.
+    // The number of vertices is proportional to the surface's area divided by the area of a cell face.
     coarser = std::max(coarser + 1, std::floor(coarser * std::sqrt(double(std::ssize(mesh.V)) / double(vertices))));
     mesh = surface_of(coarsened(fine, coarser * finest_of(fine.grid)));
   }

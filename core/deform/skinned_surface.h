@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds the surface of the visible part of a body as triangles with bone weights, for outlines of other poses. Surface
-// nets (core/mesh/surface.h) put the surface where the renderer's rays meet the body: the set of visible labels is
-// blurred twice by [1 2 1] / 4 along each axis, and the surface lies where the blurred share of tissue has the value at
-// which the silhouette is as large as the body's. A pose moves the vertices by the blend kernel (skinning.h). The
-// result does not depend on the number of threads.
+// Builds the surface of the visible part of a body as triangles with bone weights. It is used to draw the outlines of
+// other poses. Surface nets (core/mesh/surface.h) put the surface where the renderer's rays meet the body: the share of
+// visible labels is blurred twice by [1 2 1] / 4 along each axis, and the surface is where the blurred share has the
+// value that makes the silhouette as large as the body's. A pose moves the vertices by the blend kernel (skinning.h).
+// The result does not depend on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct SkinnedSurface {
   std::vector<glm::dvec3> V;           // #V positions at rest, world, mm
   std::vector<glm::u32vec3> F;         // #F triangles, counter-clockwise seen from outside
   std::vector<Label> label;            // #V: label of the visible tissue just inside
-  std::vector<std::int64_t> offsets;   // #V + 1: where the influences of each vertex begin
+  std::vector<std::int64_t> offsets;   // #V + 1: index of the first influence of each vertex
   std::vector<BoneWeight> influences;  // bones are indexed as in the weights
 };
 

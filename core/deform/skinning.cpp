@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-// A stretch whose difference from 1 is smaller than this counts as a rounding error of the matrix.
+// A stretch that differs from 1 by less than this counts as a rounding error of the matrix.
 constexpr double kSmallestStretch = 1e-4;
 
 std::array<double, 12> columns(const glm::dmat3& linear, const glm::dvec3& offset) {

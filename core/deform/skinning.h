@@ -8,12 +8,14 @@
 //                     differs from aligning to the first or heaviest bone if rotations are more than 180 degrees
 //                     apart.) [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual
 //                     quaternion blending]
-//    mixed            kQuaternionShare of the way from the linear blend to dual quaternions. Linear blending thins bent
-//                     and twisted joints, dual quaternions make them bulge, and most of both errors cancels. Whole
-//                     bodies that sit or raise their arms keep their volume best (figures in
-//                     assets/docs/guide/blending.md).
-// Dual quaternions contain no scale. A bone that stretches is split into a stretch along its own rest axes, then a
-// rigid motion; the stretches are blended linearly and applied first.
+//    mixed            blends linearly and by dual quaternions, and mixes the results: kQuaternionShare of the second,
+//    the
+//                     rest of the first. Linear blending thins bent and twisted joints, dual quaternions make them
+//                     bulge,
+//                     and most of both errors cancels. Whole bodies that sit or raise their arms keep their volume best
+//                     with it (figures in assets/docs/guide/blending.md).
+// Dual quaternions contain no scale. The motion of a bone that stretches is split into a stretch along its own rest
+// axes and a rigid motion; the stretches are blended linearly and applied first.
 #pragma once
 
 #include <array>
@@ -27,8 +29,7 @@
 
 namespace limber {
 
-// The index of a row of blend_rules() (blend_rule.h). A blend that is used only by way of that table needs no name
-// here.
+// Index of a row of blend_rules() (blend_rule.h). A blend that is only selected through that table needs no name here.
 enum class Blend { Mixed, Linear, DualQuaternion };
 
 constexpr double kQuaternionShare = 0.3;
@@ -53,18 +54,19 @@ struct SkinTransform {
 SkinTransform skin_transform(const RigidTransform& posed_from_rest);
 std::vector<SkinTransform> skin_transforms(const std::vector<RigidTransform>& posed_from_rest);
 
-// Makes a skinning transform from a matrix that may scale and shear. `world_from_bone` is the bone's matrix at rest:
-// the stretch is along its axes, and the bone's own y axis (head to tail) keeps its direction. Both matrices must be
-// affine, and world_from_bone invertible.
+// Makes a skinning transform from a matrix that may scale and shear. Both matrices must be affine, and world_from_bone
+// invertible.
+//   world_from_bone  the bone's matrix at rest. The stretch is along its axes, and the bone's own y axis (head to tail)
+//                    keeps its direction
 SkinTransform skin_transform(const glm::dmat4& posed_from_rest, const glm::dmat4& world_from_bone);
 
-// Returns the blended motion of rigid bones as one transform that `blend` may blend further. Weights must sum to one;
-// no bone may stretch.
+// Returns the blended motion of rigid bones as one transform, which can itself be blended again. Weights must sum to
+// one; no bone may stretch.
 SkinTransform blended_transform(Blend blend, std::span<const SkinTransform> bones,
                                 std::span<const BoneWeight> influences);
 
-// Returns the posed point. Weights need not sum to one (they are divided by their sum). If they sum to zero, the point
-// stays at rest.
+// Returns the posed position of a point. Weights need not sum to one (they are divided by their sum). If they sum to
+// zero, the point stays at rest.
 glm::dvec3 blend_point(Blend blend, std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                        const glm::dvec3& rest_point);
 

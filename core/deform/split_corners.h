@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes the influences of the corners of a brick's voxels near a seam. Voxels around a corner share a vertex only if
 // they are connected there through faces that no seam cuts. Each side of the seam has its own vertex. Voxels that touch
-// only along an edge, as skin does in the crease beside a seam, have separate vertices too. Therefore the influences
-// are computed for each of the eight corners of each voxel.
+// only along an edge, as skin does in the crease beside a seam, have separate vertices too. Therefore each of the eight
+// corners of each voxel has its own influences.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ namespace limber {
 class SplitCorners {
  public:
   // Keeps references to its arguments, which must outlive this object. `tissue` must have seams.
-  //   moves_as  per bone: the first bone with the same motion, which gets the weight instead (BrickMotions)
+  //   moves_as  for each bone, the first bone with the same motion; that bone gets the weight (BrickMotions)
   SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
                std::int64_t brick);
 
-  // Returns the influences of a voxel's corner, ascending by bone: the sum of the influences of the voxels around the
-  // corner, without those that are not connected with the voxel there.
-  //   voxel   position in the brick, 0 .. 7 on each axis; it must be tissue
+  // Returns the influences of a voxel's corner, ascending by bone: the sum of the influences of those voxels around the
+  // corner that are connected with the voxel there.
+  //   voxel   position in the brick, 0 to 7 on each axis; must be tissue
   //   corner  bits 0, 1, 2 are x, y, z
   std::span<const BoneWeight> at(const glm::ivec3& voxel, int corner);
-  // Returns which of the eight voxels around the corner are connected with the voxel there: one bit each, starting with
-  // the lowest voxel.
+  // Returns which of the eight voxels around the corner are connected with the voxel there: one bit for each, starting
+  // with the lowest voxel.
   unsigned joined_voxels(const glm::ivec3& voxel, int corner) const;
 
  private:

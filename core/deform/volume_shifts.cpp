@@ -16,20 +16,20 @@ namespace {
 
 constexpr double kVolume = 100;  // weight of the cells' volumes, relative to the smoothness of the shifts
 constexpr double kReach = 10;    // distance over which a shift fades out, in cell edges
-// Smallest determinant of a cell's deformation gradient at which the solve aims. The largest is 1 / kLeast.
+// The solve aims at determinants of the cells' deformation gradients between kLeast and 1 / kLeast.
 constexpr double kLeast = 0.2;
 constexpr double kBone = 1e4;  // weight that keeps bone in place, relative to the smoothness of the shifts
-// Stretch of a cell beyond which the solve does not pull it, unless blending alone has stretched it further.
+// Upper limit on the stretch of a cell that the solve aims at, unless blending alone has stretched the cell further.
 constexpr double kStretch = 2;
-// Stiffness of the spring that pulls a node out of a bone, and of that out of other flesh, for a node with eight cells
-// full of tissue around it. With less tissue the stiffness falls in proportion. Flesh yields to flesh: as stiff a
-// spring as that of a bone would tear specks out of a limb that is folded onto another.
+// Stiffness of the springs that pull a node out of bone (kPush) and out of other flesh (kPart), for a node with eight
+// full cells of tissue around it; with less tissue the stiffness is proportionally lower. kPart is lower because flesh
+// also gives way: a spring as stiff as kPush would tear small pieces out of a limb that is folded onto another.
 constexpr double kPush = 500, kPart = 40;
-// Furthest shift, in cell edges, to which flesh is drawn out of other flesh. Without a limit, flesh that finds no room
-// grows with each step, and so overlaps ever more.
+// Upper limit, in cell edges, on the shift that pulls flesh out of other flesh. Without a limit, flesh without free
+// space would move further in each step and overlap more and more.
 constexpr double kMostApart = 2;
-constexpr double kMostlySoft = 0.2;  // in cell volumes: a node with less bone around it counts as soft
-constexpr int kLook = 2;             // number of steps from one search for flesh inside flesh to the next
+constexpr double kMostlySoft = 0.2;  // a node with less bone around it than this counts as soft; in cell volumes
+constexpr int kLook = 2;             // number of steps between searches for flesh inside other flesh
 // Number of steps. For a sitting body with voxels of 4 mm, the mean volume error of its cells is 2.6, 0.9 and 0.8 %
 // after 5, 10 and 15 steps.
 constexpr int kSteps = 14;
@@ -61,8 +61,8 @@ std::array<std::array<double, 8>, 8> smoothness(const glm::dvec3& edge) {
   return K;
 }
 
-// Returns the volume of a trilinear cell, from its six faces. Each face counts as the mean of its two splits into
-// triangles.
+// Returns the volume of a trilinear cell, computed from its six faces. For each face, the mean of its two splits into
+// triangles is used.
 double volume_of(const std::array<glm::dvec3, 8>& corner) {
   constexpr int kSides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
   const auto cone = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
@@ -88,7 +88,7 @@ Eigen::Matrix3d squared(const glm::dmat3& F) {
   return C;
 }
 
-// Returns the largest stretch of a deformation gradient, its largest singular value.
+// Returns the largest stretch of a deformation gradient, which is its largest singular value.
 double longest_of(const glm::dmat3& F) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(squared(F), Eigen::EigenvaluesOnly);
@@ -206,8 +206,8 @@ class Minimizer {
     for (int a = 0; a < 8; ++a)
       for (int b = 0; b < 8; ++b) K[a][b] = h2_ * (smooth[a][b] + kVolume * glm::dot(gradients_[a], gradients_[b]));
     const double reach = 1 / (kReach * kReach);
-    // A row of the matrix has up to 27 entries, one per node. It has more if unconnected cells at the same position
-    // share a node.
+    // A row of the matrix has up to 27 entries, one per neighbouring node, or more if unconnected cells at the same
+    // position share a node.
     std::vector<std::vector<std::pair<std::int32_t, float>>> blocks((count_ + kGrain - 1) / kGrain);
     row_.assign(count_ + 1, 0);
     diagonal_.assign(count_, 1);
@@ -249,7 +249,7 @@ class Minimizer {
     return sum;
   }
 
-  // Attaches springs to nodes inside a bone, which pull them to the bone's surface.
+  // Attaches springs to soft nodes inside a bone, which pull the nodes to the bone's surface.
   void leave_bones() {
     if (!bones_) return;
     parallel_for(count_, kGrain, [&](std::int64_t first, std::int64_t last) {
@@ -266,15 +266,16 @@ class Minimizer {
     });
   }
 
-  // Returns the stiffness of the spring on a node, of which `full` is that for full cells. It is in proportion to the
-  // tissue around the node, since a crumb of flesh would otherwise be pulled as strongly as full cells.
+  // Returns the stiffness of the spring on a node. It is proportional to the tissue around the node, since a small
+  // piece of flesh would otherwise be pulled as strongly as full cells.
+  //   full  stiffness if all cells around the node are full of tissue
   float strength(double full, std::int64_t node) const {
     double fill = 0;
     for (auto i = of_node_.begin[node]; i < of_node_.begin[node + 1]; ++i) fill += cells_.fill[of_node_.place[i] >> 3];
     return static_cast<float>(full * std::min(1.0, fill / 8));
   }
 
-  // Attaches springs to nodes inside other flesh, which pull them half of the way out of it.
+  // Attaches springs to nodes inside other flesh, which pull the nodes half of the way out of it.
   void part_flesh() {
     if (!contact_) return;
     if (taken_ % kLook == 0) {
@@ -300,7 +301,7 @@ class Minimizer {
       }
   }
 
-  // Extrapolates the shifts along the last step, to start the next step there (momentum) [Beck & Teboulle 2009, A fast
+  // Extrapolates the shifts along the last step; the next step starts there (momentum) [Beck & Teboulle 2009, A fast
   // iterative shrinkage-thresholding algorithm for linear inverse problems].
   void run_on() {
     ++taken_;
@@ -359,20 +360,20 @@ class Minimizer {
   FleshContact* contact_;
   const CellsOfNode of_node_;
   const std::array<glm::dvec3, 8> gradients_;
-  const double h2_;  // squared edge of a cube with the volume of a cell, mm2
+  const double h2_;  // squared edge length of a cube with a cell's volume, mm2
   const std::int64_t count_;
   int taken_ = 0;
   std::vector<glm::mat3> start_, pull_;                             // one matrix for each cell
   std::vector<glm::vec3> shift_, last_, right_, residual_, image_;  // one vector for each node
-  // Search direction of each node. It has four floats, which load faster, since this array is read most often.
+  // Search direction of each node. It is padded to four floats, which load faster, since this array is read most often.
   std::vector<FourFloats> direction_;
   std::vector<std::int64_t> row_;
   std::vector<std::int32_t> column_;
   std::vector<float> entry_, diagonal_;
-  std::vector<float> push_;  // stiffness of the spring that pulls each node out of bone or flesh, 0: no spring
+  std::vector<float> push_;  // stiffness of the spring that pulls each node out of bone or flesh; 0: no spring
   std::vector<std::uint8_t> is_inside_;  // 1 for each node inside other flesh
-  std::vector<glm::vec3> apart_;         // shift that moves each node inside other flesh half of the way out
-  std::vector<glm::vec3> outward_;       // shift to which the spring on each node pulls it
+  std::vector<glm::vec3> apart_;         // shift that moves each node inside other flesh half of the way out, mm
+  std::vector<glm::vec3> outward_;       // shift towards which the spring on each node pulls it, mm
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the shifts of nodes that restore the volume of flesh cells. The shifts minimise the sum that settled_flesh.h
-// describes.
+// Computes the shifts of nodes that restore the volume of flesh cells. The shifts minimise the sum in settled_flesh.h.
 #pragma once
 
 #include <vector>
@@ -20,17 +19,17 @@ struct VolumeShifts {
 
 // Computes the shifts of all nodes.
 //   bones    bones that flesh must not enter; nullptr: none
-//   contact  contact of flesh with flesh; nullptr: none
+//   contact  finds flesh inside other flesh; nullptr: not searched
 VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress);
 
-// Returns a matrix near F with the determinant `volume`, found by steps along the gradient of the determinant. F may be
-// inverted; `volume` must be positive.
+// Returns a matrix near F that has the determinant `volume`, found by steps along the gradient of the determinant. F
+// may be inverted; `volume` must be positive.
 glm::dmat3 with_volume(const glm::dmat3& F, double volume);
 
-// Returns F with its largest stretch (its largest singular value) limited to 2, or to that of `blended` if this is
-// larger, so that flesh regains its volume without being pulled out. The other two stretches change together so that
-// the determinant becomes `volume`, as far as the limit lets them. A matrix within the limit is returned as it is.
-//   blended  the gradient that blending alone gives
+// Returns F with its largest stretch (largest singular value) limited to 2, or to that of `blended` if this is larger.
+// The other two stretches change together so that the determinant becomes `volume`, as far as the limit allows. So
+// flesh regains its volume without excessive stretch. A matrix within the limit is returned unchanged.
+//   blended  the deformation gradient that blending alone gives
 glm::dmat3 with_stretch(const glm::dmat3& F, double volume, const glm::dmat3& blended);
 
 }  // namespace limber
