@@ -33,9 +33,9 @@ int preview_step(const TissueVoxels& tissue);
 
 struct CellPart {
   std::int32_t cell;  // index into PreviewLattice::cells
-  // true: tissue that follows one bone; false: tissue on one side of a gap
+  // True: tissue that follows one bone; false: tissue on one side of a gap.
   bool is_stiff;
-  // one bit for each of the 4^3 subcells, x fastest: 1 if the part poses it
+  // One bit for each of the 4^3 subcells, x fastest: 1 if the part poses it.
   std::uint64_t places;
   std::array<std::vector<BoneWeight>, 8> influences;  // weights of each corner: sum 1, ascending by bone
   // Distance of each of the 4^3 subcells from the tissue of other sides, in units of 1 / kStepApart cell edge.

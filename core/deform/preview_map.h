@@ -125,7 +125,7 @@ class LivePreview {
   // A map, and the rows of nodes that must be recomputed before it matches the current pose.
   struct Made {
     std::shared_ptr<PreviewMap> map;
-    // for each node, bits of the axes along which the next node is on another sheet
+    // For each node, bits of the axes along which the next node is on another sheet.
     std::vector<std::uint8_t> jumps;
     std::vector<std::array<int, 2>> stale;  // begin and end of the stale nodes in each row (y, then z)
   };
@@ -169,7 +169,7 @@ class LivePreview {
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   MeshPose mesh_;
-  // points that may move with mesh_: all vertices, then eight corners of each part
+  // Points that may move with mesh_: all vertices, then eight corners of each part.
   std::optional<CarriedPoints> carried_;
   std::vector<FixedPoint> posed_;      // posed position of each vertex, by PreviewLattice::place(vertex)
   std::vector<SkinTransform> motion_;  // blended motions at corners of cells that can bend

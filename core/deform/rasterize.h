@@ -195,7 +195,7 @@ class PosedCell {
     box_ = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
 
-  const VoxelRange& box() const { return box_; }  // voxels with centres in its bounding box
+  const VoxelRange& box() const { return box_; }  // voxels with centres in the cube's bounding box
 
   // Calls claim(CellClaim) for every voxel of `clip` whose centre lies in the cube.
   template <class Claim>

@@ -27,7 +27,7 @@ SplitCorners::SplitCorners(const TissueVoxels& tissue, const SkinWeights& weight
 
 unsigned SplitCorners::joined_voxels(const glm::ivec3& voxel, int corner) const {
   const glm::ivec3 lowest = voxel - 1 + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-  // bit of the voxel itself among the eight voxels around the corner
+  // Bit of the voxel itself among the eight voxels around the corner
   unsigned joined = 1u << (~corner & 7), open = joined;
   while (open) {
     const int from = std::countr_zero(open);

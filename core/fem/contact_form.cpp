@@ -11,30 +11,31 @@
 namespace limber {
 
 namespace {
-// Upper limit on a pair's thickness h (below which the pair is pushed apart), as a share of the pair's distance at
-// rest.
+// Upper limit on a pair's thickness h (the distance below which its two parts are pushed apart), as a share of their
+// distance at rest.
 constexpr double kOfRest = 0.5;
-// Distance at the current positions, in thicknesses h, below which a pair is put into the matrix's sparsity pattern.
-// It is above 1, so that pairs are in the pattern a little before they touch.
+// Pairs whose distance is below this many thicknesses h are put into the matrix's sparsity pattern. The number is above
+// 1, so that pairs are in the pattern before they touch.
 constexpr double kSoon = 1.6;
-// Distance, as a share of the thickness h, below which a pair must be in the matrix's sparsity pattern. If it is not,
+// A pair whose distance is below this share of the thickness h must be in the matrix's sparsity pattern. If it is not,
 // the pattern is analysed again.
 constexpr double kPressed = 0.6;
-// A step must keep at least half of a pair's distance, but need not keep more than half of this distance, which is a
-// share of the largest thickness H. At this distance the barrier is still almost zero.
+// A step must keep at least half of a pair's distance. For pairs further apart than kNear times the largest thickness
+// H, half of kNear * H is enough, since the barrier is almost zero there.
 constexpr double kNear = 0.5;
-// Upper limit on the change of a node's motion for which the pairs found earlier stay valid, as a share of the largest
-// thickness H. If a node's motion changes more, the pairs near it are searched again.
+// If a node's motion differs from the searched motion by less than this share of the largest thickness H, the pairs
+// found earlier stay valid. If it differs by more, the pairs near the node are searched again.
 constexpr double kAbout = 0.2;
 // Two edges count as parallel if their squared cross product is below this share of the product of their squared
 // lengths at rest.
 constexpr double kParallel = 1e-3;
-// Lower limit of the fade factor of an edge of the skin and one of an object. An object's place is prescribed, so it
-// would bring such edges as near as it comes, until no step is possible.
+// Lower limit on the factor by which the energy of parallel edges fades out, for an edge of the skin and one of an
+// object. An object's position is prescribed, so without a force between the edges it would come so close that no step
+// is possible.
 constexpr double kLeastFade = 0.1;
 constexpr std::int64_t kGrain = 2048;
 
-// The barrier b(d / h), and its first and second derivative by the distance d.
+// The barrier b(d / h) and its first and second derivatives by the distance d.
 struct Barrier {
   double value, slope, curvature;
 };
@@ -127,7 +128,7 @@ void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions&
   NodePositions end = x + limit * step;
   const bool ends_there = end.rows() == watched_to_.rows() && end == watched_to_;
   if (ends_there && (limit == 0 || (limit == watched_limit_ && x == watched_from_))) return;
-  watched_to_.resize(0, 3);  // stays empty if the search below throws
+  watched_to_.resize(0, 3);  // stays empty if the search below throws, so that the next call searches again
   extend_broad_phase(x, end);
 
   // Drops pairs of earlier searches whose two parts stay apart during the new motion. There are such pairs when the new
@@ -155,9 +156,9 @@ void ContactForm::build_broad_phase(const NodePositions& x, const NodePositions&
   watched_limit_ = limit;
 }
 
-// A new motion often differs from the searched motion (known_from_ -> known_to_) at few nodes only, or starts on it and
-// moves few nodes far. So the searched motion is cut to its section nearest to the new motion, and pairs are searched
-// again only around nodes that move differently from that section.
+// A new motion often differs from the searched motion (known_from_ -> known_to_) at few nodes only, or covers only a
+// part of it. So the searched motion is cut to its section nearest to the new motion, and pairs are searched again only
+// around nodes that move differently from that section.
 void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositions& to) {
   const double about = kAbout * settings_.thickness_mm;
   const auto is_away = [&](const NodePositions& a, const NodePositions& b) -> Eigen::Array<bool, Eigen::Dynamic, 1> {
@@ -196,7 +197,7 @@ void ContactForm::extend_broad_phase(const NodePositions& from, const NodePositi
     });
   }
   NodePositions steps = known_to_ - known_from_, begins;
-  begins.swap(known_from_);  // empty during the search: if it throws, the next call searches again
+  begins.swap(known_from_);  // empty during the search, so that the next call searches again if this one throws
   for (const ContactPair& pair :
        surface_.near(begins, steps, 1, {settings_.thickness_mm, kOfRest, 2 * about}, {changed.begin(), changed.end()}))
     known_.push_back({pair, thickness(pair), {}});
@@ -279,8 +280,9 @@ void ContactForm::add_gradient(NodePositions& gradient) const {
           (touch.slope * touch.way.col(a) + touch.faded * touch.fading.col(a)).transpose();
 }
 
-// Adds only the term of the Hessian that has the barrier's second derivative by a pair's distance. The other terms are
-// left out, because those from the turning of the shortest line between the pair's two parts would be negative.
+// Adds only the term of the Hessian that contains the second derivative of the barrier by a pair's distance. The other
+// terms come from the rotation of the shortest line between the pair's two parts; they are left out because they would
+// make the Hessian indefinite.
 void ContactForm::add_curvature(std::span<double> values) const {
   for (const Touch& touch : touching_)
     for (int a = 0, k = 0; a < 4; ++a)

@@ -14,7 +14,7 @@ namespace limber {
 namespace {
 
 constexpr int kBin = 8;           // edge of a search bin, mm
-constexpr double kFacing = -0.3;  // upper limit on the cosine of the angle between two normals that face each other
+constexpr double kFacing = -0.3;  // two normals face each other if the cosine of their angle is below this
 
 glm::dvec3 at(const Eigen::MatrixX3d& V, int i) { return {V(i, 0), V(i, 1), V(i, 2)}; }
 

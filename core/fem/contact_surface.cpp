@@ -13,9 +13,10 @@ namespace limber {
 
 namespace {
 constexpr int kLeaf = 4;       // largest number of faces in a leaf of the tree
-constexpr double kKept = 0.5;  // least share of a pair's distance that must be left after a step
-constexpr double kSafe = 0.5;  // length of one advance along a step, as a share of the longest one that is safe
-// Upper limit on the advances along one step. Two parts that graze each other would need many tiny advances.
+constexpr double kKept = 0.5;  // smallest share of a pair's distance that must be left after a step
+constexpr double kSafe = 0.5;  // length of one advance along a step, as a share of the longest safe one
+// Upper limit on the advances along one step. Two parts that slide past each other closely would need many tiny
+// advances.
 constexpr int kAdvances = 400;
 
 std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }
@@ -84,7 +85,7 @@ double distance(ContactPair::Kind kind, const Corners& p) {
 }
 
 // Subtracts the mean motion of the pair's four nodes from `step`, since a common motion does not change the pair's
-// distance. Returns an upper bound on how far the remaining step can move the pair's two parts towards each other.
+// distance. Returns an upper limit on how far the remaining step can move the pair's two parts towards each other.
 double relative_motion(ContactPair::Kind kind, Corners& step) {
   const Eigen::Vector3d mean = 0.25 * (step[0] + step[1] + step[2] + step[3]);
   double length[4];
@@ -93,10 +94,10 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
   return std::max(length[0], length[1]) + std::max(length[2], length[3]);
 }
 
-// Bounding boxes are stored in single precision, and one SIMD instruction compares four numbers. Comparisons allow for
-// the rounding.
+// Bounding boxes are stored in single precision, so that one SIMD instruction compares four numbers. All comparisons
+// include a tolerance for rounding.
 using Lanes = Eigen::Array4f;             // x, y, z and 0
-constexpr double kRounding = 4 * 1.2e-7;  // upper bound of the rounding error, as a share of the largest coordinate
+constexpr double kRounding = 4 * 1.2e-7;  // upper limit on the rounding error, as a share of the largest coordinate
 
 // The bounds of a set of moving points: of their positions (low, high) and of their steps (slowest, fastest), per axis.
 struct Moving {
@@ -113,7 +114,7 @@ Moving around(Moving a, const Moving& b) {
   return a;
 }
 
-// Returns true if two moving boxes stay more than `reach` apart, along the same axis, during their whole motion.
+// Returns true if, along one fixed axis, two moving boxes stay more than `reach` apart during their whole motion.
 [[gnu::always_inline]] inline bool apart(const Moving& a, const Moving& b, float reach) {
   const Lanes before = a.low - b.high + (a.slowest - b.fastest).min(0.0f);
   const Lanes behind = b.low - a.high + (b.slowest - a.fastest).min(0.0f);
@@ -133,9 +134,10 @@ NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x) {
 }
 
 namespace {
-// A pair's corners move along p + a s. Returns the largest a, up to `limit`, until which the pair's distance stays at
-// least `kept`. The distance at a = 0 is `now`; a whole step (a = 1) moves the pair's two parts towards each other by
-// at most `motion`.
+// Returns the largest a, up to `limit`, up to which the distance of a pair stays at least `kept` while its corners move
+// along p + a s.
+//   now     the distance at a = 0
+//   motion  upper limit on how far a whole step (a = 1) moves the pair's two parts towards each other
 double largest_advance(ContactPair::Kind kind, Corners p, const Corners& s, double now, double motion, double kept,
                        double limit) {
   double length = 0;
@@ -161,9 +163,9 @@ Approach approach(const ContactPair& pair, const NodePositions& x, const NodePos
 }
 
 namespace {
-// Returns true if the pair may come nearer than `kept` while its corners move along p + a s, from a = `from` to `to`.
-// The distances at both ends are given, and a whole step (a = 1) changes the distance by at most `motion`. If these
-// bounds do not decide, the range of a is halved. A range too short to halve counts as coming nearer.
+// Returns true if the pair's distance may become less than `kept` while its corners move along p + a s, from a = `from`
+// to `to`. Uses the distances at both ends and the upper limit `motion` on the distance's change in a whole step (a =
+// 1). If these do not decide, halves the range of a. A range too short to be halved gives true.
 bool comes_nearer(ContactPair::Kind kind, const Corners& p, const Corners& s, double motion, double kept, double from,
                   double apart_from, double to, double apart_to) {
   constexpr double kShortest = 1.0 / 512;

@@ -3,10 +3,11 @@
 // move before two triangles touch. All lengths are in mm.
 //
 // Two triangles first touch where a corner of one meets the inside of the other, or where two edges meet. So the search
-// is for such pairs, in a tree of boxes [Gottschalk, Lin & Manocha, OBBTree, SIGGRAPH 1996, with boxes along the axes]
-// that stores both positions and steps: faces that move together stay apart and are left out early, however far they
-// move. Additive continuous collision detection then finds how far a pair may move, by advances that cannot pass a
-// contact [Li, Kaufman & Jiang, Codimensional Incremental Potential Contact, SIGGRAPH 2021].
+// is for pairs of a point and a triangle and for pairs of edges, in a tree of axis-aligned boxes [Gottschalk, Lin &
+// Manocha, OBBTree, SIGGRAPH 1996]. The tree stores the bounds of both positions and steps, so that faces that move
+// together are excluded early, however far they move. Additive continuous collision detection then finds how far a pair
+// may move, by advances that cannot pass a contact [Li, Kaufman & Jiang, Codimensional Incremental Potential Contact,
+// SIGGRAPH 2021].
 #pragma once
 
 #include <array>
@@ -36,8 +37,8 @@ struct NearestPoints {
 };
 NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x);
 
-// The distance of a pair's two parts at x (`apart`), and an upper bound on how far a whole step can move the parts
-// towards each other (`motion`), in mm.
+// The distance `apart` of a pair's two parts at x, and an upper limit `motion` on how far a whole step can move the
+// parts towards each other; mm.
 struct Approach {
   double apart, motion;
 };
@@ -45,13 +46,13 @@ Approach approach(const ContactPair& pair, const NodePositions& x, const NodePos
 double motion(const ContactPair& pair, const NodePositions& step);
 
 // Returns the largest share of `step`, up to `limit`, after which at least half of the pair's distance is left (half of
-// `near` if the pair is further apart than `near`). The result may be a little too small. If it is `limit`, only a
-// quarter of the distance is sure to be left. Half is kept, not a tenth: otherwise folds would close faster than the
-// barrier could push them open, and no room would be left for Newton's method.
+// `near` if the pair is further apart than `near`). The result may be slightly too small. If the result is `limit`,
+// only a quarter of the distance is guaranteed. A smaller kept share, such as a tenth, would let folds close faster
+// than the barrier can open them, and Newton's method would soon have no possible step.
 double largest_step(const ContactPair& pair, const Approach& approach, const NodePositions& x,
                     const NodePositions& step, double limit, double near = INFINITY);
-// Returns true if the whole step would bring the pair nearer than largest_step() allows, or so near to that limit that
-// the test cannot exclude it.
+// Returns true if the whole step would bring the pair nearer than largest_step() allows, or if the test cannot exclude
+// this.
 bool is_too_far(const ContactPair& pair, const Approach& approach, const NodePositions& x, const NodePositions& step,
                 double near);
 

@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 
 constexpr int kCell = 4;  // edge of a cell (cube of voxels that deform or move rigidly together), voxels
-// A voxel counts as moving rigidly if the bones that share one motion have at least this share of its weight.
+// A voxel counts as moving rigidly if bones with one common motion have at least this share of its weight.
 constexpr double kWhole = 0.98;
 constexpr double kLongestWay = 1000;  // largest distance at which an object must be clear of the body, mm
 
@@ -35,8 +35,8 @@ std::vector<int> first_alike_on_path(const BonePath& path, const std::vector<dou
   return first;
 }
 
-// The motion that most of a voxel's weight follows (the index of the first bone that moves so), and the share of the
-// weight that follows it, [0, 1].
+// The motion that has the largest share of a voxel's weight (as the index of the first bone with this motion), and that
+// share, [0, 1].
 struct Main {
   int motion;
   double share;
@@ -92,8 +92,8 @@ class Cells {
     return squared_distance(box_, seeds, spacing(), progress);
   }
 
-  // Finds the cells that the pose brings near to cells which move with another bone and were far away at rest. Tests
-  // the path positions `places` in order. At each position places[k] that brings further cells near, calls
+  // Finds the cells that the pose brings near to other cells that were far away at rest and move with another bone.
+  // Tests the path positions `places` in order. At each position places[k] that brings further cells near, calls
   // visit(k, cells), where `cells` marks these cells.
   template <class Visit>
   void brought_near(const BonePath& path, const std::vector<double>& places, double near_mm, const Visit& visit) const {
@@ -112,7 +112,7 @@ class Cells {
         if (bin.motion != motion_[at]) bin.motion = kSeveral;
         bin.cells.push_back({at, rest, posed});
       });
-      // Two cells that are closer than this at rest (mm) do not count as brought near: they belong to one limb.
+      // Two cells that are closer at rest than this (mm) belong to one limb, so they never count as brought near.
       const double far = 3 * std::max({near_mm, spacing().x, spacing().y, spacing().z});
       for (const auto& [own_key, bin] : bins)
         for (int i = 0; i < 27; ++i) {
@@ -133,13 +133,13 @@ class Cells {
     }
   }
 
-  // Finds the cells in the way of an object, with the body posed by `motions`: those within near_mm of the object's
-  // surface anywhere on the way on which it leaves the body soonest. Marks them in `pressed`.
+  // Finds the direction in which an object leaves the body, posed by `motions`, after the shortest distance. Marks the
+  // cells within near_mm of the object's surface along this way in `pressed`.
   ObjectClearance in_way(const std::vector<RigidTransform>& motions, const ObjectSweep& sweep, double near_mm,
                          std::vector<std::uint8_t>& pressed) const {
     const AffineTransform world = world_from_voxel(grid_);
     std::unordered_map<std::uint64_t, Bin> bins;
-    glm::dvec3 low(INFINITY), high(-INFINITY);  // of the posed cells
+    glm::dvec3 low(INFINITY), high(-INFINITY);  // bounding box of the posed cells' centres, mm
     for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
       if (motion_[at] == kAir) return;
       const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5),
@@ -149,7 +149,8 @@ class Cells {
       const glm::ivec3 place(glm::floor(posed / near_mm));
       bins.try_emplace(key(place), Bin{place, motion_[at], {}}).first->second.cells.push_back({at, rest, posed});
     });
-    // Calls visit(cell) for the cells near the object at a distance from its place. Returns false if there are none.
+    // Calls visit(cell) for the cells near the object when it is `away` mm from its target position. Returns false if
+    // there are none.
     const auto visit_near = [&](const std::vector<glm::dvec3>& way, double away, const auto& visit) {
       bool any = false;
       for (std::size_t p = 0; p < sweep.point.size(); ++p) {
@@ -217,7 +218,7 @@ class Cells {
   };
   struct Bin {
     glm::ivec3 place;
-    int motion;  // index of the motion that all cells in the bin follow; kSeveral: they differ
+    int motion;  // index of the motion that all cells in the bin follow; kSeveral: different motions
     std::vector<Placed> cells;
   };
 
@@ -236,7 +237,7 @@ class Cells {
         }
   }
 
-  // Marks neighbouring cells that follow different motions as bending, also if every voxel in them follows one motion
+  // Marks neighbouring cells that follow different motions as bending, even if every voxel in them follows one motion
   // with full weight.
   void mark_borders() {
     for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
@@ -276,8 +277,8 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
   const Cells cells(volume, tissue, weights, result.moves_as);
   const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
   const auto squared = [](double mm) { return float(mm * mm); };
-  // Two cells that are near each other at a tested position of the path may have touched since the position tested
-  // before. So they become free at that earlier position.
+  // Two cells that are near each other at a tested path position may have touched since the previous tested position.
+  // So they become free at the previous position.
   std::vector<float> to_near(to_bending.size(), INFINITY), free_from(to_bending.size(), INFINITY);
   for (std::size_t at = 0; at < free_from.size(); ++at)
     if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;

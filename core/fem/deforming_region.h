@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the part of a body that a pose deforms. Tissue whose bones all move alike moves with them as a rigid body and
-// needs no elements, so the cost of a pose depends on what moves, not on the size of the body.
+// Finds the part of a body that a pose deforms. Tissue whose bones all have the same motion moves with them as a rigid
+// body and needs no elements, so the cost of a pose depends on the amount of tissue that deforms, not on the size of
+// the body.
 //
-// Tissue bends where its weights, or those of its neighbours, are on bones that move differently. Bending tissue also
+// Tissue bends where its weights, or those of its neighbours, are on bones with different motions. Bending tissue also
 // pulls on the tissue around it, so tissue within a margin around it may deform too. Contact can also press tissue in:
 // tissue that the pose brings near another part of the body may deform, and so may the tissue close around it. This
-// tissue becomes free at the position on the path where contact can first happen; before, it moves with its bone.
-// Around all tissue that may deform lies a rim, which is meshed but moves rigidly; there the mesh joins tissue that is
+// tissue becomes free at the path position where contact can first happen; before, it moves with its bone. All tissue
+// that may deform is surrounded by a rim that is meshed but moves rigidly; there the mesh connects to tissue that is
 // not meshed. All decisions are made for cells of 4^3 voxels.
 #pragma once
 
@@ -20,29 +21,30 @@
 
 namespace limber {
 
-// An object that comes to the body: points of its surface in its place, mm, and the ways that it may come. A way is the
-// motion of each point per mm that the object moves away.
+// An object that moves to the body: points of its surface at its target position, mm, and the possible ways to this
+// position. A way gives the motion of each point per mm that the object is away from the target position.
 struct ObjectSweep {
   std::vector<glm::dvec3> point;
   std::vector<std::vector<glm::dvec3>> ways;
-  double deepest_mm = 0;  // distance by which the object may go beyond its place
+  double deepest_mm = 0;  // distance by which the object may move beyond its target position
 };
-// The way on which an object leaves the body soonest, and the distance after which it is clear of it, mm; infinite: the
-// body is in its way on every one.
+// The index of the way on which an object leaves the body after the shortest distance, and this distance, mm. Infinite:
+// the body blocks all ways.
 struct ObjectClearance {
   std::size_t way = 0;
   double mm = 0;
-  bool presses = false;  // whether the object comes near any tissue, at any of the positions
+  bool presses = false;  // true: the object comes near tissue at one or more of the tested positions
 };
 
 struct MovingSettings {
   double margin_mm = 30;  // largest distance from bending tissue at which tissue may deform
   double rim_mm = 20;     // width of the rigid rim around the tissue that may deform
-  bool contact = false;   // true if contact between parts of the body may deform them
+  bool contact = false;   // true: contact between parts of the body may deform them
   double near_mm = 16;    // parts of the body that the pose brings closer than this may touch
   double give_mm = 24;    // largest distance from parts that may touch at which tissue may deform
   std::vector<double> places{0.25, 0.5, 0.75, 1};  // positions on the path at which contact is tested, [0, 1]
-  // Objects that come to the body, and the positions on the path from which they press. Tissue in their way may deform.
+  // Objects that move to the body, and the path positions at which they may press on it. Tissue that they meet may
+  // deform.
   std::vector<ObjectSweep> sweeps;
   std::vector<double> pressed_at;
 };
@@ -57,7 +59,7 @@ struct DeformingRegion {
   std::vector<ObjectClearance> clearances;  // one for each sweep, at the first position of `pressed_at`
 
   bool empty() const;  // true if no tissue may deform
-  // Returns the value of free_from for the cell that contains the tissue voxel.
+  // Returns the path position, [0, 1], up to which the cell of a tissue voxel moves rigidly (free_from).
   float free_from_at(const TissueVoxels& tissue, const glm::ivec3& voxel) const;
 };
 

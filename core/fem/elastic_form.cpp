@@ -19,8 +19,8 @@
 namespace limber {
 
 namespace {
-// Least number of tets in a chunk (a run of neighbouring patches that one thread adds up). With larger chunks fewer
-// nodes are shared between chunks. With smaller ones more chunks have the same colour and run in parallel.
+// Smallest number of tets in a chunk (a run of neighbouring patches that one thread adds up). Larger chunks share fewer
+// nodes with each other; smaller chunks allow more chunks per colour to run in parallel.
 constexpr std::int64_t kChunk = 48;
 constexpr std::int64_t kPatches = 256;  // patches per task, in loops that do not write to nodes
 constexpr std::int64_t kGrain = 2048;   // tets per task, in loops that do not write to nodes
@@ -96,7 +96,7 @@ ElasticForm::ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, c
     for (int a = 0; a < 4; ++a) tet.node[a] = T(t, a);
     for (int a = 0; a < 3; ++a) D.col(a) = (rest.row(T(t, a + 1)) - rest.row(T(t, 0))).transpose();
     const double determinant = D.determinant();
-    // The matrix D^-T: column a is the gradient of the hat function of node a + 1.
+    // The matrix D^-T: column a is the gradient of the shape function of node a + 1.
     const Eigen::Matrix3d slopes = cofactor(D) / determinant;
     for (int a = 0; a < 3; ++a) tet.slope[a + 1] = slopes.col(a);
     tet.slope[0] = -slopes.rowwise().sum();
@@ -199,7 +199,7 @@ void ElasticForm::add_gradient(const NodePositions& x, std::span<const double> p
   });
 }
 
-// Sums the Hessian's blocks of one patch at a time: first the blocks of its tets, then its own term of rank one
+// Sums the Hessian's blocks of one patch at a time: first the blocks of its tets, then its own rank-one term
 // (PatchStiffness). Adds the sums to the matrix.
 class ElasticForm::PatchSum {
  public:

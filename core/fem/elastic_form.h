@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The elastic energy of a list of tets, with its gradient and Hessian. Tets are grouped in patches (patch_form.h). The
-// blocks of a patch's tets are summed first and then added to the matrix once; otherwise reading and writing the matrix
-// would take most of the time. Threads add to the gradient and the matrix without a lock: neighbouring patches form
-// chunks, and chunks get colours so that chunks of one colour share no node. Chunks of one colour run in parallel, one
-// colour after the other. So numbers are always added in the same order, and results do not depend on the threads.
+// blocks of a patch's tets are summed first and then added to the matrix once, since adding each tet's blocks to the
+// matrix would take most of the time. Threads add to the gradient and the matrix without locks: neighbouring patches
+// form chunks, chunks of one colour share no node and run in parallel, and the colours follow one after the other. So
+// numbers are always added in the same order, and results do not depend on the number of threads.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@
 
 namespace limber {
 
-// The Hessian to compute. Solves use Projected, which leaves out each tet's negative eigenvalues and the term that a
-// patch's pressure adds. (Inside an evenly pressed body the tets' pressure terms cancel. Projected tet by tet, they
-// would not.) Exact leaves out nothing; tests compare with it.
+// The Hessian to compute. Projected, used by solves, leaves out each tet's negative eigenvalues and the term of a
+// patch's pressure. (Inside an evenly pressed body the tets' pressure terms cancel, but not after projecting each tet
+// separately.) Exact leaves out nothing; tests compare with it.
 enum class HessianKind { Projected, Exact };
 
 // Ranges of elements (chunks), sorted by colour. Chunks of one colour share no node.
@@ -35,10 +35,10 @@ struct ColouredChunks {
   void for_each(const std::function<void(const Chunk&)>& body) const;
 };
 
-// The stiffness of patches against changes of their volumes. A patch adds the term of_patch G G^T to the Hessian. The
-// vector G is the sum, over the patch's tets, of of_tet times the derivative of det F by the nodes' positions.
+// The stiffness of patches against changes of their volumes. A patch adds the term of_patch G G^T to the Hessian, where
+// G is the sum over the patch's tets of of_tet times the derivative of det F by the nodes' positions.
 struct PatchStiffness {
-  std::span<const double> of_patch, of_tet;  // in kPa/mm3, in mm3; both empty: no such term
+  std::span<const double> of_patch, of_tet;  // kPa/mm3 by patch, mm3 by tet; both empty: no such term
 };
 
 // Colours chunks of elements so that chunks of one colour share no node.
@@ -51,15 +51,17 @@ class ElasticForm {
  public:
   struct Tet {
     std::array<int, 4> node;
-    std::array<Eigen::Vector3d, 4> slope;  // gradients at rest of the nodes' hat functions, 1/mm: F = sum x_a slope_a^T
-    double volume;                         // volume at rest, mm3
+    // Gradients at rest of the nodes' shape functions, 1/mm: F = sum x_a slope_a^T.
+    std::array<Eigen::Vector3d, 4> slope;
+    double volume;  // volume at rest, mm3
     TetEnergy energy;
   };
 
   ElasticForm() = default;
   //   T      #T tets with positive volume at `rest`, in an order that keeps neighbours close
-  //   first  #patches + 1: the first tet of each patch, as in PatchOrder. A patch has at least one tet and less than
-  //          256 nodes. Empty: every tet is a patch
+  //   first  #patches + 1: index of the first tet of each patch (PatchOrder). A patch has at least one tet and fewer
+  //   than 256
+  //          nodes. Empty: every tet is a patch
   ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
               std::vector<std::int64_t> first = {});
 
@@ -68,7 +70,7 @@ class ElasticForm {
 
   void add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown) const;
   // Finds the positions of every patch's blocks in a matrix over unknown[node] (-1: the node is not an unknown).
-  // Changes the order of the tets' nodes.
+  // Changes the order of the nodes within the tets.
   void assign_nodes(const Cholesky& matrix, std::span<const int> unknown);
 
   // Computes det F of every tet.
@@ -76,7 +78,7 @@ class ElasticForm {
   // Returns the elastic energy; infinite if a tet is inverted.
   //   J  det F of every tet
   double value(const NodePositions& x, const std::vector<double>& J) const;
-  // Adds the gradient and the Hessian. Call assign_nodes() first.
+  // Adds the gradient and the Hessian. assign_nodes() must have been called before.
   //   pressure  the pressure on every tet, kPa; empty: none
   void add_derivatives(const NodePositions& x, std::span<const double> pressure, const PatchStiffness& stiffness,
                        HessianKind curvature, NodePositions& gradient, std::span<double> matrix) const;
@@ -92,11 +94,11 @@ class ElasticForm {
 
   std::vector<Tet> tets_;
   std::vector<Patch> patches_;
-  // The nodes of each patch. assign_nodes() sorts them in the order of the matrix; nodes that are not unknowns come
-  // first.
+  // The nodes of each patch. assign_nodes() sorts them: first the nodes that are not unknowns, then the others in the
+  // order of the matrix.
   std::vector<int> node_;
-  std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: indices of a tet's nodes among those of its patch, ascending
-  std::vector<Cholesky::Place> place_;  // position in the matrix of each node pair's block; at == -1: not in the matrix
+  std::vector<std::array<std::uint8_t, 4>> corner_;  // #T: index of each corner among the patch's nodes, ascending
+  std::vector<Cholesky::Place> place_;  // position of each node pair's block in the matrix; at == -1: not in the matrix
   ColouredChunks chunks_;               // chunks of neighbouring patches; the elements are patches
 };
 

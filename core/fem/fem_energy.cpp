@@ -12,12 +12,12 @@ namespace limber {
 
 namespace {
 constexpr double kWeakBelow = 0.4;  // det F of flesh below which the weak barrier acts
-// Addition to the diagonal entries of a node in the Hessian, as a share of the smallest of the three. Without it the
-// matrix is singular where flesh hangs by an edge, since such flesh can turn without force. Rounding may then make the
-// matrix look indefinite.
+// Addition to the diagonal entries of a node in the Hessian, as a share of the smallest of the three. Flesh that hangs
+// by an edge can turn without force, so without the addition the matrix would be singular there, and rounding could
+// make it look indefinite.
 constexpr double kSteady = 1e-9;
-// Lower bound of det F after a step. For a tet whose det F is already below twice this bound, the bound is half its
-// current det F.
+// Lower limit on det F after a step. For a tet whose det F is already below twice this limit, half of its current det F
+// is the limit.
 constexpr double kKeep = 0.05;
 
 // Returns the CPU time in seconds of this process and of its children that have ended.
@@ -43,8 +43,8 @@ FemEnergy::FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const
     flesh_tets_.row(k) = T.row(t);
     ordered_bulk[k] = bulk[t];
     filled[k] = material[t].filled;
-    // The barrier's energy is c h b(J / h) with h = kWeakBelow. With c = weak_barrier_kpa / h it is
-    // weak_barrier_kpa b(J / h).
+    // The barrier's energy is c h b(J / h) with h = kWeakBelow and c = weak_barrier_kpa / h, so it is weak_barrier_kpa
+    // b(J / h).
     energy[k] = {shear[t], tet_bulk(material[t]), weak_barrier_kpa / kWeakBelow, kWeakBelow};
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, order.first);
@@ -97,7 +97,7 @@ void FemEnergy::prepare(const NodePositions& x) {
 }
 
 void FemEnergy::number() {
-  // The matrix has rows only for nodes that have springs or flesh and are not carried by a bone.
+  // The matrix has rows only for nodes that have springs or flesh and that do not move rigidly with a bone.
   std::vector<char> used(node_count_, 0);
   for (const int node : pins_.node) used[node] = 1;
   for (const int node : flesh_tets_.reshaped()) used[node] = 1;
@@ -220,7 +220,8 @@ FemEnergy::Bound FemEnergy::largest_step(const NodePositions& x, const NodePosit
   }
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
-  // Searches skin pairs along the whole step, also where tets bound it to less, since limit_step() needs all of them.
+  // Searches skin pairs along the whole step even if tets limit it to a shorter one, since limit_step() needs all
+  // pairs.
   contact_.build_broad_phase(x, step, std::max(bound.length, std::min(limit, 1.0)));
   if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length)
     bound = {free.length, Obstacle::Contact, free.node};
@@ -234,13 +235,13 @@ NodePositions FemEnergy::limit_step(const NodePositions& x, NodePositions step, 
   constexpr double kBorne = 0.2;
   constexpr double kBeyond = 1.2;
   constexpr int kRounds = 40;
-  // Number of rounds after which pairs of skin are searched again. Pairs missed in between still stop the step, since
-  // largest_step() searches anew.
+  // Number of rounds after which pairs of skin are searched again. Pairs that are missed until then still limit the
+  // step, since largest_step() makes its own search.
   constexpr int kSeen = 20;
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   NodePositions sum(x.rows(), 3), there = x + step;
-  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // asked: tets that the step may flatten
+  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // asked: indices of tets that the step may flatten
   std::iota(asked.begin(), asked.end(), 0);
   std::vector<char> flattened(T.rows(), 0), changed;
   for (int round = 0; round < kRounds; ++round) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The total energy that a solve minimises: that of flesh (elastic_form.h) with its patches (patch_form.h), of the
-// springs of the bones (pin_form.h), and of contact (contact_form.h), if any. It also owns the Hessian matrix. Nodes
-// deep in a bone, whose tets all belong to that bone, are not unknowns: they move with the bone.
+// The total energy that a solve minimises: the energy of flesh (elastic_form.h) with its patches (patch_form.h), of the
+// bones' springs (pin_form.h), and of contact (contact_form.h), if it is on. FemEnergy also owns the Hessian matrix.
+// Nodes deep in a bone, whose tets all belong to that bone, are not unknowns: they move with the bone.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@
 
 namespace limber {
 
-// The time that the stages of the solver took, in CPU seconds of all threads. `analysis` includes `ordering`, the time
-// of CHOLMOD's fill-reducing ordering.
+// CPU seconds, summed over all threads, that each stage of the solver took. `analysis` includes `ordering`, the time of
+// CHOLMOD's fill-reducing ordering.
 struct FemSeconds {
   double contact = 0, analysis = 0, ordering = 0, assembly = 0, factorization = 0, search = 0, total = 0;
 
@@ -30,7 +30,7 @@ struct FemSeconds {
   }
 };
 
-// Measures the CPU time that the process uses during the timer's lifetime, and adds it to a sum, in seconds.
+// Measures the CPU time that the process uses during the timer's lifetime and adds it to `sum`, in seconds.
 class CpuTimer {
  public:
   explicit CpuTimer(double& sum);
@@ -46,23 +46,23 @@ class CpuTimer {
 class FemEnergy {
  public:
   //   T, material       the tets that deform and their materials, #T each
-  //   weak_barrier_kpa  strength of a barrier against det F = 0; it stops single tets from oscillating near there
+  //   weak_barrier_kpa  strength of the barrier against det F = 0, which stops single tets from oscillating near 0
   FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,
             double weak_barrier_kpa, int patch_size = 8);
 
-  // Sets the springs, and the nodes that are not unknowns: `carried` nodes move to `carried_target`. Keeps the matrix
-  // if the nodes are the same as in the last call.
+  // Sets the springs and the nodes that are not unknowns: the nodes `carried` move to `carried_target`. The matrix
+  // stays valid if the nodes are the same as in the last call.
   void set_constraints(PinForm pins, std::vector<int> carried, NodePositions carried_target);
   // Adds tets that have no energy but that no step may invert.
   void add_inversion_guard(const Eigen::MatrixX4i& guarded);
   void set_contact(ContactForm contact);
-  // Sets the force that acts on each node wherever it is, such as its weight, mN.
+  // Sets a constant force on each node, such as its weight, mN.
   void set_load(NodePositions load) { load_ = std::move(load); }
 
   int node_count() const { return node_count_; }
 
-  // Prepares contact for the position x. The energy and its derivatives are valid only on the motion given to the last
-  // largest_step() or limit_step(), so call this before evaluating them at any other position.
+  // Prepares contact at the position x. The energy and its derivatives are valid only for positions during the motion
+  // that was last given to largest_step() or limit_step(). Call this before evaluating them at any other position.
   void build_broad_phase(const NodePositions& x);
   // Returns the energy at x; infinite if a tet is inverted.
   double value(const NodePositions& x);
@@ -70,9 +70,11 @@ class FemEnergy {
   // Computes the Newton step at x. Returns false if the Hessian is not positive definite.
   //   slope    out: decrease of the energy along the step, to first order (above 0)
   //   towards  #nodes: the step of nodes that can move without force, such as those of a flap that hangs by two nodes.
-  //            Null: 0
-  //   damping  addition to the diagonal entries of each node in the Hessian, as a share of the smallest of the three:
-  //            it shortens steps along which hardly any force acts
+  //   Null:
+  //            these nodes do not move
+  //   damping  addition to the diagonal entries of each node in the Hessian, as a share of the smallest of the three.
+  //   It
+  //            shortens steps in directions in which hardly any force acts
   bool newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
                    const NodePositions* towards = nullptr, double damping = 0);
   enum class Obstacle { None, Flesh, Guarded, Contact };
@@ -83,16 +85,16 @@ class FemEnergy {
   };
   Bound largest_step(const NodePositions& x, const NodePositions& step, double limit);
 
-  // Returns the step after smoothing it around tets that it would flatten and around pairs of skin that it would bring
-  // too near each other. Smoothing moves the nodes of such a tet or pair more alike, which keeps its volume or
-  // distance. Repeats this until there are no such tets and pairs, or a limit of rounds is reached.
+  // Returns the step smoothed around tets that it would flatten and around pairs of skin that it would bring too near
+  // to each other. Smoothing makes the steps of the nodes of such a tet or pair more alike, which keeps its volume or
+  // distance. Repeats this until no such tets and pairs are left, or for a limited number of rounds.
   //   fixed  #nodes: 1 for nodes whose step stays unchanged; empty: none
   NodePositions limit_step(const NodePositions& x, NodePositions step, const std::vector<char>& fixed);
 
   // Returns the force on each node, mN, from contact between skin and objects. The broad phase must be valid at x.
   ContactForm::ObjectForces object_forces(const NodePositions& x);
 
-  // Returns the smallest distance of parts that touch at the last newton_step(), in thicknesses of the barrier.
+  // Returns the smallest distance of touching parts at the last newton_step(), in thicknesses of the barrier.
   double tightest() const { return contact_.tightest(); }
   double min_ratio(const NodePositions& x) const;                   // smallest det F of flesh
   const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // flesh and the tets of add_inversion_guard()
@@ -110,9 +112,10 @@ class FemEnergy {
 
   int node_count_;
   NodePositions rest_;
-  std::vector<double> keep_;  // six times the volume that each tet of bounded_ must keep in a step (step_bound.h), mm3
+  std::vector<double> keep_;  // #tets of bounded_: six times the volume that a step must leave (step_bound.h), mm3
   Eigen::MatrixX4i flesh_tets_, bounded_;
-  std::vector<int> first_at_, tet_at_;  // indices of the tets around node v: tet_at_[first_at_[v] .. first_at_[v + 1])
+  // The tets around node v are tet_at_[first_at_[v]] to tet_at_[first_at_[v + 1] - 1].
+  std::vector<int> first_at_, tet_at_;
   ElasticForm flesh_;
   PatchForm patches_;
   PinForm pins_;
@@ -122,7 +125,7 @@ class FemEnergy {
   NodePositions carried_target_;
 
   std::vector<int> unknown_;  // #nodes: block row in the matrix, -1: not an unknown
-  std::vector<int> node_of_;  // #block rows: the node of each
+  std::vector<int> node_of_;  // #block rows: index of the row's node
   BlockGraph graph_;          // the matrix's sparsity pattern without contact
   std::unique_ptr<Cholesky> matrix_;
   std::vector<double> J_, pressure_, right_side_;

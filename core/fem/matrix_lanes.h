@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes with small matrices of several tets at once, one tet per SIMD lane. Code is compiled for two lanes and for
-// four; four are used if the processor has AVX2. Every helper is inlined, so that it is compiled for the same processor
-// as its caller. Both widths give the same result, bit for bit. Only .cpp files include this header.
+// four; four are used if the processor has AVX2. Every helper is inlined, so that it is compiled for the same
+// instruction set as its caller. Both widths give the same result, bit for bit. Only .cpp files include this header.
 #pragma once
 
 #include "core/fem/signed_svd.h"
@@ -20,7 +20,7 @@ struct FourLanes {
   using Numbers = double __attribute__((vector_size(32)));
 };
 
-// Returns true if code shall compute with four lanes: the processor has AVX2 and `width` permits it.
+// Returns true if the code should compute with four lanes: the processor has AVX2 and `width` permits it.
 inline bool takes_four(MatrixLanes width) {
 #if defined(__x86_64__)
   static const bool has_avx2 = __builtin_cpu_supports("avx2");
@@ -31,7 +31,7 @@ inline bool takes_four(MatrixLanes width) {
 #endif
 }
 
-// Attribute of functions that compute with four lanes: compiles them for AVX2.
+// Attribute of functions that compute with four lanes: the compiler may use AVX2 in them.
 #if defined(__x86_64__)
 #define LIMBER_FOR_FOUR [[gnu::target("avx2")]]
 #else

@@ -10,20 +10,20 @@ namespace {
 constexpr double kSufficient = 1e-4;  // share of the first-order decrease that a step must achieve [Armijo 1966]
 constexpr double kFurthest = 8;       // upper limit on the length of an extended step, in full Newton steps
 constexpr int kHalvings = 24;         // number of halvings of a step after which the search gives up
-constexpr double kShort = 0.5;        // share of a step: if bounds allow less than this, a smoothed step is tried first
+constexpr double kShort = 0.5;        // share of a step: if limits allow less than this, a smoothed step is tried first
 constexpr double kJam = 0.05;         // share of the full Newton step: a shorter step counts as a jam
-// Distance of parts that touch, in thicknesses of the barrier, below which no step ends the solve: nearer than this, a
-// Newton step only doubles the distance, so it is short although the force is far too large.
+// While the distance of touching parts is below this many thicknesses of the barrier, the solve never counts as
+// converged: a Newton step then only doubles the distance, so it is short although the force is far too large.
 constexpr double kSqueezed = 1e-3;
-// Damping of the Hessian after a jam (FemEnergy::newton_step); it grows with each further jam. Where parts of the skin
+// Damping of the Hessian after a jam (FemEnergy::newton_step); each further jam increases it. Where parts of the skin
 // meet along parallel edges, the Hessian lacks some of the energy's curvature, and an undamped step leads far along
 // such an edge.
 constexpr double kDamped = 1e-2;
 constexpr int kJams = 3;  // number of jams in a row after which the solve gives up
-// Upper limit on the remainder of a full Newton step that the last line search leaves out: the longest motion of a node
-// in this remainder, as a share of the tolerance.
+// The solve has converged only if the last line search left out at most this much of the full Newton step: the longest
+// motion of a node in the remainder, as a share of the tolerance.
 constexpr double kLeft = 0.25;
-// Upper limit on the motion of stragglers (the few nodes that may still move at the end, NewtonSettings), in
+// Upper limit on the last step of stragglers, the few nodes that may still move at the end (NewtonSettings), in
 // tolerances.
 constexpr double kStraggle = 3;
 
@@ -38,7 +38,8 @@ bool settled(const NodePositions& step, double longest, const NewtonSettings& se
   return double(moving) <= settings.stragglers * double(step.rows());
 }
 
-// Line search: moves x to x + length * step, where the energy is lower. Returns the length; 0: no lower energy found.
+// Line search: moves x to x + length * step, where the energy is lower. Returns the length; 0: no lower energy was
+// found.
 //   bound  the first length tried, at most 1. If a full step lowers the energy well, longer steps are tried too
 double search(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
               double bound) {
@@ -99,12 +100,11 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     if (on_iteration) on_iteration(result.iterations, result.residual);
     jams = length < kJam ? jams + 1 : 0;
     if (jams == kJams) break;
-    const bool is_damped = damping > 0;  // then a short step does not show that the solve has converged
+    const bool is_damped = damping > 0;  // if damped, a short step does not show that the solve has converged
     const bool may_damp = energy.tightest() < 1;
     damping = length < kJam && may_damp ? std::max(kDamped, 10 * damping) : damping > kDamped ? damping / 10 : 0;
     if (length == 0) {
-      // No lower energy was found along the step. If the step is too short to matter, the solve has converged;
-      // otherwise a damped step may find one.
+      // If the step is too short to matter, the solve has converged; otherwise a damped step may find a lower energy.
       result.converged = !is_damped && result.residual < settings.tolerance_mm;
       if (result.converged || !may_damp) break;
       continue;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Minimises the energy by projected Newton steps with a line search. No iterate ever has an inverted tet or skin that
-// crosses itself: every step is bounded (step_bound.h, contact_surface.h), and a line search that finds no lower energy
-// does not move. All steps use the projected Hessian. The exact Hessian is indefinite until the last iterations of a
-// deep bend, or so nearly indefinite that its steps are useless. The solve ends when the full Newton step is shorter
-// than the tolerance and the line search has taken almost all of it. The solve gives up when three searches in a row
-// hardly moved. A full step that lowers the energy well is also tried at 2, 4 and 8 times its length. A step that is
-// bounded to less than half is first smoothed around the tets or pairs that bound it, so that other nodes can take it.
+// crosses itself: every step is limited (step_bound.h, contact_surface.h), and a line search that finds no lower energy
+// does not move. All steps use the projected Hessian, because until the last iterations of a deep bend the exact
+// Hessian is indefinite or nearly so, and its steps are useless. The solve ends when the full Newton step is shorter
+// than the tolerance and the line search has taken almost all of it. The solve gives up after three searches in a row
+// that hardly moved. A full step that lowers the energy well is also tried at 2, 4 and 8 times its length. A step that
+// is limited to less than half of its length is first smoothed around the tets or pairs that limit it, so that the
+// other nodes can take it.
 #pragma once
 
 #include <functional>
@@ -17,7 +18,7 @@
 namespace limber {
 
 struct NewtonSettings {
-  double tolerance_mm = 0.3;  // the solve ends when no node would move further than this in a step
+  double tolerance_mm = 0.3;  // the solve ends when no node would move further than this in a full step
   // Largest share of the nodes that may move further than the tolerance (up to 3 times as far) in the last step, since
   // a few of many thousands of nodes converge very slowly.
   double stragglers = 0;
@@ -30,12 +31,13 @@ struct NewtonResult {
   int iterations = 0;
   double residual = 0;         // longest motion of a node in the last full Newton step, mm
   double shortest_search = 1;  // shortest line search of all iterations, as a share of the full Newton step
-  FemEnergy::Bound bound;      // what limited the last step
+  FemEnergy::Bound bound;      // the obstacle that limited the last step
 };
 
 // Minimises the energy, starting at x.
-//   x             in: positions without inverted tets, for which the energy's broad phase is built; out: the positions
-//                 of least energy found, never higher than at the start
+//   x             in: positions without inverted tets, for which build_broad_phase() was called; out: the positions
+//   with
+//                 the lowest energy found
 //   on_iteration  on_iteration(iteration, residual) is called after each iteration
 //   throws Cancelled
 NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings& settings,

@@ -13,7 +13,8 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 512;  // patches per task
-constexpr double kAlike = 1.5;  // largest ratio of shear moduli in a patch, so that fat and muscle do not trade volume
+// Upper limit on the ratio of shear moduli in a patch, so that fat does not shrink while muscle swells.
+constexpr double kAlike = 1.5;
 
 std::uint64_t spread_bits(std::uint64_t v) {
   std::uint64_t spread = 0;
@@ -73,7 +74,7 @@ PatchOrder grow_patches(const NodePositions& rest, const Eigen::MatrixX4i& T, co
     patches.push_back(std::move(patch));
   }
 
-  // Joins each patch that has less than half of the intended number of tets to its smallest neighbouring patch.
+  // Merges each patch that has less than half of the intended number of tets into its smallest neighbouring patch.
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (patches[p].empty() || 2 * int(patches[p].size()) >= size || bulk[patches[p][0]] <= 0) continue;
     int best = -1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The energy of springs from nodes to target positions, by which bones hold their nodes:
+// The energy of springs from nodes to target positions. Springs connect the nodes of bones to the posed bones:
 //    the sum over nodes and axes of k/2 (x - target)^2, k in kPa mm
-// Springs are stiff but not rigid: where flesh has no room between two bones, the bones' nodes give way a little, so
-// that the flesh is not crushed.
+// Springs are stiff but not rigid: where flesh has no room between two bones, the bones' nodes yield a little, so that
+// the flesh is not crushed.
 #pragma once
 
 #include <cstdint>

@@ -25,8 +25,8 @@ LIMBER_INLINE N dot(const N* a, const N* b) {
   return a[0] * b[0] + (a[1] * b[1] + a[2] * b[2]);
 }
 
-// Rotates the columns of B = F V until they are perpendicular, and sorts them by descending length. Writes their
-// squared lengths to `squared`.
+// Rotates the columns of B = F V until they are perpendicular to each other, and sorts them by descending length.
+// Writes their squared lengths to `squared`.
 template <class Lanes>
 LIMBER_INLINE void rotate(typename Lanes::Numbers B[3][3], typename Lanes::Numbers V[3][3],
                           typename Lanes::Numbers squared[3]) {
@@ -84,8 +84,7 @@ LIMBER_INLINE void finish(const Eigen::Matrix3d& B, double longest_squared, doub
   p.sigma[2] = p.U.col(2).dot(B.col(2));
 }
 
-// Decomposes the `count` (at most kCount) matrices that start at `F`, one per lane. Unused lanes repeat the first
-// matrix.
+// Decomposes `count` (at most kCount) matrices that start at `F`, one per lane. Unused lanes repeat the first matrix.
 template <class Lanes>
 LIMBER_INLINE void decompose(const Eigen::Matrix3d* F, Principal* result, std::size_t count) {
   typename Lanes::Numbers B[3][3], V[3][3], squared[3];

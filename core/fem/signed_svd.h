@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes singular value decompositions of deformation gradients, two or four at once (matrix_lanes.h): one at a time
-// they would take a third of the time that assembling a matrix needs. One-sided Jacobi rotations find small singular
+// Computes singular value decompositions of deformation gradients, two or four at once (matrix_lanes.h), since one at a
+// time they would take a third of the time for assembling a matrix. One-sided Jacobi rotations find small singular
 // values as precisely as large ones [Demmel & Veselic 1992].
 #pragma once
 
@@ -10,8 +10,8 @@
 
 namespace limber {
 
-// F = U diag(sigma) V^T with rotations U and V. The last singular value, the smallest in magnitude, is negative if det
-// F is.
+// F = U diag(sigma) V^T with rotations U and V. The last singular value, which is the smallest in magnitude, is
+// negative if det F is negative.
 struct Principal {
   Eigen::Matrix3d U, V;
   Eigen::Vector3d sigma;  // in descending order

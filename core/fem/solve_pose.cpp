@@ -17,13 +17,13 @@
 namespace limber {
 
 namespace {
-constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the pose
+constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the final pose
 constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers of the last solve, a share of the nodes
-constexpr double kTight = 0.25;       // factor on step_tolerance_mm for the solve that precedes a second try of a part
-constexpr double kWorth = 0.125;      // least number of nodes to free at a time, as a share of the free nodes
-constexpr double kLeastPart = 0.1;    // least motion of objects on a part, as a share of the shortest part of a step
-constexpr double kRough = 0.5;        // if bounds allow less than this share of a first guess, the guess is smoothed
-// Strength, kPa, of the barrier that keeps tets from getting nearly flat. It halves the iterations of a deep bend.
+constexpr double kTight = 0.25;       // factor on step_tolerance_mm for the solve before a part is tried again
+constexpr double kWorth = 0.125;      // smallest number of nodes to free at a time, as a share of the free nodes
+constexpr double kLeastPart = 0.1;    // smallest motion of objects in a part, as a share of the shortest part of a step
+constexpr double kRough = 0.5;        // if limits allow less than this share of an initial guess, the guess is smoothed
+// Strength, kPa, of the barrier that keeps tets from becoming nearly flat. It halves the iterations of a deep bend.
 constexpr double kWeakBarrier = 100;
 
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
@@ -50,7 +50,7 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
     throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
-// Number of all objects in the list of rigid nodes, above all numbers of bones: objects may touch and pass each other.
+// Number of all objects in the list of rigid nodes, above all bones' numbers. Contact between objects is ignored.
 constexpr int kObjects = 1 << 20;
 
 NodePositions with_objects(const NodePositions& body, const NodePositions& objects) {
@@ -59,8 +59,8 @@ NodePositions with_objects(const NodePositions& body, const NodePositions& objec
   return all;
 }
 
-// Returns the nodes that wait until a position on the path before they become free. Small groups of nodes become free
-// earlier, together with the group before, since each group that becomes free costs a new analysis of the matrix.
+// Returns the nodes that wait until a path position before they become free. A small group of nodes becomes free
+// earlier, together with the group before it, since each group needs a new analysis of the matrix.
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
   std::vector<FemModel::Waiting> waiting = model.waiting;
   std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
@@ -155,12 +155,12 @@ class PoseSolve {
   Progress& progress_;
   const std::function<void(const SolveStep&)>& on_step_;
   const std::vector<FemModel::Waiting> waiting_;
-  double freed_ = 0;          // path position; nodes that wait until an earlier position are free
-  std::vector<int> held_by_;  // #V: the bone that holds each node at present, -1: free
+  double freed_ = 0;          // nodes that wait until a path position before this one are free
+  std::vector<int> held_by_;  // #V: the bone that currently holds each node; -1: free
   SolvedParts parts_;
-  const Eigen::Index nodes_;  // number of the mesh's nodes; the objects' nodes follow them in rest_, held_ and x_
+  const Eigen::Index nodes_;  // number of the mesh's nodes; in rest_, held_ and x_ the objects' nodes follow them
   const NodePositions rest_;
-  std::vector<char> held_;  // 1 for nodes of objects, and for those that a bone carries or holds by stiff springs
+  std::vector<char> held_;  // 1 for nodes of objects and nodes that move rigidly or by stiff springs with a bone
   NodePositions x_;
   double shortest_ = 0;  // length of the shortest step, as a share of the path
   std::optional<FemEnergy> energy_;
@@ -168,8 +168,8 @@ class PoseSolve {
   SolvedPose result_;
 };
 
-// Frees the nodes that wait until a position before `place` on the path: they become unknowns, as other nodes of flesh.
-// Nodes that still wait move with their bone.
+// Frees the nodes that wait until a path position before `place`: they become unknowns like other nodes of flesh. Nodes
+// that wait longer move with their bone.
 void PoseSolve::free_for(double place) {
   freed_ = std::max(freed_, place);
   std::vector<int> held_by = model_.held_by;
@@ -214,8 +214,8 @@ bool PoseSolve::at_rest() const {
   return x_.topRows(nodes_) == rest_.topRows(nodes_);
 }
 
-// Sets the target positions of the nodes that bones and objects hold to where these are at a position on the path.
-//   less  #V offsets to subtract from these positions; null: none
+// Sets the target positions of the nodes that bones and objects hold, for a position on the path.
+//   less  #V offsets to subtract from these target positions; null: none
 void PoseSolve::hold_at(double at, const NodePositions* less) {
   const auto pose = path_(at);
   const NodePositions objects = objects_at(at);
@@ -243,8 +243,8 @@ NodePositions PoseSolve::weight_at(double at) const {
   return weight;
 }
 
-// Returns one vector per node, computed by way(bone, position): for a held node with the bone that holds it, for others
-// the sum over the bones of the node's influences, with their weights; zero for the nodes of objects.
+// Returns one vector per node: way(bone, position) for a node that a bone holds, zero for nodes of objects. For other
+// nodes, returns the sum of weight * way(bone, position) over the node's influences.
 template <class Way>
 NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   NodePositions sum = NodePositions::Zero(x.rows(), 3);
@@ -263,7 +263,7 @@ NodePositions PoseSolve::blend(const NodePositions& x, const Way& way) const {
   return sum;
 }
 
-// Returns, for each node, the number of the bone or the objects with which it moves rigidly; -1: none.
+// Returns, for each node, the bone with which it moves rigidly; kObjects for nodes of objects; -1: none.
 std::vector<int> PoseSolve::rigid_nodes() const {
   std::vector<int> rigid = held_by_;
   for (std::size_t v = 0; v < rigid.size(); ++v)
@@ -272,10 +272,10 @@ std::vector<int> PoseSolve::rigid_nodes() const {
   return rigid;
 }
 
-// Moves x, the solution at position `from` on the path, to a first guess of the shape at position `to`. The guess is a
-// Newton step for the bones' velocities at `from` (the path's tangent), plus the difference between the bones' turning
-// motion and these velocities. If bounds do not allow it, tries half of the way, a quarter, and so on. Returns the
-// position that x has reached, at which the bones are then held; `from` if no step is possible.
+// Moves x, the solution at path position `from`, to an initial guess of the shape at position `to`. The guess is a
+// Newton step for the bones' velocities at `from` (the path's tangent), plus the difference between the bones' motions
+// and these velocities. If limits do not allow it, tries half of the way, a quarter, and so on. Returns the path
+// position that x has reached; the bones are held there. Returns `from` if no step is possible.
 double PoseSolve::follow(double from, double to, NodePositions& x) {
   const auto start = path_(from);
   const auto moved_to = [&](double at) {
@@ -310,7 +310,7 @@ double PoseSolve::follow(double from, double to, NodePositions& x) {
       bound = energy_->largest_step(x, step, 1).length;
     }
     if (bound < kRough && at - from > shortest_) continue;
-    // Objects must stand where they are held: unlike bones, they have no springs that would draw them there.
+    // Objects must be at their prescribed positions: unlike bones, they have no springs that would pull them there.
     const double there = objects.rows() ? from + bound * (at - from) : at;
     if (there < to && there - from < kLeastPart * shortest_) return from;
     x += bound * step;
@@ -329,7 +329,7 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
   return drift;
 }
 
-// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm": the two bones with most weight at the nodes.
+// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm": the bones with the largest weights there.
 std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
@@ -368,7 +368,7 @@ void PoseSolve::tell(double at, int iteration, double residual, const NodePositi
   on_step_({at, iteration, residual, V});
 }
 
-// Minimises the energy from x on, with bones held as hold_at() set. The last broad phase must be valid at x.
+// Minimises the energy, starting at x, with bones at the targets of hold_at(). The last broad phase must be valid at x.
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, NodePositions& x) {
   const int before = result_.iterations;
   const NewtonResult solved =
@@ -379,8 +379,8 @@ NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, No
   return solved;
 }
 
-// Solves again at the pose, to the final tolerance; steps end at a coarser tolerance. A shape that does not converge is
-// kept, because it is as good as the result of a step.
+// Solves at the final pose again, to the final tolerance, which is finer than that of the steps. A shape that does not
+// converge is kept, because it is as good as the result of a step.
 void PoseSolve::settle() {
   result_.blocked_by.clear();
   if (result_.residual < settings_.tolerance_mm) return;
@@ -427,8 +427,8 @@ void PoseSolve::record() {
   result_.min_det_f_of_path = std::min(result_.min_det_f_of_path, energy_->min_ratio(x_));
 }
 
-// Solves one part of a step: moves x from the solution at path position `from` to the solution at `to`. If that is too
-// far, lowers `to` to a nearer position. Returns false if no solution was found.
+// Solves one part of a step: moves x from the solution at path position `from` to the solution at `to`. If no guess for
+// `to` is possible, lowers `to` to a nearer position. Returns false if no solution was found.
 bool PoseSolve::part(double from, double& to, NodePositions& x) {
   const double at = follow(from, to, x);
   if (at == from) {
@@ -444,8 +444,8 @@ bool PoseSolve::part(double from, double& to, NodePositions& x) {
   return good(path_(at), x);
 }
 
-// Solves from the reached path position towards `to`, as far as possible. If the whole way fails, solves it in shorter
-// parts. Returns false if not even the shortest part can be solved.
+// Solves from the path position reached so far towards `to`, as far as possible. If the whole way fails, solves it in
+// shorter parts. Returns false if not even the shortest part can be solved.
 bool PoseSolve::step(double to) {
   free_for(to);
   const double begin = result_.reached;
@@ -461,13 +461,13 @@ bool PoseSolve::step(double to) {
       from = next;
       loose = result_.residual > kTight * settings_.step_tolerance_mm;
     } else if (std::exchange(loose, false)) {
-      // Solves the current shape more precisely, since tissue that lags behind its bones is a poor start for a part.
+      // Solves the current shape more precisely, since the next part fails more often if tissue lags behind its bones.
       hold_at(from);
       energy_->build_broad_phase(x_);
       relax(from, kTight * settings_.step_tolerance_mm, settings_.step_iterations, x_);
     } else if ((way = 0.5 * (next - from)) < 0.5 * shortest_) {
       if (held_by_ == model_.held_by) break;
-      free_for(INFINITY);  // the step may fail because nodes that still wait cannot give way
+      free_for(INFINITY);  // the step may fail because nodes that are not free yet cannot yield
       way = to - from;
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes the shape that tissue takes when its bones move, by nonlinear finite elements on a tet mesh, in steps from
-// rest to the pose. Stiff springs hold the bones' nodes where the rig's bones are; all other nodes move to the shape of
-// least energy. Flesh nearly keeps its volume, without the locking of plain tets (patch_form.h). At every iterate, no
-// tet of flesh is inverted and, with contact, no part of the skin passes through another (contact_form.h) [Li et al.
+// rest to the pose. Stiff springs hold the bones' nodes at the posed positions of the rig's bones; all other nodes move
+// to the shape with the lowest energy. Flesh nearly keeps its volume, without locking (patch_form.h). At every iterate,
+// no tet of flesh is inverted and, with contact, no part of the skin passes through another (contact_form.h) [Li et al.
 // 2020]. Every step begins with one Newton step for the bones' velocities, along the tangent of their path, and is then
 // solved by projected Newton (newton.h). Lengths are in mm, stiffness in kPa. The result does not depend on the number
 // of threads.
@@ -32,12 +32,12 @@ struct FemModel {
     int node, bone;
     double until;  // position on the path, [0, 1]
   };
-  // Nodes that move rigidly with a bone until the path position `until`, because nothing can press on them earlier.
+  // Nodes that move rigidly with a bone up to the path position `until`, because nothing can press on them before.
   // After it they are free.
   std::vector<Waiting> waiting;
-  // #V lists of bone weights that sum to 1. They give the first guess of a step; the result does not depend on them.
+  // #V lists of bone weights that sum to 1. They give the initial guess of a step; the result does not depend on them.
   std::vector<std::vector<BoneWeight>> influences;
-  std::vector<std::string> bone_names;  // for messages; a bone without a name is "bone 3"
+  std::vector<std::string> bone_names;  // for messages; a bone without a name is called "bone 3"
   std::vector<double> mass;             // #V: mass of each node in kg, for gravity; empty: none
   RigidObjects objects;                 // rigid objects that press on the skin, if contact is on
 };
@@ -51,13 +51,13 @@ struct SolveSettings {
   double contact_mm = 1.4;  // parts of the skin nearer than this are pushed apart, if they were further apart at rest
   double object_mm = 0.5;   // skin nearer than this to an object is pushed away
   Eigen::RowVector3d gravity = Eigen::RowVector3d::Zero();  // m/s2
-  bool has_weight_at_start = false;    // false: gravity grows along the path, from none at the start
+  bool has_weight_at_start = false;                         // false: gravity grows from zero along the path
   double step_tolerance_mm = 4;        // a step ends when Newton moves no node further than this (half a tet's edge)
-  double tolerance_mm = 0.3;           // the last solve, at the pose, ends when Newton moves no node further than this
+  double tolerance_mm = 0.3;           // the last solve, at the final pose, ends when no node moves further than this
   int step_iterations = 40;            // a step that needs more iterations is split into shorter parts
-  double shortest_step_degrees = 0.9;  // shortest part of a step; if it fails, the solve stops before the pose
-  double bone_drift_mm = 2;            // largest distance of a bone's nodes from their bone; a step beyond it fails
-  double size = 1;                     // size of the body relative to an adult (1); divides the springs by its square
+  double shortest_step_degrees = 0.9;  // shortest part of a step; if it fails, the solve stops short of the pose
+  double bone_drift_mm = 2;            // if a bone's node is further than this from its rigid position, the step fails
+  double size = 1;  // size of the body relative to an adult (1); the springs are divided by its square
 };
 
 // The state of a solve after an iteration. V is valid only during the callback.
@@ -70,15 +70,15 @@ struct SolveStep {
 
 struct SolvedPose {
   Eigen::MatrixX3d V;      // #V node positions in the pose, mm
-  bool converged = false;  // false: V is the last solved step (at `reached`), or not exact enough at the pose
+  bool converged = false;  // false: V is the last solved step (at `reached`), or at the pose but not exact enough
   double reached = 0;      // position on the path that V has reached, [0, 1]
-  std::string blocked_by;  // tells the user what stopped the solve; empty if it converged
+  std::string blocked_by;  // message for the user: what stopped the solve; empty if it converged
   int steps = 0, iterations = 0, factorizations = 0, analyses = 0;
   double residual = 0;           // longest motion of a node in the last full Newton step, mm
   double min_det_f = 1;          // smallest det F of the tets of flesh in V
   double min_det_f_of_path = 1;  // smallest det F of tets of flesh at the ends of all steps
-  double bone_drift_mm = 0;      // largest distance in V of a bone's node from where its bone moves it
-  // Forces of contact between skin and objects, mN: on each node of the mesh, and on each node of the objects. Empty if
+  double bone_drift_mm = 0;      // largest distance in V of a bone's node from its rigidly moved position
+  // Contact forces between skin and objects, mN: on each node of the mesh, and on each node of the objects. Empty if
   // there are no objects.
   NodePositions force_on_skin, force_on_objects;
   NodePositions objects;        // positions of the objects' nodes

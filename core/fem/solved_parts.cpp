@@ -7,12 +7,14 @@ namespace limber {
 
 namespace {
 
-// Stiffness of the springs at bones' nodes per volume around the node, for an adult's size (1), kPa/mm2. With it a bone
-// gives way by 0.01 mm where flesh pulls with 50 kPa.
+// Stiffness of the springs at bones' nodes per volume around the node, for an adult's size (1), kPa/mm2. With this
+// stiffness a bone yields by 0.01 mm where flesh pulls with 50 kPa.
 constexpr double kPinStiffness = 1000;
-// Spring stiffness in kPa/mm2 at nodes of tets between two bones. With stiffer springs bones' ends often cannot pass.
+// Spring stiffness in kPa/mm2 at nodes of tets between two bones. With stiffer springs the ends of bones often cannot
+// slide past each other.
 constexpr double kJointPinStiffness = 0.1;
-constexpr TetMaterial kBoneTet{100, 0.3};  // material of tets that one bone holds but that share nodes with flesh
+// Material of tets whose nodes are all held by one bone but that share nodes with flesh; shear modulus in kPa.
+constexpr TetMaterial kBoneTet{100, 0.3};
 
 bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {
   const int bone = held_by[tet[0]];
@@ -27,8 +29,8 @@ SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by,
   for (Eigen::Index t = 0; t < T.rows(); ++t)
     if (!held_by_one(held_by, T.row(t)))
       for (const int v : T.row(t)) in_flesh[v] = 1;
-  // An object that meets a node which nothing moves would press on it with a force without limit. So bone at the
-  // surface is held by springs, too.
+  // The force between an object and a node that nothing can move would grow without limit. So springs also hold the
+  // nodes of bone at the surface.
   if (!model.objects.empty()) {
     const Eigen::MatrixX3i surface = boundary_of(T);
     for (const int v : surface.reshaped()) in_flesh[v] = 1;

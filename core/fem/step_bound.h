@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Computes how far nodes may move along a step before a tet would lose nine tenths of its volume. The volume of a tet
-// whose nodes move along straight lines is a cubic function of the step's length. The first root of this function is
-// computed, so the result is exact. A flat tet is hard to unfold. So each tet may also be given a volume to keep. If
-// its volume is less than twice that, a step must leave at least half of the current volume.
+// whose nodes move along straight lines is a cubic function of the step's length, so its first root gives the exact
+// result. A flat tet is hard to unfold. So a larger volume that must be left can also be given for each tet. If a tet's
+// volume is less than twice that, half of its current volume must be left.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Measures how much a pose stretches and compresses each tissue, by the singular values of F in the tets that contain
 // its voxels. Skin on the outside of a bent joint is stretched. Real skin would also slide over the tissue below it.
-// The model cannot slide, so it stretches the skin more than real skin, and the measure includes this.
+// The model cannot slide, so the stretch in the model, and in this measure, is larger than in real skin.
 #pragma once
 
 #include <array>
@@ -15,8 +15,7 @@ namespace limber {
 
 struct TissueModel;
 
-// The 5th, 50th and 95th percentiles of the principal stretches over a tissue's volume; a stretch of 1 is unchanged
-// length.
+// The 5th, 50th and 95th percentiles of the principal stretches over a tissue's volume; 1: unchanged length.
 struct Stretch {
   std::array<double, 3> least{1, 1, 1}, most{1, 1, 1};  // smallest and largest principal stretch
 };

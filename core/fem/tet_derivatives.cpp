@@ -21,14 +21,14 @@ LIMBER_INLINE void cross(const N* a, const N* b, N* product) {
   for (int k = 0; k < 3; ++k) product[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
 }
 
-// Computes the product of a matrix, given by its columns, with the vector v.
+// Computes the product of a matrix, given by its columns, and the vector v.
 template <class N>
 LIMBER_INLINE void multiply(const N columns[3][3], const N* v, N* product) {
   for (int k = 0; k < 3; ++k) product[k] = columns[0][k] * v[0] + columns[1][k] * v[1] + columns[2][k] * v[2];
 }
 
 // Computes the derivatives of consecutive tets, from index `first` on, one tet per SIMD lane. Lanes beyond the last tet
-// compute the last tet again.
+// repeat the last tet.
 template <class Lanes>
 LIMBER_INLINE void derive(std::span<const TetState> tets, int first, TetDerivatives& result) {
   using N = typename Lanes::Numbers;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the gradient and the Hessian of tets' energies by their nodes' positions, four tets at a time
-// (matrix_lanes.h): one at a time this would take half of the time that assembling a matrix needs. Let s_a be the
-// gradient of node a's hat function, C the cofactors of F, c_a = C s_a, and g and h the first and second derivative of
-// the volume term (tet_energy.h). Then the Hessian's block between nodes a and b is the tet's volume times
+// Computes the gradient and the Hessian of tets' energies with respect to the nodes' positions, four tets at a time
+// (matrix_lanes.h), since one at a time this would take half of the time for assembling a matrix. Let s_a be the
+// gradient of node a's shape function, C the cofactor matrix of F, c_a = C s_a, and g and h the first and second
+// derivative of the volume term (tet_energy.h). Then the Hessian's block between nodes a and b is the tet's volume
+// times
 //   mu (s_a . s_b) I + h c_a c_b^T - g [F (s_a x s_b)]_x,
-// To leave out negative curvature, the tet's volume times
+// where [v]_x is the matrix of the cross product with v. To remove negative curvature, the tet's volume times
 //   value (Q s_a) (Q s_b)^T
 // is added for each direction Q in which the energy's second derivative is -value < 0 (NegativeCurvature).
 #pragma once
@@ -20,12 +21,12 @@
 namespace limber {
 
 struct TetState {
-  const std::array<Eigen::Vector3d, 4>* slopes;  // gradients of the nodes' hat functions at rest, 1/mm
+  const std::array<Eigen::Vector3d, 4>* slopes;  // gradients of the nodes' shape functions at rest, 1/mm
   Eigen::Matrix3d F;
   double volume, shear;             // volume at rest, mm3; shear modulus, kPa
   double force_slope;               // first derivative of the volume term (with pressure) by J, for the gradient
   double slope, curvature;          // first and second derivative of the volume term by J, for the Hessian
-  const Principal* axes = nullptr;  // singular value decomposition of F; needed if there is negative curvature
+  const Principal* axes = nullptr;  // singular value decomposition of F; only needed if there is negative curvature
   NegativeCurvature negative;       // negative curvature to leave out of the Hessian
 };
 

@@ -13,9 +13,10 @@ namespace limber {
 
 namespace {
 
-constexpr int kReach = 16;  // largest distance at which the tissue nearest to a position is searched, voxels
-constexpr int kPlaces = 4;  // intervals along each tet edge in the grid of points where labels are read
-// Lower limit on TetMaterial::filled, the share of a tet that is tissue, so that each tet resists change of its volume.
+constexpr int kReach = 16;  // radius within which the tissue nearest to a position is searched, voxels
+constexpr int kPlaces = 4;  // intervals along each tet edge between the points where labels are read
+// Lower limit on TetMaterial::filled, the share of a tet that is tissue, so that every tet resists a change of its
+// volume.
 constexpr double kLeastFilled = 0.1;
 constexpr double kMostPoisson = 0.4999;  // largest Poisson ratio that the volume terms allow; 0.5 is impossible
 
@@ -98,7 +99,7 @@ std::vector<BoneWeight> influences_around(const SkinWeights& weights, const Labe
 }
 
 // Estimates the volume that each label fills in each tet: reads the labels at 35 points of the tet, each of which
-// stands for the same share of its volume.
+// represents the same share of the tet's volume.
 void find_parts(TissueModel& model, const LabelVolume& volume) {
   const TetMesh& mesh = model.fem.mesh;
   const AffineTransform voxel = voxel_from_world(volume.grid);
@@ -179,7 +180,7 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
   }
   const BoxBins bins(of_bones, 8);
   const int reach = static_cast<int>(std::ceil(joint_mm)) + 1;
-  std::map<int, std::vector<std::pair<double, int>>> near_other;  // per bone: (distance to another bone, node)
+  std::map<int, std::vector<std::pair<double, int>>> near_other;  // for each bone: (distance to another bone, node)
   std::map<int, std::size_t> count;
   std::vector<std::uint8_t> between(mesh.V.rows(), 0);
   std::vector<int> near;
@@ -208,13 +209,13 @@ std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector
   return between;
 }
 
-// Marks the nodes of bones that the pose brings closer to another bone than `closing_mm`, although they are further
-// away at rest. Of the nodes of a bone, at most half become or stay marked, those nearest to another bone.
+// Marks the nodes of bones that the pose brings closer to another bone than `closing_mm`, if they are further away at
+// rest. At most half of a bone's nodes are marked, those nearest to another bone.
 //   marked  #V: 1 for nodes that belong to a joint
 void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
                         const std::vector<std::vector<RigidTransform>>& motions, double closing_mm,
                         std::vector<std::uint8_t>& marked) {
-  std::map<int, std::size_t> count, free;  // of each bone: its nodes, and how many of them may still become marked
+  std::map<int, std::size_t> count, free;  // for each bone: number of its nodes; how many of them may still be marked
   std::vector<int> nodes;
   for (int i = 0; i < mesh.V.rows(); ++i)
     if (bone[i] >= 0) nodes.push_back(i), ++count[bone[i]];
@@ -248,8 +249,8 @@ void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
     if (std::size_t& left = free[bone[node]]; left > 0) marked[node] = 1, --left;
 }
 
-// Chooses the bone that holds each node: the bone of the bone tets around it or, in soft tissue that moves rigidly, the
-// bone with which this tissue moves. Also marks the tets between two bones as joints.
+// Selects the bone that holds each node: the bone of the bone tets around the node or, in soft tissue that moves
+// rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints.
 void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
                     const SkinWeights& weights, const DeformingRegion& moving, const TissueModelSettings& settings) {
   const TetMesh& mesh = model.fem.mesh;

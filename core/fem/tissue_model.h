@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Builds the model that solve_pose takes from a body's tissue: the material of each tet, and the bone that holds each
-// node.
+// Builds the model for solve_pose() from a body's tissue: the material of each tet, and the bone that holds each node.
 //
 // Material. A tet of 4 to 12 mm contains many voxels, and skin is often one voxel thick. So a tet's moduli mu and
-// lambda are the means over the soft tissue in it (from Young's modulus and Poisson ratio of the tissue table). The
-// mean of the Poisson ratio itself would be wrong: a tenth of cartilage would take away half of flesh's resistance to
-// losing volume. A tet without soft tissue takes the material of the nearest soft voxel. No soft tissue counts as
-// stiffer than `stiffest`: a tendon of 1 GPa is a cord that slides in its sheath and buckles; as a solid as thick as a
-// tet it would be a strut from bone to bone, against which no joint could turn.
+// lambda are the means over the soft tissue in it (from Young's modulus and Poisson ratio of the tissue table). A mean
+// of the Poisson ratio itself would be wrong: 10 % of cartilage would halve the resistance of flesh to volume changes.
+// A tet without soft tissue takes the material of the nearest soft voxel. The stiffness of soft tissue is limited to
+// `stiffest`, because of tendons. A tendon of 1 GPa is a cord that slides in its sheath and buckles; as a solid that is
+// as thick as a tet it would be a strut between two bones, and no joint could turn against it.
 //
 // Bones. A bone holds the nodes of its tets. Nodes of tissue that is meshed but does not bend (deforming_region.h) are
-// held by the bone with which that tissue moves. A node of two bones that move differently is not held. Tets between
-// two bones are the joint: soft and compressible, since there the mesh is far coarser than the gap and fluid that let a
-// joint turn. Bones slide along each other by more than a tet, which a single layer of tets cannot follow: so the ends
-// of bones within `joint_mm` of another bone also belong to the joint and are not held. Where the pose brings two bones
-// closer together than `closing_mm`, or into each other, no soft tissue could be pressed flat enough between them: the
-// nodes of bone there are not held either, and their tets belong to the joint. All bone voxels still move rigidly in
+// held by the bone with which that tissue moves. A node shared by two bones that move differently is not held. Tets
+// between two bones form the joint: they are soft and compressible, because the mesh is far coarser than the gap and
+// the fluid that let a real joint turn. Bones slide along each other by more than a tet, which a single layer of tets
+// cannot follow: so the ends of bones within `joint_mm` of another bone also belong to the joint and are not held. If
+// the pose brings two bones closer together than `closing_mm`, or into each other, soft tissue could not become thin
+// enough between them: the nodes of bone there are not held either, and their tets belong to the joint. All bone voxels
+// still move rigidly in the posed volume.
 // the posed volume.
 #pragma once
 
@@ -30,8 +30,8 @@ namespace limber {
 
 struct TissueModelSettings {
   double joint_mm = 12;
-  // Motions of the rig's bones, indexed as weights.bones(), at some positions on the path; and the distance between two
-  // bones at one of them below which both belong to a joint.
+  // motions: the motions of the rig's bones at some positions on the path, indexed like weights.bones(). closing_mm: if
+  // two bones are closer than this in one of these motions, they belong to a joint there.
   std::vector<std::vector<RigidTransform>> motions = {};
   double closing_mm = 8;
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa
@@ -45,26 +45,27 @@ struct TissueModel {
     double mm3;
   };
   FemModel fem;
-  std::vector<std::int32_t> first;  // #T + 1: where the entries of each tet begin in `parts`
+  std::vector<std::int32_t> first;  // #T + 1: index in `parts` of the first entry of each tet
   std::vector<Part> parts;          // the volume that each label fills in each tet
   std::vector<std::uint8_t> joint;  // #T: 1 for tets between two bones, which form a joint
 };
 
 // Returns the regions to mesh as labels: 0 for air and tissue that is not meshed, 1 for soft tissue, 2 + b for tissue
-// of bone b. Bones that move alike count as one: b is an entry of DeformingRegion::moves_as.
+// of bone b. Bones with the same motion count as one bone: b is an entry of DeformingRegion::moves_as.
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
                             const SkinWeights& weights, const DeformingRegion& moving);
 
 // Builds the model of the meshed tissue.
-//   weights  must give each voxel of bone tissue to one bone with weight 1
+//   weights  each voxel of bone tissue must follow one bone with weight 1
 //   mesh     mesh of the regions that regions_to_mesh() returns. Its tets of bone b have the region 1 + b, its tets of
-//            soft tissue the region 0
+//   soft
+//            tissue the region 0
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                          const SkinWeights& weights, const DeformingRegion& moving, TetMesh mesh,
                          const TissueModelSettings& settings = {});
 
-// Returns the change of each label's volume in percent, from the volume ratios of the tets that contain it. Joints are
-// left out, since their volume may change.
+// Returns the change of each label's volume in percent, from the volume ratios of the tets that contain it. Tets of
+// joints are left out, since their volume may change.
 //   V  #V posed nodes
 std::map<Label, double> volume_change_percent(const TissueModel& model, const Eigen::MatrixX3d& V);
 
