@@ -10,8 +10,8 @@
 namespace limber {
 
 namespace {
-// Time that each bone (right-hand side) of a block adds to the solve of a brick, relative to the time that a brick
-// takes for any number of bones.
+// Time that each bone (right-hand side) of a block adds to the solve in a brick, relative to the time that a brick
+// takes independently of the number of bones.
 constexpr double kLaneCost = 0.25;
 
 std::int64_t size_of_union(const std::vector<std::int32_t>& a, const std::vector<std::int32_t>& b) {
@@ -34,7 +34,7 @@ std::vector<BoneBlock> blocks_of_bones(const std::vector<std::vector<std::int32_
   std::stable_sort(waiting.begin(), waiting.end(), [&](int a, int b) { return bricks[a].size() > bricks[b].size(); });
 
   std::vector<BoneBlock> blocks;
-  std::vector<std::int64_t> joined(bricks.size());  // bricks of the block with each waiting bone
+  std::vector<std::int64_t> joined(bricks.size());  // number of bricks of the block with each waiting bone added
   while (!waiting.empty()) {
     BoneBlock block{{waiting.front()}, bricks[waiting.front()]};
     waiting.erase(waiting.begin());

@@ -6,18 +6,19 @@
 namespace limber {
 
 namespace {
-// The last bone of a chain also carries the flesh beyond its tail (four fingers, the toes, the jaw), and most of this
-// flesh is further from the bone than the bone is long. So the distance to this bone counts as less: its part beyond
+// The flesh beyond the tail of a chain's last bone (four fingers, the toes, the jaw) follows this bone too, and most of
+// it is further from the bone than the bone is long. So the distance to a last bone is reduced: its part beyond
 // kOwnReach times the bone's length is multiplied by kLastBone.
 constexpr float kOwnReach = 0.5f;
 constexpr float kLastBone = 0.65f;
 // A bone that only links a limb to the trunk (a collarbone) should get less flesh, since the chest below it belongs to
-// the trunk. So the distance to this bone is multiplied by kLink. A bone is a link if its child is so long that the
-// bone is shorter than kLinkShare of it, and if it turns aside from a parent with several children.
+// the trunk. So the distance to this bone is multiplied by kLink. A bone is a link if it is shorter than kLinkShare of
+// its child's length, and if it turns away from the direction of a parent with several children.
 constexpr float kLink = 1 / kLastBone;
 constexpr double kLinkShare = 0.75;
-// Lower limit on the ratio of the distance to the nearest bone to the distance to a joint. Flesh above it lies around
-// the joint itself, about equally near to the joint's two bones, so the plane through the joint divides it (Hinges).
+// Flesh counts as being around a joint if the distance to its nearest bone is at least this share of its distance to
+// the joint. Such flesh is about equally near to the joint's two bones, so the plane through the joint divides it
+// (Hinges).
 constexpr float kAtJoint = 0.75f;
 
 glm::dvec3 along(const Bone& bone) { return bone.tail - bone.head; }
@@ -36,7 +37,7 @@ bool is_link(const Armature& armature, size_t b) {
   return forks && leads_on && glm::dot(along(bone), before) < 0.5 * length * glm::length(before);
 }
 
-// Returns for each bone whether no other bone is its child.
+// Returns for each bone whether it is the last bone of a chain: no other bone is its child.
 std::vector<bool> are_last(const Armature& armature) {
   std::vector<bool> last(armature.bones.size(), true);
   for (const Bone& bone : armature.bones)

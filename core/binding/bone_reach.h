@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Corrects which bone is nearest to flesh. The shape of a skeleton says more than distance alone: the last bone of a
-// chain carries flesh far beyond its tail, a collarbone carries little, and flesh around a joint belongs to the bone on
-// its side of the joint.
+// Corrects which bone is nearest to flesh. Distance alone is not enough: the last bone of a chain should get the flesh
+// far beyond its tail, a collarbone should get little flesh, and flesh around a joint belongs to the bone on its side
+// of the joint.
 #pragma once
 
 #include <array>
@@ -15,30 +15,32 @@
 
 namespace limber {
 
-// Corrects the distance to a bone before it is compared with other bones' distances: the part of the distance beyond
-// `reach` is multiplied by `share`. In a body whose chest has no ribs (chest_reach.h), the bones of the arms count as
-// further away in this comparison, and the flesh that the chest wins is held as if ribs were near it.
+// Corrects the distance to a bone before it is compared with the distances to other bones: the part of the distance
+// beyond `reach` is multiplied by `share`. If the body's chest has no ribs (chest_reach.h), the bones of the arms count
+// as further away in this comparison, and the distance of the flesh that follows the chest's bones is then shortened as
+// if ribs were near it.
 struct BoneReach {
-  // The part that a bone plays where a chest has no ribs.
+  // The region to which a bone belongs in a body whose chest has no ribs; None: another region.
   enum class Cage : std::uint8_t { None, Chest, Arm };
-  // Where a rib cage would be, ribs would be nearer than the spine: distances count this much.
+  // Factor on distances inside the missing rib cage, since ribs would be nearer to the flesh than the spine is.
   static constexpr float kInCage = 0.4f;
-  // The chest holds its flesh as if it were nearer by this factor.
+  // Factor on the distance from which the chest's bones give heat to their flesh inside the missing rib cage.
   static constexpr float kHeldInCage = 0.7f;
 
-  float reach = std::numeric_limits<float>::infinity();  // mm
+  float reach = std::numeric_limits<float>::infinity();  // mm; infinite: the distance is not corrected
   float share = 1;
   float cage_width = 0;  // half the width of the rib cage, mm
   Cage cage = Cage::None;
 
-  // Returns the distance that is compared with other bones' distances.
+  // Returns the corrected distance, for the comparison with other bones' distances.
   //   way  length of the path from the bone, mm
   float operator()(float way) const {
     const float own = way <= reach ? way : reach + share * (way - reach);
     if (cage != Cage::Arm) return own;
     return own <= kInCage * cage_width ? own / kInCage : own + (1 - kInCage) * cage_width;
   }
-  // Returns the distance that counts for the bone that has won the comparison, from the distance that was compared.
+  // Returns the distance from which the bone that won the comparison gives heat, mm.
+  //   compared  the corrected distance that was compared, mm
   float held_from(float compared) const {
     if (cage == Cage::None) return compared;
     if (cage == Cage::Chest)
@@ -47,19 +49,19 @@ struct BoneReach {
   }
 };
 
-// Returns the correction for each bone of the armature. The last bone of a chain counts as nearer than it is, and a
-// bone that only links a limb to the trunk (a collarbone) as further away.
+// Returns the correction for each bone of the armature. The distance to the last bone of a chain is reduced, the
+// distance to a bone that only links a limb to the trunk (a collarbone) is increased.
 std::vector<BoneReach> reaches_of_bones(const Armature& armature);
 
-// Divides the flesh at joints where exactly two bones meet. Flesh around the joint itself is equally near to the two
-// bones. It belongs to the bone on its side of the plane that bisects the angle between the bones: the heel belongs to
-// the foot, not to the shin.
+// Divides the flesh at joints where exactly two bones meet. Flesh around the joint is about equally near to both bones.
+// It belongs to the bone on its side of the plane that bisects the angle between the bones. So the heel belongs to the
+// foot and not to the shin.
 class Hinges {
  public:
   explicit Hinges(const Armature& armature);
 
-  // Returns the bone that the flesh at `point` belongs to.
-  //   nearest, distance  the nearest bone, and its distance, mm
+  // Returns the bone to which the flesh at `point` belongs.
+  //   nearest, distance  the nearest bone and its distance, mm
   std::uint16_t bone_at(const glm::vec3& point, std::uint16_t nearest, float distance) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // One brick of tissue (8^3 voxels) and the layer of voxels around it, as a dense block. Heat flows through voxel faces
-// only, so that is all that a step on a brick reads.
+// only, so a solver step on a brick reads no other voxels.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@
 
 namespace limber {
 
-// Stands in place of a bone index for a voxel whose temperature no bone fixes.
+// Marks a soft voxel, whose temperature no bone fixes, where the index of a bone is stored for other voxels.
 constexpr std::uint16_t kSoft = 0xFFFF;
 
 struct BrickWindow {
-  // What a window is read from. The referred objects must outlive it.
+  // The data from which a window is read. The referenced objects must outlive the window.
   struct Source {
     const LabelVolume& volume;
     const TissueVoxels& tissue;
     const ZeroedVector<std::uint16_t>& held_by;  // bone that fixes each tissue voxel's temperature; kSoft: none
-    const std::vector<float>& conductivity;      // of each label's tissue, above 0
+    const std::vector<float>& conductivity;      // conductivity of the tissue of each label, above 0
   };
-  // Step in the arrays to the neighbour towards -x, +x, -y, +y, -z, +z.
+  // Index offset in the arrays below to the neighbour towards -x, +x, -y, +y, -z, +z.
   static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
 
   std::array<std::int32_t, 1000> place;    // index in the list of tissue voxels; -1: air
@@ -35,10 +35,11 @@ struct BrickWindow {
   // Returns the index of voxel v in the arrays; v is relative to the brick's lowest corner, [-1, 8] along each axis.
   static int at(const glm::ivec3& v) { return (v.x + 1) + 10 * (v.y + 1) + 100 * (v.z + 1); }
 
-  // Returns whether a seam cuts the face of a voxel of the volume in a direction.
+  // Returns true if a seam cuts the face of a voxel in the given direction. `voxel` is in coordinates of the volume.
   bool is_cut(const glm::ivec3& voxel, int direction) const { return seams && seams->is_cut_towards(voxel, direction); }
 
-  // Fills the window with a brick. The voxels at the window's edges and corners are not read and count as air.
+  // Reads a brick and the layer around it into the window. Voxels at the window's edges and corners are not read and
+  // count as air.
   void look(const Source& from, std::int64_t brick) {
     const auto& here = from.tissue.bricks()[brick];
     seams = from.tissue.seams();
@@ -49,8 +50,8 @@ struct BrickWindow {
     for (int direction = 0; direction < 6; ++direction) look_beside(from, here.corner, direction);
   }
 
-  // Calls body(voxel relative to the brick's lowest corner, index in the arrays) for every soft voxel of the brick, in
-  // the order of the list of tissue voxels.
+  // Calls body(voxel, index) for every soft voxel of the brick, in the order of the list of tissue voxels. `voxel` is
+  // relative to the brick's lowest corner, `index` is its index in the arrays.
   template <class Body>
   void for_soft(const Body& body) const {
     for (int z = 0; z < TissueVoxels::kBrick; ++z)
@@ -63,8 +64,9 @@ struct BrickWindow {
  private:
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
-  // Fills in those voxels of slice z of a brick whose bits (x + 8 y) are set. Returns the bits of the soft ones.
-  //   to  where the voxel of bit 0 goes, relative to the lowest corner of the window's brick
+  // Reads those voxels of slice z of a brick whose bits (x + 8 y) are set in `which`. Returns the bits of the soft
+  // ones.
+  //   to  position of the voxel of bit 0 in the window, relative to the lowest corner of the window's brick
   std::uint64_t look_at(const Source& from, const TissueVoxels::Brick& brick, int z, std::uint64_t which,
                         const glm::ivec3& to) {
     if (!(brick.mask[z] & which)) return 0;
@@ -85,9 +87,10 @@ struct BrickWindow {
     return soft_ones;
   }
 
-  // Fills the layer of voxels that lies in the neighbouring brick in a direction.
+  // Reads the layer of voxels in the neighbouring brick in a direction.
   void look_beside(const Source& from, const glm::ivec3& corner, int direction) {
-    constexpr std::uint64_t kLowest[2] = {0x0101010101010101, 0xff};  // the lowest voxels of a slice along x and y
+    // Bits of a slice's voxels with the lowest x, and of those with the lowest y.
+    constexpr std::uint64_t kLowest[2] = {0x0101010101010101, 0xff};
     const int axis = direction >> 1, last = TissueVoxels::kBrick - 1;
     const bool is_higher = direction & 1;
     glm::ivec3 to(0);

@@ -11,10 +11,10 @@
 namespace limber {
 
 namespace {
-// Upper limit on a negligible weight. A bone is solved for only in bricks where the coarse solution gives it more
-// weight than this (heat_diffusion.cpp says what such a weight moves).
+// Upper limit on a negligible weight. A bone is solved for only in bricks where the coarse solution gives it a larger
+// weight (kNegligible in heat_diffusion.cpp has the effect of such a weight in mm).
 constexpr float kNegligible = 3e-4f;
-// Lower limit on a temperature that is kept: half of the smallest weight that BestFour keeps.
+// Smaller temperatures are not stored. This is half of the smallest weight that BestFour stores.
 constexpr float kLeastTemperature = 5e-5f;
 constexpr double kScoutResidual = 1e-4;
 constexpr std::int64_t kGrain = 64;    // number of bricks in one block of a parallel loop
@@ -22,10 +22,10 @@ constexpr std::int64_t kCells = 4096;  // number of cells in one block of a para
 
 using Sources = std::vector<std::vector<CellSource>>;
 
-// Twice coarsened cells of the whole body, and each bone's temperatures there.
+// The cells of the whole body, coarsened twice (scout cells), and each bone's temperatures in them.
 struct Scout {
   std::vector<std::int32_t> of_cell;  // scout cell that contains each cell
-  std::vector<bool> reached;          // whether heat from some bone reaches each scout cell
+  std::vector<bool> reached;          // true: heat from at least one bone reaches the scout cell
   std::vector<std::vector<float>> by_bone;
 };
 
@@ -49,7 +49,7 @@ std::vector<bool> reached_cells_of(const CellGraph& graph, const std::vector<dou
   return reached;
 }
 
-// Returns the graph of the scout cells, with the links between cells as its only losses.
+// Returns the graph of the scout cells. Its diagonal contains only the links between cells, no losses to bones.
 CellGraph coarsen_twice(const CellGraph& cells, std::vector<std::int32_t>& scout_of_cell) {
   static_assert(kScoutCoarsenings == 2);
   std::vector<std::int32_t> upper;
@@ -73,7 +73,7 @@ Scout solve_scout(const CellGraph& cells, const Sources& sources, const Progress
   for (const auto& of_bone : sources)
     for (const CellSource& source : of_bone) heat[scout.of_cell[source.cell]] += source.on_scout;
   scout.reached = reached_cells_of(graph, heat);
-  // Cells that no heat reaches keep temperature zero. An extra loss of heat keeps the system solvable.
+  // Cells that no heat reaches get temperature zero: an additional heat loss there keeps the system solvable.
   for (std::int64_t c = 0; c < size; ++c) graph.diagonal[c] += scout.reached[c] ? static_cast<float>(heat[c]) : 1;
   const Multigrid multigrid(std::move(graph));
   scout.by_bone.resize(sources.size());
@@ -97,7 +97,7 @@ Scout solve_scout(const CellGraph& cells, const Sources& sources, const Progress
   return scout;
 }
 
-// Returns for each bone the bricks in which the scout's solution gives it weight, ascending.
+// Returns for each bone the bricks in which the scout solution gives the bone weight, ascending.
 std::vector<std::vector<std::int32_t>> bricks_with_weight(const HeatCells& cells, const Scout& scout) {
   const std::int64_t brick_count = std::ssize(cells.first) - 1;
   std::vector<std::vector<std::int32_t>> bricks(scout.by_bone.size());
@@ -116,7 +116,7 @@ std::vector<std::vector<std::int32_t>> bricks_with_weight(const HeatCells& cells
   return bricks;
 }
 
-// The cells of some bricks as a graph of their own. Cells in other bricks have temperature 0.
+// The cells of some of the bricks as a separate graph. Cells in other bricks have temperature 0.
 class BrickCells {
  public:
   BrickCells(const HeatCells& cells, const Scout& scout)
@@ -124,7 +124,7 @@ class BrickCells {
         scout_(scout),
         number_(cells.graph.size(), -1) {}
 
-  // Chooses the bricks.
+  // Sets the bricks whose cells are in the graph.
   void choose(const std::vector<std::int32_t>& bricks) {
     std::vector<std::array<std::int32_t, 2>> from(bricks.size() + 1);
     std::int32_t next = 0;
@@ -165,7 +165,7 @@ class BrickCells {
     for_cells([&](std::int64_t k) {
       const std::int32_t cell = whole_[k];
       graph.position[k] = all.position[cell];
-      // Cells that no heat reaches keep temperature zero. An extra loss of heat keeps the system solvable.
+      // Cells that no heat reaches get temperature zero: an additional heat loss there keeps the system solvable.
       graph.diagonal[k] = all.diagonal[cell] + (scout_.reached[scout_.of_cell[cell]] ? 0.0f : 1.0f);
       for (std::int32_t i = all.first[cell]; i < all.first[cell + 1]; ++i)
         graph.first[k + 1] += number_[all.neighbour[i]] >= 0;
@@ -198,7 +198,7 @@ class BrickCells {
   std::int32_t red_count_ = 0;
 };
 
-// The solution of one block of bones.
+// The temperatures that were solved for one block of bones.
 struct BlockTemperatures {
   std::vector<int> bones;
   std::vector<std::int32_t> cell;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves steady heat on HeatCells, the cells of volumes of very many voxels, for all bones.
+// Solves for steady heat in HeatCells, the cells of several voxels that are used for very large volumes, for all bones.
 //
-// The cells are coarsened twice. These scout cells (4 cells along each axis) are solved for every bone first: they tell
-// in which bricks a bone has weight at all, and give the first guess. Then bones are solved in blocks, each on the
-// cells of its bricks.
+// The cells are first coarsened twice. These scout cells (4 cells along each axis) are solved for every bone. They show
+// in which bricks a bone has weight at all, and give the initial guess. Then bones are solved in blocks, each only in
+// the cells of its bricks.
 #pragma once
 
 #include <cstdint>
@@ -19,20 +19,21 @@ namespace limber {
 
 constexpr int kScoutCoarsenings = 2;
 
-// Heat that a bone gives to a cell, through faces and at a distance.
+// The conductance from a bone to a cell, through faces or at a distance.
 struct CellSource {
   std::int32_t cell;
   float conductance;
-  float on_scout;  // the part of this conductance in the conductance of the scout cell around the cell
+  float on_scout;  // the part of it that counts in the scout cell that contains the cell
 };
 
-// Returns the sources of each bone. Also adds the conductances at a distance to the diagonal of the cells' graph.
+// Returns the sources of each bone. Also adds the conductances of heat at a distance to the diagonal of the cells'
+// graph.
 //   paths  from paths_to_cells()
 std::vector<std::vector<CellSource>> sources_of_bones(const BrickWindow::Source& source, const HeatLaw& law,
                                                       const Armature& armature, const std::vector<CellPath>& paths,
                                                       const std::vector<BoneReach>& reaches, HeatCells& cells);
 
-// The temperatures of each cell, without negligible ones.
+// The bones' temperatures in each cell, without negligible ones.
 struct CellTemperatures {
   struct Entry {
     std::uint16_t bone;
@@ -42,7 +43,8 @@ struct CellTemperatures {
   ZeroedVector<Entry> entries;
 };
 
-// Throws Error when the solve for a bone does not reach its residual, and Cancelled.
+// Solves for the temperatures of all bones. Throws Error if the solve for a bone does not reach its residual, and
+// Cancelled.
 //   most_bytes  memory limit of a block of several bones
 CellTemperatures solve_cells(const HeatCells& cells, const std::vector<std::vector<CellSource>>& sources,
                              const Armature& armature, const HeatDiffusion& settings, double most_bytes,

@@ -13,9 +13,9 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 64;     // number of bricks in one block of a parallel loop
-constexpr float kLeastDistance = 0.5f;  // between the centres of linked cells, in voxels
+constexpr float kLeastDistance = 0.5f;  // lower limit on the distance between linked cells' centres, voxels
 
-// Step in a cube of 3 x 3 x 3 values along each axis, and the index of its middle.
+// Index offset along each axis in a cube of 3 x 3 x 3 values, and the index of the cube's middle.
 constexpr std::array<int, 3> kStep{1, 3, 9};
 constexpr int kMiddle = 13;
 
@@ -63,14 +63,15 @@ class BrickInterpolation {
       }
     return found;
   }
-  // Returns the cell that is linked to one of two cells, each in its direction; -1: none, or a cell is missing.
+  // Returns the cell that is linked to cell a in direction from_a or, if there is none, to cell b in direction from_b;
+  // -1: none, or a or b is missing.
   std::int32_t linked_to_both(std::int32_t a, int from_a, std::int32_t b, int from_b) const {
     if (a < 0 || b < 0) return -1;
     const std::int32_t found = linked(a, from_a);
     return found >= 0 ? found : linked(b, from_b);
   }
 
-  // Finds the cells around a cell that links lead to.
+  // Finds the 26 cells around a cell, as far as links lead to them.
   void find_around(std::int32_t cell) {
     around_.fill(-1);
     around_[kMiddle] = cell;
@@ -90,7 +91,7 @@ class BrickInterpolation {
     around_[face_of(a) + face_of(b) - kMiddle] = linked_to_both(around_[face_of(a)], b, around_[face_of(b)], a);
   }
 
-  // Lists the bones that have a temperature in the cells around, and their temperatures there.
+  // Lists the bones that have a temperature in the cell or in a cell around it, and these temperatures.
   void gather_values() {
     bones_.clear();
     for (int k = 0; k < 27; ++k) {
@@ -110,8 +111,8 @@ class BrickInterpolation {
     return values_[at];
   }
 
-  // Finds how far away, along its axis, the value in each direction is, in voxels. Without a linked cell, this is the
-  // distance to the bone on this side, or a cell's edge.
+  // Computes the distance from the cell's centre to the value in each of the six directions, along the axis, in voxels:
+  // the distance to the linked cell or, without one, to the bone on this side, or the edge length of a cell.
   void find_distances(std::int32_t cell) {
     const glm::vec3 centre = cells_.centre[cell];
     held_.fill({});
@@ -131,7 +132,7 @@ class BrickInterpolation {
     }
   }
 
-  // Fills in the values in directions without linked cells.
+  // Sets the values in directions that have no linked cell.
   void fill_gaps(std::int32_t cell, std::uint16_t bone, Cube& value) const {
     for (int direction = 0; direction < 6; ++direction) {
       const int face = face_of(direction);
@@ -184,16 +185,16 @@ class BrickInterpolation {
     }
   }
 
-  // The sides of a cell that touch bones, in one direction.
+  // Sum over the sides of a cell that touch bones, in one direction.
   struct Held {
-    float conductance = 0, distance = 0;  // the distance from the cell's centre to the bone is in voxels
+    float conductance = 0, distance = 0;  // distance from the cell's centre to the bone, voxels
   };
 
   const TissueVoxels& tissue_;
   const HeatCells& cells_;
   const CellTemperatures& temperatures_;
   BestFour& best_;
-  // Working memory.
+  // Memory that is reused from cell to cell.
   std::vector<int> from_, next_;  // index in voxels_ of the first voxel of each cell
   std::array<std::pair<std::int64_t, glm::ivec3>, 512> voxels_;
   std::array<std::int32_t, 27> around_;  // the cells around a cell; -1: no link leads there

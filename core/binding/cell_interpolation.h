@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Interpolates the temperatures of HeatCells to the voxels of the tissue: trilinearly between the centres of a cell and
-// of the cells that are linked to it. Beyond a side that touches a bone, the bone's own temperature is taken at the
-// side; beyond air and seams, the temperature does not change. So no weight crosses air.
+// of the cells that are linked to it. On a side that touches a bone, the bone's own temperature is used at the bone's
+// surface; towards air and seams, the temperature is constant. So no weight crosses air.
 #pragma once
 
 #include "core/binding/cell_heat.h"
@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Offers the temperatures of all soft voxels to `best`, except in some bricks.
-//   except  indices of these bricks, ascending
+// Offers the temperatures of all soft voxels to `best`, except in the bricks `except`.
+//   except  indices of bricks, ascending
 void interpolate_cells(const TissueVoxels& tissue, const HeatCells& cells, const std::vector<std::int32_t>& except,
                        const CellTemperatures& temperatures, BestFour& best);
 

@@ -10,9 +10,9 @@
 namespace limber {
 
 namespace {
-// The cells are divided into fixed domains, each the cells of a range of bricks. Threads advance the fronts of
-// different domains at the same time, by one step of length. Paths from one domain into another are sent and accepted
-// in a fixed order, so that the paths do not depend on the number of threads.
+// The cells are divided into fixed domains; a domain contains the cells of a range of bricks. Threads advance the
+// fronts of different domains at the same time, by one step of path length. Paths from one domain into another are sent
+// and accepted in a fixed order, so that the result does not depend on the number of threads.
 constexpr std::int64_t kLeastBricks = 256, kMostDomains = 64;
 // Width of a bucket of path lengths, as a share of the shortest edge of a cell. Paths in one bucket may be advanced in
 // any order.
@@ -110,7 +110,7 @@ class CellFront {
         const bool is_own = &domains_[domain_of_[to]] == &domain;
         CellPath path = here;
         path.length = here.to(cells_.centre[to], spacing_);
-        // The length of the path that goes straight on is a lower bound: if the path must bend, it is longer.
+        // The length of the straight path is a lower limit: a path that must bend is longer.
         if (is_own && !is_shorter(here.bone, path.length, to)) continue;
         if (!is_straight(here.corner, cells_.centre[to])) {
           path.corner = cells_.centre[cell];
@@ -123,7 +123,7 @@ class CellFront {
     }
   }
 
-  // Returns whether the last part of a straight line, as long as a cell, runs through tissue and touches no seam.
+  // Returns true if the last part of a straight line, one cell long, runs through tissue and touches no seam.
   bool is_straight(const glm::vec3& corner, const glm::vec3& centre) const {
     const glm::vec3 way = corner - centre, size = glm::abs(way);
     const float longest = std::max({size.x, size.y, size.z});
@@ -163,7 +163,7 @@ class CellFront {
   const std::vector<BoneReach>& reaches_;
   const glm::vec3 spacing_;
   const float width_;
-  const int samples_;  // voxels of a straight line that are looked at: the longest edge of a block
+  const int samples_;  // number of voxels of a straight line that are examined: the longest edge of a block
   std::vector<CellPath> paths_;
   std::vector<std::uint8_t> domain_of_;  // domain of each cell
   std::vector<bool> near_seam_;          // whether a seam is near each brick; empty: the volume has no seams

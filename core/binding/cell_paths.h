@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds the bone nearest to each cell of HeatCells on a path through tissue, as geodesic_front.h does from voxel to
-// voxel: a front spreads from cell to linked cell, the shortest paths first. Each cell stores the last corner of its
-// path (at first a voxel of the bone); from the corner to the cell the path is straight. Where the tissue before the
-// cell on that straight line has a gap, or a seam is near, the path bends at the cell from which the front came.
+// Finds the bone nearest to each cell of HeatCells along a path through tissue, as geodesic_front.h does for voxels: a
+// front spreads from cell to linked cell, the shortest paths first. Each cell stores the last corner of its path (at
+// first a voxel of the bone); from the corner to the cell the path is straight. If the last part of that straight line
+// crosses a gap in the tissue, or a seam is near, the path bends at the cell from which the front came.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct CellPath {
   float length = 0;            // length of the path up to the cell's centre, mm
   std::uint16_t bone = kSoft;  // kSoft: no path from a bone reaches the cell
 
-  // Returns the length of the path to a voxel of the cell, mm.
+  // Returns the length of the path when it ends at a voxel of the cell instead of at the cell's centre, mm.
   float to(const glm::vec3& voxel, const glm::vec3& spacing) const {
     const glm::vec3 way = (voxel - corner) * spacing;
     return to_corner + std::sqrt(glm::dot(way, way));
@@ -31,8 +31,8 @@ struct CellPath {
 std::vector<CellPath> paths_to_cells(const Grid& grid, const TissueVoxels& tissue, const HeatCells& cells,
                                      const std::vector<BoneReach>& reaches);
 
-// Finds the bone nearest to single voxels, along the paths to their cells. Where the nearest bones of linked cells
-// differ, or a cell touches bones, several paths may be the shortest.
+// Finds the bone nearest to single voxels, along the paths to their cells. If the nearest bones of linked cells differ,
+// or a cell touches bones, there are several candidate paths.
 class PathsToVoxels {
  public:
   // Keeps references to all arguments.
@@ -45,7 +45,7 @@ class PathsToVoxels {
         spacing_(grid.spacing),
         world_(world_from_voxel(grid)) {}
 
-  // Lists the paths that may be the shortest to voxels of a cell. The list is empty if no path reaches the cell.
+  // Lists the candidates for the shortest path to the voxels of a cell. The list is empty if no path reaches the cell.
   void list(std::int32_t cell, std::vector<CellPath>& found) const;
 
   // The bone that gives heat to a voxel at a distance (attracting_bone), and its corrected distance, mm.

@@ -14,10 +14,10 @@ namespace limber {
 namespace {
 // Half the width of a rib cage, as a share of the distance between the trunk's axis and a shoulder joint.
 constexpr double kCageWidth = 0.75;
-// A bone has ribs if its tissue is at least this far from its axis in the mean (root mean square), as a share of half
-// the cage's width. Vertebrae alone reach about 0.2, ribs 0.6 and more.
+// A bone has ribs if the root mean square distance of its tissue from its axis is at least this share of half the
+// cage's width. For vertebrae alone the value is about 0.2, with ribs 0.6 and more.
 constexpr double kHasRibs = 0.4;
-// The ribs end this far down the way from the shoulders to the hips.
+// The rib cage ends at this share of the way down from the shoulders to the hips.
 constexpr double kCageEnd = 0.6;
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 
@@ -52,15 +52,15 @@ std::optional<glm::dvec3> middle_of(const Armature& armature, const BoneRoles& r
   return sum / double(count);
 }
 
-// The bones of the spine at the height of the ribs, those of the arms, and half the width that a rib cage would have,
-// mm.
+// The bones of the spine at the height of the ribs, the bones of the arms, and half the width in mm that a rib cage
+// would have.
 struct Chest {
   std::vector<std::uint16_t> bones, arms;
   double half_width = 0;
 };
 
 Chest chest_of(const Armature& armature) {
-  // Bones with unknown names, as those that spread an arm's twist, tell nothing of where joints lie.
+  // Bones with unknown names, such as twist bones of an arm, do not show where joints are.
   const BoneRoles roles = bone_roles(armature), inherited = inherited_bone_roles(armature);
   const auto shoulders = middle_of(armature, roles, BodyPart::UpperArm);
   const auto thighs = middle_of(armature, roles, BodyPart::Thigh);
@@ -68,7 +68,8 @@ Chest chest_of(const Armature& armature) {
   Chest chest;
   if (!shoulders || !hips || *hips == *shoulders) return chest;
   const glm::dvec3 down = *hips - *shoulders;
-  // The axis of the trunk leads from the hips to the neck. A rig with one arm has its shoulder beside this axis too.
+  // The trunk's axis leads from the hips to the neck, so that a single arm's shoulder is beside this axis too. Without
+  // a neck, the mean of the shoulders is used.
   const auto neck = middle_of(armature, roles, BodyPart::Neck);
   const glm::dvec3 up = glm::normalize((neck ? *neck : *shoulders) - *hips);
   for (std::size_t b = 0; b < roles.size(); ++b) {
@@ -87,7 +88,7 @@ Chest chest_of(const Armature& armature) {
   return chest;
 }
 
-// Returns the distance of each chest bone's tissue from the bone's axis (root mean square), mm.
+// Returns the root mean square distance of each chest bone's tissue from the bone's axis, mm.
 std::vector<double> distances_of_tissue(const Grid& grid, const TissueVoxels& tissue, const Armature& armature,
                                         const ZeroedVector<std::uint16_t>& held_by, const Chest& chest) {
   struct Sum {

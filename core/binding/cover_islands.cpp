@@ -11,9 +11,9 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 256;  // bricks per block
+constexpr std::int64_t kGrain = 256;  // bricks per block of a parallel loop
 
-// Returns the blocks of bricks in which a voxel has no bone, in ascending order.
+// Returns the blocks of bricks that contain a voxel without a bone, in ascending order.
 std::vector<std::int64_t> blocks_with_uncovered(const TissueVoxels& tissue, const BestFour& best) {
   const auto bricks = std::ssize(tissue.bricks());
   std::vector<std::uint8_t> has_uncovered((bricks + kGrain - 1) / kGrain);
@@ -34,7 +34,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
                    WeightsReport& report, const TissueTable* tissues) {
   struct Island {
     std::int64_t voxels;
-    double file_value;  // file value of the label of the component's first voxel
+    double file_value;  // value that the label of the component's first voxel has in files
     glm::dvec3 centre;
     int bone;
   };
@@ -43,7 +43,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   std::vector<std::pair<std::int64_t, glm::ivec3>> piece;
   const auto cover_from = [&](std::int64_t seed, const glm::ivec3& seed_voxel) {
     if (best.covered(tissue.brick_at(seed_voxel), seed)) return;
-    // Gives each voxel of this connected component to bone 0 at first. This marks the voxel as visited until the bone
+    // Gives each voxel of this connected component to bone 0 for now. This marks the voxel as visited until the bone
     // nearest to the whole component is known.
     piece.assign(1, {seed, seed_voxel});
     best.hold(tissue.brick_at(seed_voxel), seed, 0);

@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Gives weights to connected components of tissue that no bone has reached because air surrounds them.
-// Each component follows the rig bone nearest to its centre. The report's warnings name the largest components first.
+// Gives weights to connected components of tissue that no bone has reached because air surrounds them. Each component
+// follows the rig bone nearest to its centre. The report's warnings name the largest components first.
 void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, BestFour& best,
                    WeightsReport& report, const TissueTable* tissues = nullptr);
 

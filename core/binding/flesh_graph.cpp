@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 // Strength of the heat that a soft voxel receives from its nearest bone at a distance: the conductance is this factor
 // times the voxel's volume / distance^2. Factors from 1 to 4 agree equally well with weights painted by hand; with a
-// factor of 0 (conduction alone) the agreement is a fifth lower.
+// factor of 0 (conduction alone) the agreement is 20 % lower.
 constexpr float kAttraction = 2;
 }  // namespace
 
@@ -55,8 +55,8 @@ HeatGraph::HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, cons
       law_(volume.grid, tissues, stiffness),
       bones_in_brick_(bones_in_bricks()) {}
 
-// Returns the conductance of a face of a soft voxel. The voxel on the other side is soft, or a bone holds it at a fixed
-// temperature. Returns 0 if the other side is air or a seam cuts the face.
+// Returns the conductance of a face of a soft voxel to the voxel on the other side, which is soft or held at a fixed
+// temperature by a bone. Returns 0 if the other side is air or a seam cuts the face.
 float HeatGraph::conductance(const Window& window, const glm::ivec3& v, int here, int direction) const {
   const int there = here + Window::kTo[direction], axis = direction >> 1;
   if (window.place[there] < 0 || window.is_cut(v, direction)) return 0;
@@ -78,7 +78,8 @@ void HeatGraph::for_soft(std::int64_t brick, Window& window, const Body& body) c
 }
 
 namespace {
-// Unlinks the cells of a brick from those beyond one of its sides, which are left out of the system.
+// Removes the links between the cells of a brick and the cells beyond one of its sides, which are not part of the
+// system.
 void unlink_side(std::int64_t brick, int direction, HeatSystem& system) {
   const int axis = direction >> 1;
   glm::ivec3 in;
@@ -210,9 +211,9 @@ void HeatGraph::add_outside(const std::vector<std::int32_t>& bricks, int lanes, 
 }
 
 namespace {
-using Slices = std::array<std::uint64_t, 8>;  // voxels of a brick, one word per z slice: bit x + 8 y
+using Slices = std::array<std::uint64_t, 8>;  // one bit per voxel of a brick, one word per z slice: bit x + 8 y
 
-// Returns the faces of a brick's voxels towards higher x, y and z that seams cut.
+// Returns the voxels of a brick whose face towards higher x, y or z is cut by a seam, for each axis.
 std::array<Slices, 3> cut_faces(const BrickWindow& window, const glm::ivec3& corner) {
   std::array<Slices, 3> cut{};
   if (!window.seams) return cut;
@@ -223,7 +224,7 @@ std::array<Slices, 3> cut_faces(const BrickWindow& window, const glm::ivec3& cor
   return cut;
 }
 
-// Adds to `reached` all voxels of `within` that are connected to it through faces that are not cut. All voxels lie in
+// Adds to `reached` all voxels of `within` that are connected to it through faces that no seam cuts. All voxels are in
 // one octant, whose lowest slice is `first`.
 void spread_in_octant(Slices& reached, const Slices& within, const std::array<Slices, 3>& cut, int first) {
   const int last = first + 3;
@@ -271,8 +272,8 @@ void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::
 }
 
 namespace {
-// Adds the conductance of `entry` to the entry at index `start` or later that is equal by `is_less`. Appends `entry` if
-// no entry is equal. Neighbouring voxels mostly have equal entries, so the search starts at the end.
+// Adds the conductance of `entry` to the equal entry (by `is_less`) at index `start` or later, or appends `entry` if
+// there is none. Neighbouring voxels mostly have equal entries, so the search starts at the end.
 template <class Entry, class IsLess>
 void add_to(std::vector<Entry>& entries, size_t start, const Entry& entry, const IsLess& is_less) {
   for (size_t k = entries.size(); k > start; --k)

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue of a volume as a graph for heat diffusion. Some voxels have a fixed temperature, each *held* by one rig
-// bone. All other voxels are *soft*: their temperatures are solved for. Heat flows through voxel faces only, never
-// through edges, corners or air. The conductance of a face is area / distance times the harmonic mean of the
-// conductivities on its two sides. At a face to a held voxel, only the half of the distance that lies in the soft voxel
-// resists.
+// The tissue of a volume as a graph for heat diffusion. Some voxels have a fixed temperature: each of them is *held* by
+// one rig bone. All other voxels are *soft*: their temperatures are solved for. Heat flows through voxel faces only,
+// never through edges, corners or air. The conductance of a face is area / distance times the harmonic mean of the
+// conductivities on its two sides. At a face to a held voxel, only the half of the distance in the soft voxel counts.
 //
-// A soft voxel also receives heat from one bone at a distance: from the bone that is nearest on a path through the
-// tissue (attracting_bone). The strength falls with the square of the distance [Baran & Popovic 2007, 4]. Without it a
-// small bone loses the flesh beyond it to a larger neighbour (fingertips to the palm), and the two sides of a joint mix
-// over the whole thickness of the limb. The law does not depend on scale, so a finger and a thigh blend alike.
+// A soft voxel also receives heat from one bone at a distance: from the bone that is nearest along a path through the
+// tissue (attracting_bone). The strength is proportional to 1 / distance^2 [Baran & Popovic 2007, 4]. Without this heat
+// a small bone would lose the flesh beyond it to a larger neighbour (fingertips to the palm), and the two sides of a
+// joint would mix over the whole thickness of the limb. The law does not depend on scale, so a finger and a thigh blend
+// alike.
 //
 // Conductivities are the thermal conductivities of living tissue relative to muscle. They matter where layers differ:
-// fat conducts half as much, so skin over a limb follows the whole limb around it instead of the nearest piece of bone.
+// fat conducts half as much, so skin over a limb follows the whole limb and not only the nearest piece of bone.
 #pragma once
 
 #include <array>
@@ -46,37 +46,37 @@ struct HeatLaw {
 
   std::vector<float> conductivity;  // thermal conductivity of each label's tissue, relative to muscle
   // Strength of the heat that the tissue of each label receives at a distance, times the square of the tissue's
-  // stiffness. With the square, stiffness divides the width of a blend: the width is proportional to
-  // sqrt(conductivity / strength).
+  // stiffness. The width of a blend is proportional to sqrt(conductivity / strength), so the square makes it inversely
+  // proportional to the stiffness.
   std::vector<float> attraction;
-  // Area / distance of a voxel face perpendicular to each axis, divided by the largest of these three values.
+  // Area / distance of a voxel face perpendicular to each axis, divided by the largest of the three values.
   std::array<float, 3> face;
-  float volume_of_voxel = 1;  // in mm3, divided by the largest area / distance (face)
+  float volume_of_voxel = 1;  // mm3, divided by the largest area / distance of a face
 };
 
-// Returns the rig bone that holds each tissue voxel at a fixed temperature, kSoft for a voxel that no bone holds. A
-// bone holds the voxels of its parts (BoneParts). A bone without parts holds the soft voxels around its axis, and a
-// bone outside the tissue holds nothing.
+// Returns the rig bone that holds each tissue voxel at a fixed temperature; kSoft for a voxel that no bone holds. A
+// bone holds the voxels of its parts (BoneParts). A bone without parts holds the soft voxels around its axis. A bone
+// outside the tissue holds nothing.
 ZeroedVector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,
                                        const Armature& armature);
 
-// The nearest bone of every tissue voxel, and its distance. Distances are lengths of paths through tissue, so that a
-// bone across an air gap is not near. A voxel whose temperature a bone fixes has distance 0. A voxel that no path from
-// a bone reaches has kSoft and an infinite distance.
+// The nearest bone of every tissue voxel and its distance. Distances are lengths of paths through tissue, so that a
+// bone across an air gap is not near. A voxel held by a bone has distance 0. A voxel that no path from a bone reaches
+// has the bone kSoft and an infinite distance.
 struct NearestBone {
   ZeroedVector<std::uint16_t> bone;
   ZeroedVector<float> distance;  // mm, between voxel centres
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const ZeroedVector<std::uint16_t>& held_by);
-// Finds the bone that gives heat to each voxel at a distance: the nearest bone, as nearest_bone() finds it, but with
-// corrected distances. The last bone of a chain counts as nearer than it is. A bone that only links a limb to the trunk
-// (a collarbone) counts as further away than it is. Flesh around a joint is divided by the plane that bisects the angle
+// Finds the bone that gives heat to each voxel at a distance: the nearest bone as in nearest_bone(), but by corrected
+// distances (bone_reach.h). The distance to the last bone of a chain is reduced. The distance to a bone that only links
+// a limb to the trunk (a collarbone) is increased. Flesh around a joint is divided by the plane that bisects the angle
 // of the joint.
 NearestBone attracting_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                             const ZeroedVector<std::uint16_t>& held_by);
 
-// Conductance of heat from a bone into a cell, through a face or at a distance.
+// Conductance from a bone to a cell, through a face or at a distance.
 struct HeldFace {
   std::int32_t cell;
   std::uint16_t bone;
@@ -85,7 +85,7 @@ struct HeldFace {
 
 class HeatGraph {
  public:
-  // Keeps references to all arguments except `tissues` and `stiffness`; they must outlive this object.
+  // Keeps references to all arguments except `tissues` and `stiffness`. The referenced objects must outlive the graph.
   HeatGraph(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
             const ZeroedVector<std::uint16_t>& held_by, const NearestBone& nearest,
             const std::map<Label, double>& stiffness = {});

@@ -14,10 +14,10 @@
 namespace limber {
 
 namespace {
-// Upper limit on a bone's distance from a voxel, as a multiple of the nearest bone's distance. A bone further away has
-// less than 1/49 of the nearest bone's weight (at stiffness 1) and is ignored.
+// A bone is ignored if its distance from a voxel is more than this multiple of the nearest bone's distance. Its weight
+// would be less than 1/49 of the nearest bone's weight (at stiffness 1).
 constexpr float kFurthest = 7;
-constexpr float kUnit = 100;  // unit in which the weight formula measures distances, mm
+constexpr float kUnit = 100;  // unit of distances in the weight formula, mm
 }  // namespace
 
 SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
@@ -66,7 +66,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
         for (std::int64_t place = first; place < first + tissue.bricks()[brick].count(); ++place) {
           const float way = std::exchange(distance[place], std::numeric_limits<float>::infinity());
           if (held_by[place] != kSoft || way == std::numeric_limits<float>::infinity()) continue;
-          // The weight is relative to the nearest bone's weight, so that it is at most 1 before normalization.
+          // Divides the weight by the nearest bone's weight, so that it is at most 1 before normalization.
           float weight = std::min(1.0f, strength(way) / strength(nearest.distance[place]));
           if (!stiffness.empty()) weight = std::pow(weight, stiffness[place]);
           best.offer(brick, place, bone, weight);

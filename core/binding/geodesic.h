@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Geodesic voxel binding [Dionne & de Lasa 2013]: a bone's weight falls with the length d of the shortest path to it
-// inside the tissue, as (1 / ((1 - falloff) d + falloff d^2))^2 with d in units of 100 mm. Bone tissue stays exactly
-// rigid. The ratio of a bone's weight to that of the nearest bone is raised to the power of the tissue's stiffness.
+// Geodesic voxel binding [Dionne & de Lasa 2013]: a bone's weight depends on the length d of the shortest path to the
+// bone inside the tissue, as (1 / ((1 - falloff) d + falloff d^2))^2 with d in units of 100 mm. Bone tissue stays
+// exactly rigid. The ratio of a bone's weight to that of the nearest bone is raised to the power of the tissue's
+// stiffness.
 #pragma once
 
 #include "core/binding/heat_diffusion.h"

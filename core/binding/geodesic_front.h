@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds shortest paths through tissue. A front spreads from voxel to voxel through faces, the shortest paths first.
 // Each voxel stores the last corner of its path (at first the voxel where the path started) and the length of the path
-// up to this corner; from the corner to the voxel the path is straight. Where the previous voxel on that straight line
-// is air, or a seam is near, the path bends, and the voxel from which the front came becomes the corner. As a result,
+// up to this corner; from the corner to the voxel the path is straight. If the previous voxel on that straight line is
+// air, or a seam is near, the path bends, and the voxel from which the front came becomes the corner. As a result,
 // lengths are straight distances wherever the start is visible, and most voxels are visited once.
 //
 // The tissue is divided into fixed domains, each a set of bricks. Threads advance the fronts of different domains at
@@ -42,7 +42,7 @@ class TissueFront {
 
   // Starts paths at a voxel.
   //   place   the voxel's index in the list of tissue voxels
-  //   source  a number that these paths carry, such as the index of a bone
+  //   source  a number that is stored with these paths, such as the index of a bone
   void start(std::int64_t place, const glm::ivec3& voxel, std::uint16_t source) {
     ways_[place] = {glm::i16vec3(voxel), source, 0, 0};
     add(domains_[domain_of(tissue_.brick_at(voxel))], {static_cast<std::int32_t>(place), 0, glm::i16vec3(voxel)}, 0);
@@ -64,10 +64,12 @@ class TissueFront {
 
   // Spreads the front until no path gets shorter. is_shorter and take are called from several threads, for different
   // voxels.
-  //   is_shorter  a function (source, to, way) -> whether a path of length `way` (mm) to voxel `to` is better than the
-  //               best known path to `to`. It returns false for a path of equal length. If it returns false, it must
+  //   is_shorter  a function (source, to, way) that returns true if a path of length `way` (mm) to voxel `to` is better
+  //   than
+  //               the best known path to `to`. It returns false for a path of equal length. If it returns false, it
+  //               must
   //               also return false for any longer path.
-  //   take        a function (source, to, way) that stores such a path; the front goes on from there
+  //   take        a function (source, to, way) that stores such a path; the front spreads further from there
   //   reached     #tissue voxels: the array that is_shorter reads. It is only prefetched into the cache.
   template <class IsShorter, class Take>
   void spread(std::span<const float> reached, const IsShorter& is_shorter, const Take& take) {
@@ -96,11 +98,11 @@ class TissueFront {
 
  private:
   static constexpr glm::ivec3 kSteps[] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
-  // Reached voxels are sorted into buckets by the length of their paths. Width of a bucket, as a share of the shortest
-  // voxel edge. Paths in one bucket may be advanced in any order.
+  // Width of a bucket, as a share of the shortest voxel edge. Reached voxels are sorted into buckets by the length of
+  // their paths. Paths in one bucket may be advanced in any order.
   static constexpr double kWidth = 0.5;
   static constexpr std::size_t kLeastBricks = 256, kMostDomains = 64;
-  // Memory is prefetched for the voxel this many entries ahead in the bucket.
+  // Number of entries by which the prefetch of a voxel's memory is ahead of the current entry of the bucket.
   static constexpr std::size_t kAhead = 12;
 
   // The shortest known path to a voxel: its last corner, its source, its length up to the corner, and its whole length
@@ -163,9 +165,9 @@ class TissueFront {
         if (there < 0) continue;
         Domain& beyond = brick == brick_here ? domain : domains_[domain_of(brick)];
         const bool is_own = &beyond == &domain;
-        // The length of the path that goes straight on is a lower bound: if the path must bend, it is longer.
+        // The length of the straight path is a lower limit: a path that must bend is longer.
         float way = before + straight_on[direction];
-        // A path never goes back to its own corner. To another domain nothing else is known of the voxel yet.
+        // A path never goes back to its own corner. For a voxel in another domain, nothing else can be tested here.
         if (is_own ? !is_shorter(here.source, std::int64_t{there}, way) : straight_on[direction] == 0) continue;
         const bool near_seam = seams && is_near_seam[brick];
         if (near_seam && seams->is_cut_towards(voxel, direction)) continue;
@@ -190,9 +192,9 @@ class TissueFront {
     add(domain, {step.to, step.way.length, step.voxel}, bucket);
   }
 
-  // Prefetches the memory that advancing from a voxel needs: its path and the values of its neighbours. The neighbours
-  // above and below are about one slice of a full brick away in memory. The function is always inlined: as a separate
-  // function it seems to have no effect, and compilers remove it.
+  // Prefetches the memory that is needed to advance from a voxel: its path and the values of its neighbours. The
+  // neighbours above and below are about one slice of a full brick away in memory. The function is always inlined,
+  // since compilers remove a separate function that seems to have no effect.
   [[gnu::always_inline]] void fetch(std::int32_t place, std::span<const float> reached) const {
     constexpr int kSlice = TissueVoxels::kBrick * TissueVoxels::kBrick;
     __builtin_prefetch(&ways_[place]);
@@ -226,8 +228,8 @@ class TissueFront {
   };
   using Neighbours = std::array<Neighbour, 6>;
 
-  // Returns the neighbours of a voxel in the directions kSteps. Those in the voxel's own row and slice are found by
-  // counting only the tissue voxels between.
+  // Returns the neighbours of a voxel in the directions kSteps. The indices of neighbours in the voxel's own row and
+  // slice are found by counting the tissue voxels in between.
   //   brick, place  the voxel's brick, and its index in the list of tissue voxels
   Neighbours neighbours_of(const glm::ivec3& voxel, int brick, std::int32_t place) const {
     constexpr int kLast = TissueVoxels::kBrick - 1;

@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 64;     // number of bricks in one block of a parallel loop
-constexpr int kMostShift = 3;           // a block is at most one brick
-constexpr float kLeastDistance = 0.5f;  // from a cell's centre to a border, in voxels: half a voxel
+constexpr int kMostShift = 3;           // blocks have at most 2^3 = 8 voxels along an axis, the size of a brick
+constexpr float kLeastDistance = 0.5f;  // lower limit on the distance from a cell's centre to its border, voxels
 
 class CellMaker {
  public:
@@ -39,19 +39,19 @@ class CellMaker {
 
  private:
   struct Piece {
-    glm::ivec3 sum{0};  // of the positions of its voxels, relative to the brick's lowest corner
+    glm::ivec3 sum{0};  // sum of the positions of the piece's voxels, relative to the brick's lowest corner
     int count = 0;
     int block = 0;
   };
   struct Found {
-    std::vector<Piece> pieces;                       // of each brick: red, then black
-    std::vector<std::array<std::int32_t, 2>> count;  // of pieces in each brick: red, black
+    std::vector<Piece> pieces;                       // pieces of each brick, the red ones first
+    std::vector<std::array<std::int32_t, 2>> count;  // number of red and of black pieces in each brick
   };
 
   struct LinkSum {
     std::int32_t to;
     int axis;
-    float conducted;  // sum of the conductances of the faces for a distance of one voxel
+    float conducted;  // sum of the conductances of the faces, as if the cells' centres were one voxel apart
   };
   // The links of one cell.
   struct Row {
@@ -80,7 +80,7 @@ class CellMaker {
     });
   }
 
-  // Finds the cells of a brick: floods each block from its first voxel that is in no cell yet.
+  // Finds the cells of a brick by flood fill. Each fill starts at the first voxel of a block that is in no cell yet.
   void find_in_brick(std::int64_t brick, BrickWindow& window, Found& found) {
     window.look(source_, brick);
     const glm::ivec3 corner = bricks_[brick].corner;
@@ -172,7 +172,7 @@ class CellMaker {
       }
     row.links.push_back({to, axis, conducted});
   }
-  // Adds a face to a voxel `there` that a bone holds.
+  // Adds the face between a cell and the voxel `there`, which is held by a bone.
   void add_side(Row& row, std::int32_t cell, std::uint16_t bone, int direction, float conducted,
                 const glm::ivec3& there) const {
     const auto distance = [&](const glm::ivec3& voxel) {

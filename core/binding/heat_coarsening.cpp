@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes the first coarse level of a heat system. Connected cells of one block become one coarse cell. A block is 2 x 2
-// x 2 cells where voxels are cubes. Blocks never cross a brick's boundary, so bricks are processed independently.
+// Makes the first coarse level of a heat system. Connected cells of one block become one coarse cell. A block has 2 x 2
+// x 2 cells if voxels are cubes. Blocks never cross a brick's boundary, so bricks are processed independently.
 #include <algorithm>
 #include <utility>
 
@@ -75,8 +75,8 @@ class Coarsening {
     std::vector<float> conductance, diagonal;
   };
 
-  // The links of one coarse cell (called a "piece" here). It consists of up to eight cells, which have at most 24 faces
-  // to other cells.
+  // The links of one coarse cell (called a "piece" here). A piece consists of up to eight cells, which have at most 24
+  // faces to other cells.
   struct Row {
     int count = 0;
     std::array<std::int32_t, 24> to;
@@ -202,7 +202,7 @@ class Coarsening {
         const float g = conductances_of(slot < HeatSystem::kColour ? brick : other)[step.link];
         if (!(g > 0)) continue;
         own -= g;
-        if (step.stays_in_block) continue;  // linked cells of one block are of the same piece
+        if (step.stays_in_block) continue;  // linked cells of one block belong to the same piece
         const float across = halved_[direction >> 1] ? g * kCoarseConductance : g;
         row.linked += across;
         row.add(parent_[other * kSlots + step.slot], across, direction);

@@ -17,9 +17,8 @@
 namespace limber {
 
 namespace {
-// Upper limit on a negligible weight. A bone is solved for only in bricks where the coarse solution gives it more
-// weight than this. With this weight, a bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1
-// mm.
+// Upper limit on a negligible weight. A bone is solved for only in bricks where the coarse solution gives it a larger
+// weight. With this weight, a bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1 mm.
 constexpr float kNegligible = 3e-4f;
 constexpr double kCoarseResidual = 1e-4;
 // Upper limit on the memory of a block (a group of bones that are solved together), in bytes per tissue voxel of the
@@ -42,7 +41,7 @@ void fill_sources(const std::vector<HeldFace>& held, const std::vector<int>& lan
       b[std::int64_t{face.cell} * lanes + lane] += face.conductance;
 }
 
-// Returns for each cell whether heat from some bone reaches it.
+// Returns for each cell whether heat from at least one bone reaches it.
 std::vector<bool> reached_cells(const CellGraph& graph, const std::vector<HeldFace>& held) {
   std::vector<bool> reached(graph.size(), false);
   std::vector<std::int32_t> open;
@@ -61,7 +60,7 @@ std::vector<bool> reached_cells(const CellGraph& graph, const std::vector<HeldFa
 }
 
 CoarseTemperatures solve_coarse(const HeatGraph::Coarse& coarse, const std::vector<bool>& reached, int bone_count) {
-  // Cells that no heat reaches keep temperature zero. An extra loss of heat keeps the system solvable.
+  // Cells that no heat reaches get temperature zero: an additional heat loss there keeps the system solvable.
   CellGraph graph = coarse.graph;
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (!reached[i]) graph.diagonal[i] += 1;
@@ -94,7 +93,7 @@ CoarseTemperatures solve_coarse(const HeatGraph::Coarse& coarse, const std::vect
   return temperatures;
 }
 
-// Returns for each bone the bricks in which the coarse solution gives it weight, ascending.
+// Returns for each bone the bricks in which the coarse solution gives the bone weight, ascending.
 std::vector<std::vector<std::int32_t>> bricks_of_bones(const CoarseTemperatures& temperatures,
                                                        const std::vector<std::int32_t>& brick_of_cell) {
   std::vector<std::vector<std::int32_t>> bricks(temperatures.by_bone.size());
@@ -147,8 +146,8 @@ void diffuse_in_voxels(const HeatBody& body, const HeatDiffusion& settings, Prog
   solve_in_voxels(heat, body, blocks, known, settings, {0.2, 0.95}, progress, best, said);
 }
 
-// Computes weights by solving for the temperatures of cells of several voxels, and interpolating between them. Between
-// bones that are near to each other, the temperatures of voxels are solved for.
+// Computes weights by solving for the temperatures of cells of several voxels and interpolating them to voxels. Only
+// between bones that are near to each other, the temperatures of single voxels are solved for.
 void diffuse_in_cells(const HeatBody& body, const HeatDiffusion& settings, const glm::i16vec3& shift,
                       Progress& progress, BestFour& best, WeightsReport& said) {
   const HeatLaw law(body.volume.grid, body.tissues, settings.stiffness);
@@ -175,7 +174,7 @@ SkinWeights diffuse_heat(const LabelVolume& volume, const TissueVoxels& tissue, 
   WeightsReport ignored;
   WeightsReport& said = report ? *report : ignored;
   progress.update("weights", 0);
-  return_free_memory();  // gives back the memory that splitting bones and finding seams has freed
+  return_free_memory();  // frees the memory left over from splitting bones and finding seams
   const ZeroedVector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const HeatBody body{volume, tissue, tissues, armature, held_by};
   BestFour best(tissue);

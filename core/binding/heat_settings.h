@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What can be chosen of heat diffusion (heat_diffusion.h), and what is said of a computation of weights.
+// Settings of heat diffusion (heat_diffusion.h), and the report of a computation of weights.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace limber {
 
-// The stiffness of tissues where bones blend, for each label, [0.1, 10]; 1 for labels that are not listed. Tissue of
-// stiffness 2 blends from one bone to the next within about half the distance.
+// For each label, the stiffness of its tissue where bones blend, [0.1, 10]; 1 for labels that are not listed. Tissue of
+// stiffness 2 blends from one bone to the next over about half the distance.
 using BlendStiffness = std::map<Label, double>;
 
 struct HeatDiffusion {
   double residual = 1e-5;  // relative residual (2-norm) at which the solve for a bone stops
   int maximum_iterations = 200;
   BlendStiffness stiffness;
-  // Largest number of tissue voxels whose heat is solved for one by one. In larger volumes heat is solved for in cells
-  // of 2^3 voxels or more (heat_cells.h), so that there are at most about as many cells. Then weights are interpolated.
+  // Up to this number of tissue voxels, heat is solved for in every voxel. In larger volumes heat is solved for in
+  // about as many cells of 2^3 voxels or more (heat_cells.h), and weights are interpolated.
   std::int64_t most_cells = 32'000'000;
 };
 

@@ -23,8 +23,8 @@ Four load(const float* from) {
   return four;
 }
 void store(const Four& four, float* to) { std::memcpy(to, &four, sizeof four); }
-// Return the four cells of a row shifted by one cell along x. The cell that is missing, `previous` or `next`, lies in
-// the brick towards -x or +x.
+// Return the four cells of a row shifted by one cell along x. The missing cell, `previous` or `next`, is in the brick
+// towards -x or +x.
 Four before(float previous, const Four row) {
   Four shifted = __builtin_shufflevector(row, row, 0, 0, 1, 2);
   shifted[0] = previous;
@@ -36,7 +36,7 @@ Four after(const Four row, float next) {
   return shifted;
 }
 
-// Returns the sum plus the products of two rows, added one after the other.
+// Returns `sum` plus the dot product of two rows. The products are added one after the other, in order.
 double plus_product(double sum, const Four a, const Four b) {
   for (int k = 0; k < kRow; ++k) sum += double(a[k]) * b[k];
   return sum;
@@ -107,14 +107,14 @@ HeatSolver::Sums HeatSolver::sum_over_bricks(const Body& body) const {
   return total;
 }
 
-// Calls body(lane, slot, place, flow) for every row of one colour in a brick. `lane` is the index of a right-hand side.
-// `slot` is the index of the row's first cell among the brick's cells of that colour, and `place` its index in vectors
-// of that colour. `flow` is the heat that the row's four cells receive from their neighbours of the other colour, whose
-// temperatures are `other`.
+// Calls body(lane, slot, place, flow) for every row (four cells along x) of one colour in a brick. `lane` is the index
+// of a right-hand side. `slot` is the index of the row's first cell among the brick's cells of that colour, and `place`
+// its index in vectors of that colour. `flow` is the heat that the four cells receive from their neighbours of the
+// other colour, whose temperatures are `other`.
 template <bool kRed, class Body>
 void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body& body) const {
   constexpr std::int64_t kColour = HeatSystem::kColour;
-  // The neighbours of a row towards -y, +y, -z and +z are this many rows away, in the brick and beyond its sides.
+  // Offsets, in rows, to the neighbours of a row towards -y, +y, -z and +z: within the brick, and beyond its sides.
   constexpr int kWithin[4] = {-1, 1, -8, 8}, kBeyond[4] = {7, -7, 56, -56};
   const auto& beside = system_.beside[brick];
   const int lanes = lanes_;
@@ -133,8 +133,8 @@ void HeatSolver::gather(std::int64_t brick, const HeatValues& other, const Body&
   for (int row = 0; row < 64; ++row) {
     const int y = row & 7, z = row >> 3, slot = kRow * row;
     const bool is_beyond[4] = {y == 0, y == 7, z == 0, z == 7};
-    // A row of the other colour is shifted by one voxel along x. If y + z is even, the red row has the lower first
-    // voxel.
+    // Rows of the two colours are shifted by one voxel along x against each other. If y + z is even, the red row starts
+    // one voxel lower.
     const bool own_first = (((y + z) & 1) == 0) == kRed;
     Four g[6];
     if constexpr (kRed) {
@@ -172,7 +172,7 @@ void HeatSolver::relax_reds(const HeatValues& blacks, bool with_sources) {
   });
 }
 
-// Computes the residual of the first guess. Returns the sum of the squared sources for each right-hand side.
+// Computes the residual of the initial guess. Returns the sum of the squared sources for each right-hand side.
 HeatSolver::Sums HeatSolver::start() {
   const Sums sources = sum_over_bricks([&](std::int64_t brick, Sums& sums) {
     for (int lane = 0; lane < lanes_; ++lane)
@@ -202,7 +202,7 @@ HeatSolver::Sums HeatSolver::precondition() {
         store(load(residual + place + slot) / load(diagonal + slot), step + place + slot);
   });
   relax_reds(step_, false);
-  // Now only black cells have a residual: the flow from the red cells. A coarse cell lies in one brick, so no two
+  // Now only black cells have a residual: the flow from the red cells. A coarse cell is in only one brick, so no two
   // threads write to the same coarse cell.
   std::fill(cycle_->b.begin(), cycle_->b.end(), 0.0f);
   for_bricks([&](std::int64_t brick) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves steady heat in the soft voxels of some bricks (8^3 voxels each), for several bones at once:
+// Solves for steady heat in the soft voxels of some bricks (8^3 voxels each), for several bones at once:
 //   diagonal_i x_i - sum over neighbours j of conductance_ij x_j = source_i
-// The diagonal also contains a cell's losses to voxels of fixed temperature and to bricks that are left out.
+// The diagonal also contains a cell's losses to voxels of fixed temperature and to bricks that are not solved for.
 //
 // Cells are coloured like a chess board, so that red cells (x + y + z even) have only black neighbours. The red cells
 // are eliminated: conjugate gradients run over the black cells alone, which halves every vector [Saad 2003, "Iterative
@@ -9,9 +9,9 @@
 // black then red, a correction from coarser levels (core/binding/multigrid.h), then half sweeps red then black.
 //
 // A brick stores its cells in 512 slots, red before black. Within a colour they are stored row by row along x, four
-// cells in a row. The four cells of a row are computed together. Their neighbours along y and z have the same position
-// in other rows; those along x have the same position or the next one. No other data are needed to find neighbours: a
-// cell takes 19 bytes, and 12 more for each bone.
+// cells in a row, which are computed together. The neighbours of these cells along y and z have the same position in
+// other rows; their neighbours along x have the same position or the next one. No index lists are needed to find
+// neighbours: a cell takes 19 bytes, and 12 more for each bone.
 //
 // Vectors are floats; sums are doubles over fixed blocks, so that results are the same, bit for bit, for any number of
 // threads.
@@ -57,7 +57,8 @@ struct HeatSystem {
     cells[brick][slot >> 6] |= std::uint64_t{1} << (slot & 63);
     diagonal[brick * kSlots + slot] = its_diagonal;
   }
-  // Returns the conductance from a red cell to its neighbour in a direction (-x, +x, -y, +y, -z, +z); 0: not linked.
+  // Returns a reference to the conductance from a red cell to its neighbour in a direction (-x, +x, -y, +y, -z, +z); 0:
+  // not linked.
   float& conductance_of_red(std::int64_t brick, int direction, int slot) {
     return conductance[(brick * 6 + direction) * kColour + slot];
   }
@@ -67,18 +68,17 @@ struct HeatSystem {
 
   glm::dvec3 spacing{1};
   std::vector<glm::ivec3> corners;
-  // Indices of the six neighbours of each brick; brick_count(), the index of an empty brick, where there is none.
+  // Indices of the six neighbours of each brick. brick_count(), the index of an empty brick: there is no neighbour.
   std::vector<std::array<std::int32_t, 6>> beside;
   std::vector<std::array<std::uint64_t, 8>> cells;  // bits of each brick's slots that have a cell
-  HeatValues conductance;                           // size: (bricks + the empty brick) x 6 directions x red slots
-  HeatValues diagonal;  // size: (bricks + the empty brick) x slots; 1 where there is no cell
+  HeatValues conductance;                           // (bricks + the empty brick) x 6 directions x red slots
+  HeatValues diagonal;                              // (bricks + the empty brick) x slots; 1 for slots without a cell
 };
 
 // The next coarser level of a system, and the coarse cell of each black cell.
 struct CoarseHeat {
   CellGraph graph;
-  // Index of the coarse cell that contains each black voxel (of a checkerboard colouring), by brick and position in the
-  // brick; -1: none.
+  // Index of the coarse cell that contains each black cell, by brick and position in the brick; -1: none.
   ZeroedVector<std::int32_t> parent_of_black;
 };
 CoarseHeat coarsen(const HeatSystem& system);
@@ -88,28 +88,29 @@ CoarseHeat coarsen(const HeatSystem& system);
 struct HeatVectors {
   HeatValues red_source, red, black;  // right-hand side of the red cells, solutions of red and black cells
   // Vectors of the conjugate gradients on the black cells: the residual r, the search direction p, and `step`, which
-  // holds M^-1 r and A p by turns.
+  // contains M^-1 r and A p alternately.
   HeatValues residual, search, step;
 
-  // Returns the approximate memory of a brick in bytes: in these vectors, in the HeatSystem and on the coarser levels.
+  // Returns the approximate memory in bytes that a brick takes in these vectors, in the HeatSystem and on the coarser
+  // levels.
   static double bytes_of_brick(int lanes) { return 12.0e3 + 7.5e3 * lanes; }
 };
 
 class HeatSolver {
  public:
-  // Keeps references to the system and the vectors. Every connected component of the system must lose heat to some cell
-  // of fixed temperature.
+  // Keeps references to the system and the vectors. Every connected component of the system must lose heat to at least
+  // one cell of fixed temperature.
   //   lanes  number of right-hand sides, 1 to Multigrid::kMostLanes
   HeatSolver(const HeatSystem& system, int lanes, HeatVectors& vectors);
   ~HeatSolver();
 
-  // Return an array with one value for each slot of the colour, for one brick and one right-hand side (lane). The
-  // caller writes the values before solve(); all are zero at first.
+  // Return the array of a vector's values for one brick and one right-hand side (lane), one value for each slot of the
+  // colour. The caller writes the values before solve(); all are initially zero.
   float* red_sources(std::int64_t brick, int lane) { return &red_source_[at(brick, lane)]; }
   float* black_sources(std::int64_t brick, int lane) { return &residual_[at(brick, lane)]; }
   float* first_guess_of_blacks(std::int64_t brick, int lane) { return &black_[at(brick, lane)]; }
 
-  // Solves the system. It may be called only once.
+  // Solves the system. Must be called only once.
   //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
   MultigridReport solve(double residual, int most_iterations, const Progress& progress = no_progress());
 

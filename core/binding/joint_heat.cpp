@@ -11,10 +11,10 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
-// Upper limit on a negligible weight, as in cell_heat.cpp.
+// Upper limit on a negligible weight, the same as in cell_heat.cpp.
 constexpr float kNegligible = 3e-4f;
 
-// The bones that hold voxels of a brick or near it: none, one or several.
+// The bones that hold voxels in or near a brick: none, one or several.
 struct NearBones {
   std::uint16_t lowest = kSoft, highest = 0;  // lowest > highest: none
   void add(const NearBones& other) {
@@ -24,7 +24,7 @@ struct NearBones {
   bool are_several() const { return lowest < highest; }
 };
 
-// Returns the bones near each brick's neighbours as well.
+// Returns, for each brick, the bones near the brick or near one of its neighbours.
 std::vector<NearBones> spread(const std::vector<NearBones>& near, const TissueVoxels& tissue) {
   const glm::ivec3 size = tissue.grid_size();
   std::vector<NearBones> wider(near);
@@ -46,7 +46,7 @@ float temperature_of(const CellTemperatures& temperatures, std::int32_t cell, in
   return 0;
 }
 
-// Returns for each bone those of the bricks in which the cells give it weight, ascending.
+// Returns for each bone those of the given bricks in which the solution in cells gives the bone weight, ascending.
 std::vector<std::vector<std::int32_t>> bricks_with_weight(const std::vector<std::int32_t>& bricks,
                                                           const SolvedCells& solved, std::size_t bone_count) {
   std::vector<std::vector<std::int32_t>> of_bones(bone_count);
@@ -62,7 +62,8 @@ std::vector<std::vector<std::int32_t>> bricks_with_weight(const std::vector<std:
   return of_bones;
 }
 
-// Returns the nearest bone of the voxels of some bricks, along the paths to their cells. Other voxels have no entries.
+// Returns the nearest bone of the voxels in some bricks, along the paths to their cells. Other voxels keep no nearest
+// bone.
 NearestBone nearest_along_paths(const HeatBody& body, const std::vector<std::int32_t>& bricks,
                                 const SolvedCells& solved) {
   const std::vector<BoneReach> reaches = reaches_in_body(body.volume.grid, body.tissue, body.armature, body.held_by);
@@ -129,7 +130,7 @@ void solve_joints(const HeatBody& body, const HeatDiffusion& settings, const std
     return temperature_of(solved.temperatures, cell_of(brick, place), bones[lane]);
   };
   known.outside = [&](std::int64_t brick, std::int64_t place, int lane) {
-    // A block leaves out bricks between bones in which its bones have no weight.
+    // A brick between bones that is not in the block has no weight of the block's bones.
     if (std::binary_search(bricks.begin(), bricks.end(), static_cast<std::int32_t>(brick))) return 0.0f;
     return best.weight(brick, place, bones[lane]);
   };

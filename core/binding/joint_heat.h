@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves for the temperatures of voxels in bricks that lie between two bones, where the rest of the body was solved for
-// in cells of several voxels. In the gap of a joint the weight rises from 0 to 1 within a few voxels, which cells
-// cannot resolve. At the border of these bricks, the interpolated temperatures of the cells are fixed.
+// Solves for the temperatures of single voxels in bricks between two bones, if the rest of the body was solved for in
+// cells of several voxels. In the gap of a joint the weight rises from 0 to 1 within a few voxels, which cells cannot
+// resolve. At the border of these bricks, the interpolated temperatures of the cells are prescribed.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace limber {
 
-// Returns the bricks that have two or more bones near them: within one brick for cells of 2^3 voxels, within more
-// bricks for coarser cells. The result is ascending.
+// Returns the bricks that have two or more bones nearby: within one brick for cells of 2^3 voxels, within more bricks
+// for coarser cells. The result is ascending.
 //   shift  HeatCells::shift
 std::vector<std::int32_t> bricks_between_bones(const TissueVoxels& tissue, const ZeroedVector<std::uint16_t>& held_by,
                                                const glm::i16vec3& shift);

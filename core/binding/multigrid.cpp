@@ -31,7 +31,7 @@ glm::i16vec3 coarsened_axes(const glm::dvec3& spacing) {
 
 namespace {
 
-// Returns a number for each cell that tells in which block it lies.
+// Returns the number of the block that contains each cell.
 std::vector<std::uint64_t> blocks_of(const CellGraph& graph, const glm::i16vec3& halved) {
   std::vector<std::uint64_t> blocks(graph.size());
   parallel_for(graph.size(), 16 * kGrain, [&](std::int64_t begin, std::int64_t end) {
@@ -43,8 +43,9 @@ std::vector<std::uint64_t> blocks_of(const CellGraph& graph, const glm::i16vec3&
   return blocks;
 }
 
-// Calls body(cell) for each cell of the connected set of cells that contains `seed` and lies in one block.
-//   is_open  a function (cell) -> whether the search may enter this cell; body must close the cells that it gets
+// Calls body(cell) for each cell of the connected set of cells that contains `seed` within one block.
+//   is_open  returns true if the search may enter a cell; body must make is_open return false for the cells that it
+//   gets
 template <class IsOpen, class Body>
 void search_block(const CellGraph& graph, const std::vector<std::uint64_t>& block, std::int32_t seed,
                   std::vector<std::int32_t>& open, const IsOpen& is_open, const Body& body) {
@@ -63,8 +64,8 @@ void search_block(const CellGraph& graph, const std::vector<std::uint64_t>& bloc
 }
 
 // Returns the first cell of the connected set in one block that contains each cell; -1 for a cell that is left out.
-// A cell whose neighbours in the block all come later may be the first of its set. It searches the set, and sets the
-// result for all its cells if it is the first. So no two threads write to the same cell.
+// Every cell whose neighbours in the block all have higher indices searches its set. If it is the set's first cell, it
+// writes the result for all cells of the set. So no two threads write to the same cell.
 std::vector<std::int32_t> first_of_sets(const CellGraph& graph, const glm::i16vec3& halved, LoneCells lone) {
   std::vector<std::int32_t> first(graph.size(), -1);
   const std::vector<std::uint64_t> block = blocks_of(graph, halved);
@@ -88,8 +89,8 @@ std::vector<std::int32_t> first_of_sets(const CellGraph& graph, const glm::i16ve
   return first;
 }
 
-// Numbers the cells of the next level. Each of them is a connected set of cells within one block, which is 2 x 2 x 2
-// cells where cells are cubes. Returns the coarse cell of each cell; -1 for a cell that is left out.
+// Numbers the cells of the next level. Each of them is a connected set of cells within one block, which has 2 x 2 x 2
+// cells if cells are cubes. Returns the coarse cell of each cell; -1 for a cell that is left out.
 std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse, LoneCells lone) {
   const glm::i16vec3 halved = coarsened_axes(fine.spacing);
   coarse.spacing = fine.spacing * glm::dvec3(halved + glm::i16vec3(1));
@@ -117,7 +118,7 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse, Lo
 }
 
 // Lists, for each aggregate (coarse cell), its cells with an index below `count`. The lists are stored one after the
-// other in `child`, and `first` has the index at which each list begins.
+// other in `child`; `first` contains the index at which each list begins.
 void list_children(const std::vector<std::int32_t>& parent, std::int64_t count, std::int64_t aggregates,
                    std::vector<std::int32_t>& first, std::vector<std::int32_t>& child) {
   first.assign(aggregates + 1, 0);
@@ -204,7 +205,7 @@ void require_residual(const MultigridReport& solved, double residual, const std:
 Multigrid::Multigrid(CellGraph finest) {
   levels_.push_back({std::move(finest), {}});
   while (levels_.back().graph.size() > kCoarsestSize && std::ssize(levels_) < kMostLevels) {
-    // Cells without neighbours stay on their level, since relaxation solves them alone.
+    // Cells without neighbours are not coarsened, since relaxation solves them exactly.
     Level next;
     next.graph = coarsen(levels_.back().graph, levels_.back().parent);
     if (next.graph.size() == 0 || next.graph.size() == levels_.back().graph.size()) {
@@ -306,8 +307,8 @@ class Multigrid::Solver {
     return report;
   }
 
-  // Computes x = M^-1 b on a level by relaxation sweeps, with one or two visits to the coarser levels between them. The
-  // sweeps after a visit mirror those before it, so that M is symmetric.
+  // Computes x = M^-1 b on a level by relaxation sweeps, with one or two corrections from the coarser levels between
+  // them. The sweeps after a correction mirror those before it, so that M is symmetric.
   void cycle(size_t level, const ZeroedVector<float>& b, bool twice = true) {
     const Level& here = grid_.levels_[level];
     const CellGraph& graph = here.graph;
@@ -381,8 +382,8 @@ class Multigrid::Solver {
     });
   }
 
-  // Adds the correction from the next coarser level. It must be called right after a half sweep over the black cells,
-  // so that only red cells have a residual.
+  // Adds the correction from the next coarser level. Must be called right after a half sweep over the black cells, so
+  // that only red cells have a residual.
   void visit_coarser(size_t level, const ZeroedVector<float>& b) {
     const Level& here = grid_.levels_[level];
     ZeroedVector<float>& x = at_[level].x;

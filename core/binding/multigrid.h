@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves steady heat in a graph of cells: A x = b for several right-hand sides at once, where
+// Solves for steady heat in a graph of cells: A x = b for several right-hand sides at once, where
 //   (A x)_i = diagonal_i x_i - sum over neighbours j of conductance_ij x_j
 // and the diagonal also contains a cell's losses to cells of fixed temperature (whose heat is in b).
 //
@@ -27,10 +27,10 @@
 
 namespace limber {
 
-// A graph of cells and the faces between them. Neighbours always differ in colour, (x + y + z) mod 2; cells of colour 0
-// (red) come first.
+// A graph of cells and the faces between them. Neighbours always differ in colour, (x + y + z) mod 2; the cells of
+// colour 0 (red) come first.
 struct CellGraph {
-  glm::dvec3 spacing{1};                // size of a cell, mm; only the axes of small spacing are coarsened
+  glm::dvec3 spacing{1};                // size of a cell, mm; only axes with small spacing are coarsened
   ZeroedVector<glm::i16vec3> position;  // position of each cell in units of `spacing`
   std::int32_t red_count = 0;           // number of cells of colour 0
   std::vector<std::int32_t> first;      // #cells + 1: index of each cell's first entry in `neighbour` and `conductance`
@@ -41,17 +41,17 @@ struct CellGraph {
   std::int64_t size() const { return std::ssize(position); }
 };
 
-// Returns 1 for each axis that is to be coarsened: an axis with a spacing so small that heat evens out fast along it.
-// Axes are coarsened until the spacings of all axes are about equal.
+// Returns 1 for each axis that is to be coarsened: an axis whose spacing is small compared to the others. Coarsening
+// makes the spacings of all axes about equal.
 glm::i16vec3 coarsened_axes(const glm::dvec3& spacing);
-// Factor from the sum of fine conductances to a coarse conductance. It is a half, since the distance between cell
-// centres doubles.
+// Factor from the sum of fine conductances to a coarse conductance: 1/2, since the distance between cell centres
+// doubles.
 constexpr float kCoarseConductance = 0.5f;
 
-// Returns the next coarser graph: sums the conductances between connected cells of the same block (2 x 2 x 2 cells
-// where cells are cubes). Losses to cells of fixed temperature are taken for conduction, so they are halved as well.
-//   parent  cell of the coarser graph that contains each cell; -1 for a cell that is left out
-//   lone    what happens to cells without neighbours
+// Returns the next coarser graph: sums the conductances between connected cells of the same block (2 x 2 x 2 cells if
+// cells are cubes). Losses to cells of fixed temperature count as conduction, so they are halved as well.
+//   parent  out: cell of the coarser graph that contains each cell; -1 for a cell that is left out
+//   lone    what is done with cells without neighbours
 enum class LoneCells { LeaveOut, Keep };
 CellGraph coarsen(const CellGraph& fine, std::vector<std::int32_t>& parent, LoneCells lone = LoneCells::LeaveOut);
 
@@ -60,7 +60,7 @@ struct MultigridReport {
   double residual = 0;  // largest relative residual |b - A x| / |b| of any right-hand side
 };
 
-// Throws Error when a solve stopped above its residual.
+// Throws Error if the residual of a solve is above `residual`.
 //   bone  name of the first bone that was solved for
 void require_residual(const MultigridReport& solved, double residual, const std::string& bone);
 
@@ -68,13 +68,13 @@ class Multigrid {
  public:
   static constexpr int kMostLanes = 8;
 
-  // Builds the levels. Every connected component of the graph must lose heat to some cell of fixed temperature.
+  // Builds the levels. Every connected component of the graph must lose heat to at least one cell of fixed temperature.
   explicit Multigrid(CellGraph finest);
 
   const CellGraph& finest() const { return levels_.front().graph; }
 
-  // Solves A x = b approximately by one multigrid cycle, for use as a preconditioner. The result is x = M b, where M is
-  // a symmetric matrix. The memory of the cycle is reused from run to run.
+  // One multigrid cycle, which solves A x = b approximately, for use as a preconditioner. The result is x = M b with a
+  // symmetric matrix M. The memory of the cycle is reused in every run.
   struct Cycle {
     virtual ~Cycle() = default;
     // Returns x, which is valid until the next run.
@@ -85,7 +85,7 @@ class Multigrid {
   std::unique_ptr<Cycle> cycle(int lanes) const;
 
   // Solves A x = b by preconditioned conjugate gradients.
-  //   b, x       #cells x lanes; x contains the first guess
+  //   b, x       #cells x lanes; x contains the initial guess
   //   lanes      number of right-hand sides, 1 to kMostLanes
   //   residual   relative residual |b - A x| / |b| at which the solve for a right-hand side stops
   MultigridReport solve(ZeroedVector<float> b, ZeroedVector<float>& x, int lanes, double residual, int most_iterations,
@@ -94,8 +94,8 @@ class Multigrid {
  private:
   struct Level {
     CellGraph graph;
-    // The cell on the next coarser level that contains each cell; -1: a cell without neighbours, which is in none.
-    // Empty on the coarsest level.
+    // The cell on the next coarser level that contains each cell; -1 for a cell without neighbours, which is left out
+    // there. Empty on the coarsest level.
     std::vector<std::int32_t> parent;
     // Index in `red` of the first red cell of each cell of the next coarser level; one more entry marks the end.
     std::vector<std::int32_t> first_red;

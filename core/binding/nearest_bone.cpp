@@ -12,22 +12,22 @@
 namespace limber {
 
 namespace {
-// Radius that a bone without bone tissue is assumed to have, as a share of the radius of the flesh around its axis. The
-// radius is at least half a voxel's diagonal.
+// Assumed radius of a bone without bone tissue, as a share of the radius of the flesh around its axis. The radius is at
+// least half a voxel's diagonal.
 constexpr double kBoneShare = 0.5;
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
 }  // namespace
 
 namespace {
 
-// Returns the distance from a bone's axis to the air, mm. For each of several points along the axis it takes the
-// shortest of 26 rays; the result is the median over the points.
+// Returns the distance from a bone's axis to the air, mm. At each of several points along the axis, the shortest of 26
+// rays is used; the result is the median over the points.
 double flesh_around(const Bone& bone, const LabelVolume& volume) {
   const AffineTransform from_world = voxel_from_world(volume.grid);
   const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
   const glm::dvec3 size(volume.grid.size);
-  // The position is compared before it is converted to int, since a rig may lie further from the volume than an int can
-  // represent.
+  // Compares the position before converting it to int, since the position of a rig far away from the volume may exceed
+  // the range of int.
   auto is_air = [&](const glm::dvec3& at) {
     const bool inside = glm::all(glm::greaterThanEqual(at, glm::dvec3(0))) && glm::all(glm::lessThan(at, size));
     return !inside || volume.at(glm::ivec3(at)) == 0;
@@ -65,7 +65,7 @@ ZeroedVector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVo
 
   const AffineTransform from_voxel = world_from_voxel(volume.grid), from_world = voxel_from_world(volume.grid);
   const double voxel = std::max({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
-  // Distance of each voxel from the axis of the bone that fixes the voxel's temperature, mm; -1: no bone does.
+  // Distance of each voxel from the axis of the bone that holds the voxel, mm; -1: no bone does.
   std::vector<float> nearest(tissue.size(), -1);
   for (size_t b = 0; b < armature.bones.size(); ++b) {
     if (has_part[b]) continue;
@@ -102,7 +102,7 @@ NearestBone spread_from_bones(const LabelVolume& volume, const TissueVoxels& tis
   nearest.bone.assign(held_by.begin(), held_by.end());
   nearest.distance.assign(tissue.size(), std::numeric_limits<float>::infinity());
   TissueFront front(volume, tissue);
-  // Voxels whose temperature a bone fixes start with distance 0. No path is shorter, so these voxels keep their bone.
+  // Voxels held by a bone start with distance 0. No path is shorter, so these voxels keep their bone.
   front.start_all([&](std::int64_t place, const glm::ivec3&) {
     if (held_by[place] != kSoft) nearest.distance[place] = 0;
     return held_by[place];

@@ -39,7 +39,7 @@ class BlockSolve {
     for (int lane = 0; lane < lanes; ++lane) lane_of_bone_[block.bones[lane]] = lane;
     if (known_.start_block) known_.start_block(block.bones);
     heat_.fill(block.bricks, system_);
-    // Cells that no heat reaches keep temperature zero. An extra loss of heat keeps the system solvable.
+    // Cells that no heat reaches get temperature zero: an additional heat loss there keeps the system solvable.
     for_cells(tissue_, block.bricks, system_, [&](std::int64_t place, std::int64_t b, int slot) {
       if (!known_.is_reached(block.bricks[b], place)) system_.diagonal[b * HeatSystem::kSlots + slot] += 1;
     });
@@ -71,7 +71,7 @@ class BlockSolve {
   const KnownHeat& known_;
   const HeatDiffusion& settings_;
   std::vector<int> lane_of_bone_;
-  // Working memory that all blocks of bones reuse.
+  // Memory that all blocks of bones reuse.
   HeatSystem system_;
   HeatVectors vectors_;
 };

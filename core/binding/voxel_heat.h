@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves for the temperatures of single voxels, block of bones by block of bones (heat_system.h solves one block).
+// Solves for the temperatures of single voxels, one block of bones after the other. heat_system.h solves one block.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// What heat flows through. The referred objects must outlive it.
+// The body through which heat flows. The referenced objects must outlive this struct.
 struct HeatBody {
   const LabelVolume& volume;
   const TissueVoxels& tissue;
@@ -21,19 +21,19 @@ struct HeatBody {
   const ZeroedVector<std::uint16_t>& held_by;  // from fixed_bone()
 };
 
-// What is known before the solve. `brick` and `place` are indices of a brick and of a soft voxel in it; `lane` is the
-// number of a bone in its block.
+// Temperatures that are known before the solve. `brick` and `place` are indices of a brick and of a soft voxel in it;
+// `lane` is the index of a bone in its block.
 struct KnownHeat {
-  std::function<void(const std::vector<int>& bones)> start_block;  // is called before the solve for a block of bones
-  // Returns whether heat from any bone reaches a voxel.
+  std::function<void(const std::vector<int>& bones)> start_block;  // called before each block of bones is solved
+  // Returns true if heat from at least one bone reaches a voxel.
   std::function<bool(std::int64_t brick, std::int64_t place)> is_reached;
-  // Returns a guess of a bone's temperature at a voxel.
+  // Returns the initial guess of a bone's temperature at a voxel.
   std::function<float(std::int64_t brick, std::int64_t place, int lane)> first_guess;
-  // Returns a bone's temperature at a voxel of a brick that its block is not solved in. Empty: all are 0.
+  // Returns a bone's temperature at a voxel of a brick in which the bone's block is not solved. Empty: all are 0.
   std::function<float(std::int64_t brick, std::int64_t place, int lane)> outside;
 };
 
-// A share of a longer task, as fractions of its progress.
+// The part of a longer task's progress that one solve covers, as fractions of the whole, [0, 1].
 struct ShareOfProgress {
   double begin, end;
   double at(std::size_t done, std::size_t count) const {
@@ -41,8 +41,8 @@ struct ShareOfProgress {
   }
 };
 
-// Solves for the temperatures of the blocks' bones in their bricks, and offers them to `best`. Throws Error when the
-// solve for a bone does not reach its residual, and Cancelled.
+// Solves for the temperatures of the bones of all blocks in the blocks' bricks, and offers them to `best`. Throws Error
+// if the solve for a bone does not reach its residual, and Cancelled.
 void solve_in_voxels(const HeatGraph& heat, const HeatBody& body, const std::vector<BoneBlock>& blocks,
                      const KnownHeat& known, const HeatDiffusion& settings, const ShareOfProgress& share,
                      Progress& progress, BestFour& best, WeightsReport& report);

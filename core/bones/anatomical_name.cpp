@@ -12,7 +12,7 @@ namespace limber {
 namespace {
 using Words = std::vector<std::string>;
 
-// Upper limit on the characters of a name that are read; further ones are ignored.
+// Upper limit on the characters of a name that are read; the rest is ignored.
 constexpr std::size_t kLongestName = 400;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -169,7 +169,7 @@ AnatomicalName anatomical_name(std::string_view label_name) {
       name.plural |= found->second.plural;
     }
   }
-  // A name such as "Lower leg bones" means the bones of half a limb without naming a single bone.
+  // A name such as "Lower leg bones" means all bones of half a limb and names no single bone.
   if (name.regions.empty() && has_any(words, {"bone", "bones"}) && has(words, "upper") != has(words, "lower")) {
     const bool upper = has(words, "upper");
     if (has_any(words, {"arm", "arms"})) name.regions.insert(upper ? BoneRegion::UpperArm : BoneRegion::Forearm);
@@ -189,7 +189,8 @@ AnatomicalName anatomical_name(std::string_view label_name) {
     name.regions = {BoneRegion::Toes};
   } else if (is_foot) {
     name.regions.erase(BoneRegion::Hand);
-    // "Navicular bone of left foot" means one bone. "Ankles and foot bones" means all bones of the foot with the toes.
+    // "Navicular bone of left foot" means one bone. "Ankles and foot bones" means all bones of the foot including the
+    // toes.
     const bool is_one = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       const auto found = dictionary().find(word);
       return word == "sesamoid" ||

@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kFar = 1e4f;  // upper limit on stored distances, mm
 
-// The position of a lattice point between two voxels along one axis: the lower voxel, and the share of the upper voxel
-// in the interpolation, [0, 1].
+// Position of a lattice point between two voxels along one axis: the lower voxel, and the weight of the upper voxel in
+// the interpolation, [0, 1].
 struct AxisPoint {
   int voxel;
   float share;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes the signed distance to the surface of one bone near a joint. It uses a lattice of cubes, so that distances
-// are equally exact in every direction even where slices are thick. There, the share of bone is first interpolated
-// between slices, and the surface is where the share is one half. Points are in mm along the axes of the volume's grid,
-// from the centre of voxel 0.
+// Computes the signed distance to the surface of one bone near a joint. The distances are stored on a lattice of cubes,
+// so that they are equally accurate in every direction even if slices are thick. In that case the share of bone is
+// first interpolated between slices, and the surface is where the share is one half. Points are in mm along the axes of
+// the volume's grid, relative to the centre of voxel 0.
 #pragma once
 
 #include <optional>
@@ -23,8 +23,8 @@ class BoneDistance {
     double mm;
   };
 
-  // Builds a lattice over the voxel centres of `box`, whose edge is the smallest voxel spacing. Voxels outside the box
-  // are ignored: a bone that goes on beyond the box has no surface there.
+  // Builds a lattice over the voxel centres of `box`. The lattice spacing is the smallest voxel spacing. Voxels outside
+  // the box are ignored: a bone that continues beyond the box has no surface there.
   //   voxels  all voxels of the bone
   BoneDistance(const glm::dvec3& spacing, const std::vector<glm::ivec3>& voxels, const VoxelBox& box);
 
@@ -42,7 +42,7 @@ class BoneDistance {
  private:
   // A place is a point in lattice units, (0, 0, 0) at the lattice's first point.
   bool holds(const glm::dvec3& place) const;
-  Sample sample(const glm::dvec3& place) const;  // of a place inside the lattice
+  Sample sample(const glm::dvec3& place) const;  // requires a place inside the lattice
 
   glm::dvec3 lowest_;
   double edge_;

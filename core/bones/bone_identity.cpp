@@ -25,7 +25,7 @@ class RigRegions {
     roles_ = joint_roles(names, parents);
     for (int b = 0; b < std::ssize(roles_); ++b) {
       if (parents[b] < 0) roots_.push_back(b);
-      // In a rig without a neck, the bones of the trunk get no roles, so that their own names decide.
+      // In a rig without a neck, the bones of the trunk get no roles. So their own names decide.
       if (roles_[b] && roles_[b]->part != BodyPart::Spine) continue;
       const AnatomicalName name = anatomical_name(names[b]);
       const std::string plain = plain_name(names[b]);
@@ -91,7 +91,7 @@ class RigRegions {
     return bones;
   }
   std::vector<int> of_part(BodyPart part, BodySide side) const {
-    // In a rig of a single limb, the names of bones may not name a side.
+    // In a rig of a single limb, the bones' names may not contain a side.
     auto bones = with_role([&](const JointRole& role) { return role.part == part && role.side == side; });
     if (bones.empty() && side != BodySide::Middle)
       bones = with_role([&](const JointRole& role) { return role.part == part && role.side == BodySide::Middle; });
@@ -209,8 +209,8 @@ bool is_meant(const Tissue& tissue, const std::string& label) {
 
 void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armature, const RigRegions& rig,
            std::map<Label, LabelBones>& found) {
-  // Entries for whole labels are applied first. Entries for one side follow, because they override the entry for the
-  // whole label.
+  // Applies entries for whole labels first. Entries for one side follow, because they override the entry for the whole
+  // label.
   for (const bool of_sides : {false, true})
     for (const auto& [key, bone_name] : map) {
       const MapKey parts = parts_of(key);

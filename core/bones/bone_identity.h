@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Decides which rig bones a label of bone tissue may follow. The user's bone map counts first, then the anatomical
-// meaning of the label's name (anatomical_name.h), matched with the roles of the rig's bones (rig/joint_names.h). If
-// the rig lacks the bone that a name means, the label follows the next rig bone towards the trunk: a hand follows the
-// forearm of a rig without hand bones, and a shoulder blade the thorax of a rig without collarbones.
+// Decides which rig bones a label of bone tissue may follow. The user's bone map has precedence. Without an entry
+// there, the anatomical meaning of the label's name (anatomical_name.h) is matched with the roles of the rig's bones
+// (rig/joint_names.h). If the rig lacks the bone that a name means, the label follows the next rig bone towards the
+// trunk: a hand follows the forearm of a rig without hand bones, and a shoulder blade the thorax of a rig without
+// collarbones.
 #pragma once
 
 #include <array>
@@ -21,8 +22,8 @@ namespace limber {
 // "@left" or "@right"; the value is the name of a rig bone.
 using BoneMap = std::map<std::string, std::string>;
 
-// These two functions read a bone map from JSON such as {"Femora, cortical@left": "LeftThigh", "17": "Pelvis"}. Both
-// throw Error when the text is no bone map or has a key twice.
+// Both functions read a bone map from JSON such as {"Femora, cortical@left": "LeftThigh", "17": "Pelvis"}. They throw
+// Error when the text is no bone map or has a key twice.
 BoneMap read_bone_map(const Path& path);
 BoneMap parse_bone_map(const std::string& bytes, const std::string& where);
 
@@ -34,19 +35,20 @@ struct LabelBones {
   // label has no sides.
   std::array<std::vector<int>, 2> candidates;
   bool has_sides = false;
-  // Rig bones that separate the sides of a label with sides: voxels nearer to bones of list [0] are left, voxels nearer
-  // to bones of list [1] are right.
+  // Rig bones that separate the sides of a label with sides: voxels nearer to the bones in [0] are left, voxels nearer
+  // to the bones in [1] are right.
   std::array<std::vector<int>, 2> side_bones;
-  // true: the label holds one bone of the body (per side), which follows one rig bone as a whole.
+  // true: the label contains one bone of the body (per side), which follows one rig bone as a whole.
   bool single = true;
   FoundBy found_by = FoundBy::Name;
-  // true: the rig has neither the bone that the label's name means nor one further towards the trunk. Then the
-  // candidates are the root bones of the rig.
+  // true: the rig has neither the bone that the label's name means nor one further towards the trunk. The candidates
+  // are then the root bones of the rig.
   bool is_substitute = false;
 };
 
-// Returns the labels of bone tissue whose rig bones follow from the map or from the label's name. For other labels, the
-// rig bones must be found by shape. Throws Error when the map names a rig bone or a label that does not exist.
+// Returns the labels of bone tissue whose rig bones are known from the map or from the label's name. For all other
+// labels, the rig bones must be found by shape. Throws Error when the map names a rig bone or a label that does not
+// exist.
 std::map<Label, LabelBones> bones_of_labels(const TissueTable& tissues, const Armature& armature,
                                             const BoneMap& map = {});
 

@@ -51,8 +51,8 @@ MappedLabel mapped(const BoneParts& parts, Label label, const LabelBones* bones,
 
 }  // namespace
 
-// Adds the map's entries one by one, and keeps each entry that can be used together with the entries kept before. If
-// the entry for one side of a label cannot be used alone, the entry for the other side is added together with it.
+// Adds the map's entries one by one, and keeps each entry that can be used together with those kept before. If the
+// entry for one side of a label cannot be used alone, the entry for the other side is added with it.
 FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, const Armature& armature) {
   FittingBoneMap fitting{map, {}};
   if (can_be_used(map, tissues, armature)) return fitting;

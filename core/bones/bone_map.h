@@ -33,7 +33,7 @@ struct MappedLabel {
   std::vector<int> bones;
   std::int64_t voxels = 0;
   FoundBy found_by = FoundBy::Shape;
-  bool is_sure = true;  // false: the rig has no bone for what the label's name means
+  bool is_sure = true;  // false: the rig has no bone that matches the label's name
 };
 // Returns a row for every label of bone tissue, or for each of its two sides, in the order of the tissue table.
 std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable& tissues, const Armature& armature,
@@ -42,8 +42,8 @@ std::vector<MappedLabel> mapped_labels(const BoneParts& parts, const TissueTable
 // Returns the key of a label in a bone map: its value in files, which is unique, followed by the side if one is given.
 std::string map_key(const Tissue& tissue, std::optional<BodySide> side = {});
 
-// Returns the map with an entry by which a label, or one side of it, follows the rig bone named `bone`. If `bone` is
-// null, returns the map without that entry.
+// Returns a copy of the map in which a label, or one side of it, follows the rig bone named `bone`. If `bone` is null,
+// the entry is removed.
 BoneMap with_entry(BoneMap map, const Tissue& tissue, std::optional<BodySide> side, const std::string* bone);
 
 }  // namespace limber

@@ -20,13 +20,13 @@ namespace limber {
 
 namespace {
 
-// Height by which rounding to voxels makes the smooth ridge of a thick tube vary, in voxels.
+// Amount, in voxels, by which rounding to voxels makes the height along the smooth ridge of a thick tube vary.
 constexpr double kWiggleVoxels = 0.6;
-// Upper limit on the number of basins times rig bones: 64 MB of distances.
+// Upper limit on the number of basins times the number of rig bones; at the limit, the distances take 64 MB.
 constexpr std::int64_t kMostDistances = 16'000'000;
 
-// Cuts a basin of the watershed that contains at least half the length of each of several rig bones: its bones have
-// grown together, or are drawn as one tube. Each voxel goes to the nearest of those rig bones.
+// Cuts a basin of the watershed that contains at least half the length of each of several rig bones: the bones of such
+// a basin have grown together, or are drawn as one tube. Each voxel goes to the nearest of those rig bones.
 void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid,
                                  const TissueVoxels& tissue, const Hugging& hugging, std::vector<std::int32_t>& basin) {
   constexpr double kMostOfItsLength = 0.5;
@@ -52,7 +52,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   }
 
   std::int32_t next = basin.empty() ? 0 : *std::max_element(basin.begin(), basin.end()) + 1;
-  std::map<std::int32_t, std::int32_t> first_of;  // for each basin that is cut: number of the first of its new basins
+  std::map<std::int32_t, std::int32_t> first_of;  // number of the first new basin of each basin that is cut
   for (const auto& [which, bones] : bones_inside)
     if (bones.size() >= 2) first_of[which] = std::exchange(next, next + static_cast<std::int32_t>(bones.size()));
   if (first_of.empty()) return;
@@ -70,10 +70,10 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
 }
 
 // Joins touching basins of the watershed to pieces that each follow one rig bone, broadest contact first. Two basins
-// are not joined if the smaller one would then follow a rig bone that is much farther away than its own.
+// are not joined if the smaller one would then follow a rig bone that is much farther away than its own nearest one.
 class Pieces {
  public:
-  //   beyond      voxels that lie beyond a joint, seen from a rig bone
+  //   beyond      voxels on the far side of a joint, as seen from a rig bone
   //   may_follow  returns the rig bones that the basin of a given voxel may follow; empty: any
   Pieces(const BoneGraph& graph, const std::vector<float>& height, const Hugging& hugging,
          const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond, double voxel,
@@ -151,7 +151,7 @@ class Pieces {
     while (cluster_[p].parent != p) p = cluster_[p].parent;
     return p;
   }
-  // Returns the rig bone of a basin, after settle(). -1: the basin touches no other basin and lies far from every rig
+  // Returns the rig bone of a basin, after settle(). -1: the basin touches no other basin and is far from every rig
   // bone.
   int bone(std::int32_t p) const {
     const int bone = bone_[root(p)];
@@ -164,13 +164,17 @@ class Pieces {
         ->trunk;
   }
 
-  // Gives every piece (group of joined basins) its rig bone. A piece that lies along a rig bone follows it. A piece
-  // more than 1.5 times as far from its nearest rig bone as the piece along that bone (a rib beside the hanging arm,
-  // the breastbone between two collarbones) follows it only if all pieces that it touches follow the bone, its parent
-  // or its children. Otherwise it follows a bone of the pieces that it touches: the nearest one if these bones form a
-  // chain, or their common ancestor. The same holds for a piece that is three times as far and does not touch the piece
-  // along its nearest bone, except for one that is about as large as that piece and touches the bone's parent (a toe
-  // beside a toe). A piece nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
+  // Assigns a rig bone to every piece (group of joined basins). In the following, a rig bone's own piece is the piece
+  // that lies along it.
+  //   - A piece follows its nearest rig bone if it is at most 1.5 times as far from it as the bone's own piece.
+  //   - A piece that is further away (a rib beside the hanging arm, the breastbone between two collarbones) follows its
+  //     nearest rig bone only if all pieces that it touches follow this bone, its parent or its children. Otherwise it
+  //     follows a bone of the pieces that it touches: the nearest one if these bones form a chain, or their common
+  //     ancestor.
+  //   - The same holds for a piece that is three times as far and does not touch the own piece of its nearest bone,
+  //   unless
+  //     it is about as large as that piece and touches the bone's parent (a toe beside a toe).
+  //   - A piece that is nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
     bone_.assign(count, -1);
@@ -206,22 +210,22 @@ class Pieces {
   const std::vector<float>& distances(std::int32_t p) const { return cluster_[root(p)].distance; }
 
  private:
-  // Least height of the pass between two basins that may be joined, as a share of the lower basin's summit. A lower
-  // pass is a joint and not the waist of one bone. Marrow runs through a bone but never across a joint, and it raises
-  // passes. So a condyle is joined to its own shaft and not to the bone on which it rolls, even where voxels are
-  // coarse.
+  // Two basins are joined only if the height of the pass between them is at least this share of the lower basin's
+  // summit. A lower pass is a joint, not the waist of one bone. Marrow runs through a bone but never across a joint,
+  // and it raises passes. So a condyle is joined to its own shaft and not to the bone on which it rolls, even in coarse
+  // volumes.
   static constexpr float kWeakestContact = 0.35f;
-  // For voxels beyond a joint, a rig bone before the joint counts as (1 + this) times as far.
+  // For voxels beyond a joint, the distance to the rig bone before the joint is multiplied by 1 + this factor.
   static constexpr double kBeyondJoint = 4;
   static constexpr float kForbidden = 1e6f;  // mm added to the distance from rig bones that a basin must not follow
-  // Share of a basin's voxels that lie before the head of a collarbone, along its direction. Above this share, the
-  // basin does not follow the collarbone.
+  // A basin does not follow a collarbone if more than this share of the basin's voxels is before the head of the
+  // collarbone, along its direction.
   static constexpr double kMostlyBefore = 0.7;
-  // Share of a basin's voxels on the other side of the body. Above this share, the basin does not follow a collarbone:
-  // the collarbone has grown together with the breastbone there.
+  // A basin does not follow a collarbone if more than this share of the basin's voxels is on the other side of the
+  // body. In such a basin the collarbone has grown together with the breastbone.
   static constexpr double kAcross = 0.35;
-  // Limits for a piece, relative to the piece that lies along the same rig bone: far above kFar times that piece's
-  // distance from the bone, small below 1 / kSmall of that piece's voxels.
+  // Limits for a piece, relative to the own piece of the same rig bone. A piece is far if its distance from the bone is
+  // more than kFar times the own piece's. It is small if it has less than 1 / kSmall of the own piece's voxels.
   static constexpr double kFar = 3, kSmall = 4;
 
   struct Cluster {
@@ -237,8 +241,8 @@ class Pieces {
     while (bone > ancestor) bone = armature.bones[bone].parent;
     return bone == ancestor;
   }
-  // Returns the trunk's rig bone for a piece whose nearest rig bone is a shoulder's but which neither lies along that
-  // bone nor reaches the shoulder joint; for other pieces -1.
+  // Returns the trunk's rig bone for a piece whose nearest rig bone is a shoulder's, if the piece is not that bone's
+  // own piece and does not reach the shoulder joint. Returns -1 for other pieces.
   int trunk_instead_of(int bone, std::int32_t p) const {
     for (std::size_t g = 0; g < girdles_.size(); ++g) {
       const ShoulderGirdle& girdle = girdles_[g];
@@ -279,8 +283,8 @@ class Pieces {
     return nearest;
   }
 
-  // Corrects the distances from basins to rig bones for voxels that lie beyond a joint. The distance to the bone beyond
-  // the joint becomes as small as the distance to the bone before the joint, and the latter is increased.
+  // Corrects the distances from basins to rig bones for voxels beyond a joint. The distance to the bone beyond the
+  // joint is reduced to the distance to the bone before the joint, and the latter is increased.
   void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
     // Number of voxels beyond a joint, by basin, rig bone before the joint and rig bone beyond the joint.
     std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;
@@ -324,8 +328,8 @@ class Pieces {
     const double apart = a.distance[of_a] * a.voxels + b.distance[of_b] * b.voxels;
     const Cluster& smaller = a.voxels < b.voxels ? a : b;
     const double own = smaller.distance[a.voxels < b.voxels ? of_a : of_b];
-    // The distance of the smaller piece from its rig bone may grow by a quarter. This limit lets the ball of a joint
-    // join its shaft, but keeps a finger bone apart from its neighbour.
+    // When two pieces are joined, the distance of the smaller one from its rig bone may grow by at most a quarter. This
+    // limit lets the ball of a joint join its shaft, but keeps a finger bone separate from its neighbour.
     return together - apart <= 0.25 * own * smaller.voxels;
   }
   void absorb(std::int32_t a, std::int32_t b) {
@@ -346,7 +350,7 @@ class Pieces {
     cluster_[b].parent = a;
   }
 
-  // The piece that lies along a rig bone: that with the largest ratio of voxels to squared distance.
+  // A rig bone's own piece, which lies along it: the piece with the largest ratio of voxels to squared distance.
   struct Own {
     double distance = 0;  // mean distance from the piece to the rig bone, mm
     std::int64_t voxels = 0;
@@ -358,7 +362,7 @@ class Pieces {
   float surface_;
   std::vector<Cluster> cluster_;
   std::vector<int> bone_;  // rig bone of each cluster; -1: none yet
-  std::vector<Own> own_;   // for each rig bone, the piece that lies along it
+  std::vector<Own> own_;   // own piece of each rig bone
   std::vector<ShoulderGirdle> girdles_;
   std::map<std::int32_t, std::vector<int>> before_;  // for each basin, the rig bones of shoulders that it cannot follow
 };
@@ -398,7 +402,7 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
                           const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates,
                           Progress& progress) {
   JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
-  // The height of marrow is doubled, so that two marrow cores form two summits however thin the shells between them
+  // Doubles the height of marrow, so that two marrow cores form two summits however thin the bone shells between them
   // are.
   std::vector<float> height = cuts.depth;
   for (std::int64_t i = 0; i < graph.size(); ++i)
@@ -423,8 +427,8 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
   std::vector<int> bone(graph.size());
   for (std::int64_t i = 0; i < graph.size(); ++i) {
     bone[i] = of_basin[basin[i]];
-    // A piece that touches no other one got the nearest rig bone. The name of a voxel's label may forbid that bone;
-    // then the voxel gets the nearest rig bone that the name allows.
+    // A piece that touches no other piece got the nearest rig bone. If the name of a voxel's label does not allow that
+    // bone, the voxel gets the nearest rig bone that the name allows.
     const std::vector<int>& allowed = candidates[group[i]];
     if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), bone[i]) == allowed.end())
       bone[i] = *std::min_element(allowed.begin(), allowed.end(), [&](int a, int b) {

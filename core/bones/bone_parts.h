@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Separates the bone tissue of a volume into bones. All bones of a limb are often one connected blob of one label,
 // because joints are thinner than a voxel. First, bones that touch in a joint or side by side are cut apart
-// (core/bones/joint_cuts.h). Then a watershed splits the blob; it grows from the marrow cores, or without marrow from
-// the deepest points of the bone. Each part is given to the rig bone that it surrounds. The plane borders of Bender's
-// skin map (skin/weights_io.h) are not used: a cut along them would put 1004 voxels of the paper's arm on the wrong
-// bone.
+// (core/bones/joint_cuts.h). Then a watershed splits the blob; it grows from the marrow cores or, without marrow, from
+// the deepest points of the bone. Each part follows the rig bone that it surrounds. The plane borders of Bender's skin
+// map (skin/weights_io.h) are not used: a cut along them would assign 1004 voxels of the paper's arm to the wrong bone.
 //
-// A label whose name says which bone it is takes precedence over shape (core/bones/bone_identity.h). A label of several
+// A label whose name says which bone it is has precedence over shape (core/bones/bone_identity.h). A label of several
 // bones ("Wrists and hand bones") is split by shape among the rig bones that its name allows.
 #pragma once
 
@@ -37,7 +36,7 @@ struct BoneParts {
     Label label;
     int bone;
     FoundBy found_by;
-    bool is_substitute;  // true: the rig has no bone for what the label's name means
+    bool is_substitute;  // true: the rig has no bone that matches the label's name
     std::int64_t voxel_count;
   };
   std::vector<Identity> identities;  // sorted by label, then bone

@@ -17,14 +17,14 @@ namespace limber {
 
 namespace {
 
-// Ratio of the height of the pass between two basins to the lower summit, above which the basins are merged: then the
-// pass is only a variation of height along one bone. On a whole arm whose true bones are known, 0.9 puts 0.4 % of bone
-// voxels into a basin of another bone, and 0.7 puts 2.4 %. Splitting one bone too often costs nothing, because its
+// Two basins are merged if the height of the pass between them is above this share of the lower summit: the pass is
+// then only a variation of height along one bone. On a whole arm whose true bones are known, 0.9 puts 0.4 % of the bone
+// voxels into a basin of another bone, and 0.7 puts 2.4 %. Splitting one bone too often does no harm, because its
 // pieces find the same rig bone.
 constexpr double kMergeRatio = 0.9;
 constexpr std::int64_t kBricks = 64;  // bricks (8^3 voxels each) per block of a parallel loop
-// Upper limit on height variations that count as rounding to voxels, as a share of the summit. A finger bone is only
-// two voxels deep.
+// Upper limit on height variations that count as rounding to voxels, as a share of the summit. The limit is relative to
+// the summit because a finger bone is only two voxels deep.
 constexpr double kWiggleShare = 0.2;
 
 std::array<glm::ivec3, 26> offsets_26() {
@@ -39,8 +39,8 @@ std::array<glm::ivec3, 26> offsets_26() {
 const std::array<glm::ivec3, 26> kOffsets = offsets_26();
 
 // Decides which pairs of bone labels are different bones that merely touch. Two labels of plain bone ("Right humerus",
-// "Right ulna") are different bones, unless one lies inside the other, as marrow lies in its shell. A label lies inside
-// when more than half of its faces touch bone.
+// "Right ulna") are different bones, unless one is inside the other, as marrow is inside its shell. A label is inside
+// if more than half of its faces touch bone.
 class LabelWalls {
  public:
   LabelWalls(const LabelVolume& volume, const TissueVoxels& tissue, const std::vector<TissueKind>& kinds)
@@ -55,7 +55,8 @@ class LabelWalls {
     std::vector<std::int64_t> faces(kinds.size()), bone_faces(kinds.size());
     std::mutex adding;
     parallel_for(std::ssize(tissue.bricks()), kBricks, [&](std::int64_t begin, std::int64_t end) {
-      std::map<Label, std::array<std::int64_t, 2>> some;  // of each plain label: faces, and faces that touch bone
+      // By plain label: number of faces; number of those that touch bone.
+      std::map<Label, std::array<std::int64_t, 2>> some;
       tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) {
         const Label label = volume.at(v);
         if (!plain_[label]) return;
@@ -83,7 +84,7 @@ class LabelWalls {
   bool between(Label a, Label b) const { return a != b && plain_[a] && plain_[b]; }
 
  private:
-  std::vector<std::uint8_t> plain_;  // for each label, 1: plain bone that does not lie inside another bone
+  std::vector<std::uint8_t> plain_;  // for each label, 1: plain bone that is not inside another bone
 };
 
 }  // namespace
@@ -187,8 +188,8 @@ BoneGraph gather_bone(const LabelVolume& volume, const TissueVoxels& tissue, con
 }
 
 namespace {
-// Computes the distance of voxels to the nearest border of their bone. The distance is passed on from voxel to voxel,
-// starting at the nearest ones.
+// Computes the distance of voxels to the nearest border of their bone by propagation: each voxel passes its nearest
+// border position on to its neighbours, the nearest voxels first.
 class DepthFront {
  public:
   DepthFront(const BoneGraph& graph, const glm::dvec3& spacing, std::vector<float>& depth)
@@ -265,8 +266,8 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
 }
 
 namespace {
-// Returns the indices of `height` (no value is negative), the highest first and equal heights in their order. Sorts by
-// the bits of the floats, which rise with their values, eleven bits at a time.
+// Returns the indices of `height` (no value is negative) in descending order of height; equal heights keep their order.
+// Radix sort on the bits of the floats, which increase with their values, eleven bits at a time.
 std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
   constexpr int kBits = 11;
   std::vector<std::int32_t> order(height.size()), next(height.size());

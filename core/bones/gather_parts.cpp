@@ -55,10 +55,10 @@ class BonePieces {
   ZeroedVector<std::int32_t> parent_;
 };
 
-// Voxels of a piece, or of a part of it.
+// Number of voxels and sum of positions of a piece, or of the part of a piece in one block.
 struct PieceSum {
   std::int64_t voxels = 0;
-  glm::i64vec3 place{0};  // sum of the voxels' places in the grid
+  glm::i64vec3 place{0};  // sum of the voxels' positions in the grid
 
   void add(const PieceSum& other) {
     voxels += other.voxels;
@@ -120,7 +120,7 @@ std::vector<BoneParts::Identity> identities_of(const BoneGraph& graph, const Lab
   std::vector<Identities> of_blocks((graph.size() + kGrain - 1) / kGrain);
   parallel_for(graph.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     Identities& some = of_blocks[begin / kGrain];
-    // Entry of the previous voxel, kept because the next voxel most often has the same.
+    // Entry of the previous voxel. It is kept because the next voxel usually has the same entry.
     BoneParts::Identity* identity = nullptr;
     for (std::int64_t i = begin; i < end; ++i) {
       const Label label = volume.at(graph.voxel[i]);

@@ -11,21 +11,21 @@ namespace limber {
 
 namespace {
 
-// Share of a rig bone's length that is not examined at each end: joints lie there, and bone tissue may be missing.
+// Share of a rig bone's length at each end that is not examined, since joints are there and bone tissue may be missing.
 constexpr double kEnds = 0.15;
-// Radii of regions around a rig bone's axis, as shares of the rig bone's length: beside the axis up to kBeside, around
-// it from kAroundFrom to kAroundTo. A rig may run beside the real bone by half the limb's thickness, and limbs are some
-// 0.15 thick.
+// Radii of regions around a rig bone's axis, as shares of the rig bone's length: the region "beside" the axis ends at
+// kBeside, the region "around" it extends from kAroundFrom to kAroundTo. A rig may run beside the real bone by half the
+// limb's thickness, and limbs are about 0.15 thick.
 constexpr double kBeside = 0.09, kAroundFrom = 0.11, kAroundTo = 0.19;
-// Share of the points beside a rig bone's axis from which on their label counts as present there.
+// A label counts as present beside a rig bone if at least this share of the points beside the bone's axis has it.
 constexpr double kLeastOfDisc = 0.05;
-// Least values for a label that counts as bone: kShareOfRig, the share of the rig's length with the label beside it,
-// and kEnrichment, the ratio of the label's frequency beside the axis to that around it. Measured bone had shares of
-// 0.5 to 0.94 and ratios of 30 or more. Other labels with a ratio of 8 had shares up to 0.33, those with a share of 0.4
-// had ratios up to 5.
+// Lower limits for a label that counts as bone. kShareOfRig: share of the rig's length that has the label beside it.
+// kEnrichment: ratio of the label's frequency beside the axis to its frequency around the axis. Measured bone had
+// shares of 0.5 to 0.94 and ratios of 30 or more. Other labels with a ratio of 8 had shares up to 0.33, those with a
+// share of 0.4 had ratios up to 5.
 constexpr double kShareOfRig = 0.4, kEnrichment = 8;
-// Length of the shortest rig bone that is examined, as a share of the longest one. Short bones are as thick as long and
-// tell nothing.
+// Rig bones shorter than this share of the longest rig bone are not examined. Short bones are as thick as long, so that
+// the tissue beside and around them does not differ.
 constexpr double kLong = 0.5;
 constexpr int kSlices = 60, kPoints = 120;  // slices across each rig bone, and sampled points in each slice
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Guesses which label is bone when no tissue kind is known. A rig runs along the bones of a body, if not always inside
-// them (a forearm's axis runs between two bones), and bone lies in the middle of a limb. So a label that lies close to
-// the rig's bones and not farther out is bone. Muscle and fat also lie farther out, and a single muscle lies beside few
-// of the bones.
+// Guesses which label is bone if no tissue kind is known. A rig runs along the bones of a body, though not always
+// inside them (a forearm's axis runs between two bones), and bone is in the middle of a limb. So a label that is found
+// close to the rig's bones and not farther out is bone. Muscle and fat are also found farther out, and a single muscle
+// is beside only a few of the bones.
 #pragma once
 
 #include <optional>
@@ -18,9 +18,9 @@ struct BoneTissueGuess {
   double share_of_rig;
 };
 
-// Returns the label that lies beside at least 40 % of the length of long rig bones in tissue, and is at least eight
-// times as frequent beside these bones as farther out. Returns none when no label does, or when `tissues` knows the
-// kind of any label.
+// Returns the label that is beside at least 40 % of the length of long rig bones in tissue, and is at least eight times
+// as frequent beside these bones as farther out. Returns none if no label meets both limits, or if `tissues` contains
+// the kind of any label.
 std::optional<BoneTissueGuess> guess_bone_tissue(const LabelVolume& volume, const TissueTable& tissues,
                                                  const Armature& armature);
 

@@ -16,19 +16,19 @@
 namespace limber {
 
 namespace {
-// Limits on the share of the rig's length in tissue. Below kMostlyOutside, the rig lies outside the body. A turned or
-// mirrored rig fits better if its share is larger by kFitsMuchBetter. A rig that fits has nine tenths of its length in
-// tissue; a hand's rig, which runs along thin fingers, has less.
+// Limits on the share of the rig's length in tissue. If it is below kMostlyOutside, the rig is outside the body. A
+// turned or mirrored rig fits better if its share is larger by at least kFitsMuchBetter. A rig that fits has 90 % of
+// its length in tissue; a hand's rig, which runs along thin fingers, has less.
 constexpr double kMostlyOutside = 0.5, kFitsMuchBetter = 0.3;
-// A body that the volume's border cuts (a scan of the trunk) has a rig that reaches beyond the border. At least
-// kLeastPart of the rig's length must lie within the volume, kMostlyInside of this in tissue, and most bones that leave
-// the volume must leave it through tissue.
+// If the volume shows only a part of the body (a scan of the trunk), the rig reaches beyond the volume's border. It
+// still counts as fitting if at least kLeastPart of the rig's length is within the volume, kMostlyInside of this in
+// tissue, and at least kLeaveInTissue of the bones that leave the volume do so through tissue.
 constexpr double kLeastPart = 0.1, kMostlyInside = 0.7, kLeaveInTissue = 0.75;
 constexpr int kPoints = 32;  // points examined along each rig bone
 // Radius within which tissue counts as lying along a rig bone, as a share of the bone's length.
 constexpr double kShaftRadius = 0.1;
-// Share of a label's voxels along the middle of another bone, from which on the label is doubted. The share is 0 in a
-// good body, and a sixth where half the femur is called tibia.
+// A label is doubted if at least this share of its voxels is along the middle of another bone. The share is 0 in a good
+// body, and 1/6 if half of the femur is labelled as tibia.
 constexpr double kMisplaced = 0.1;
 
 struct Extent {
@@ -45,7 +45,8 @@ Extent extent_of(const Grid& grid) {
   return extent;
 }
 
-// Returns the rig with `move` applied to the ends of all bones, to test whether the rig's file uses other axes.
+// Returns the rig with `move` applied to both ends of all bones. It is used to test whether the rig's file uses other
+// axes.
 template <class Move>
 Armature moved(Armature armature, const Move& move) {
   for (Bone& bone : armature.bones) bone.head = move(bone.head), bone.tail = move(bone.tail);
@@ -58,8 +59,8 @@ std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const Tis
   return "this looks like a grey image, not a label volume: " + *doubt + "; give the labels, and the image with --with";
 }
 
-// How the points along a rig's bones lie to a volume: mm of the rig's length, and the number of times that a bone
-// leaves the volume.
+// Position of a rig relative to a volume: mm of the rig's length in the volume and in tissue, and the number of times
+// that a bone leaves the volume.
 struct PlaceOfRig {
   double length = 0, in_volume = 0, in_tissue = 0;
   int leaves = 0, leaves_in_tissue = 0;
@@ -159,7 +160,7 @@ std::optional<std::array<std::vector<int>, 2>> both_sides(BoneRegion region, Bod
   return bones;
 }
 
-// Returns a doubt if labels whose names tell a side mostly lie nearer to the rig bones of the other side.
+// Returns a doubt if the labels whose names contain a side are mostly nearer to the rig bones of the other side.
 std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const TissueTable& tissues,
                                              const Armature& armature) {
   std::map<Label, AnatomicalName> sided;
@@ -194,8 +195,8 @@ std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const Ti
          "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
 }
 
-// Returns a doubt if the rig's left bones lie on the right of its right bones by the axes (x grows to the left). Only
-// used if no label's name tells a side.
+// Returns a doubt if, by the volume's axes (x points to the left), the rig's left bones are to the right of its right
+// bones. Used only if no label's name contains a side.
 std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Armature& armature) {
   for (const Tissue& tissue : tissues.tissues)
     if (is_bone(tissue.kind) && anatomical_name(tissue.name).side != BodySide::Middle) return std::nullopt;
@@ -211,7 +212,7 @@ std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Ar
          "the rig, or negate its x and y if it is in RAS axes";
 }
 
-// Returns true if a point lies along the middle of a rig bone, away from its joints.
+// Returns true if a point is beside the middle part of a rig bone, away from its joints.
 bool is_along(const Bone& bone, const glm::dvec3& p) {
   const glm::dvec3 axis = bone.tail - bone.head;
   const double length = glm::length(axis);
@@ -220,7 +221,7 @@ bool is_along(const Bone& bone, const glm::dvec3& p) {
   return share > 0.25 && share < 0.75 && distance_to_bone(bone, p) < kShaftRadius * length;
 }
 
-// Returns the labels that hold a single bone of an arm or leg, each with the rig bones that it may follow.
+// Returns the labels that contain a single bone of an arm or leg, each with the rig bones that it may follow.
 std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, const Armature& armature) {
   std::map<Label, std::vector<int>> own;
   for (const auto& [label, bones] : bones_of_labels(tissues, armature)) {
@@ -239,7 +240,8 @@ std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, 
 // The voxels of labels that hold a single bone of an arm or leg.
 struct LabelledVoxels {
   std::map<Label, std::int64_t> count;
-  std::map<Label, std::map<int, std::int64_t>> elsewhere;  // those along the middle of another rig bone
+  // Voxels along the middle of another rig bone, by label and rig bone.
+  std::map<Label, std::map<int, std::int64_t>> elsewhere;
 };
 
 LabelledVoxels count_elsewhere(const LabelVolume& volume, const std::map<Label, std::vector<int>>& own,
@@ -291,7 +293,8 @@ std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const T
   return std::nullopt;
 }
 
-// Returns the limb that a region of the body belongs to: 1 arm, 2 leg, 0 trunk and head, which occur with any limb.
+// Returns the limb that a region of the body belongs to: 1 arm, 2 leg, 0 trunk or head, which may occur together with
+// any limb.
 int limb_of(BoneRegion region) {
   using enum BoneRegion;
   return region >= UpperArm && region <= Finger ? 1 : region >= Thigh ? 2 : 0;
@@ -313,8 +316,8 @@ std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Ar
         (role->part >= BodyPart::UpperArm && role->part <= BodyPart::Fingers) || role->part >= BodyPart::Thumb;
     of_rig.insert(leg ? 2 : arm ? 1 : 0);
   }
-  // There is a doubt only if the rig is that of a single limb and all labels are bones of the other kind of limb. Bones
-  // of the trunk fit every rig.
+  // There is a doubt only if the rig has a single kind of limb and all labels are bones of the other kind. Bones of the
+  // trunk fit every rig.
   if (of_labels.size() != 1 || of_rig.size() != 1 || of_labels == of_rig || of_labels.contains(0) || of_rig.contains(0))
     return std::nullopt;
   return std::string("this is a rig of the ") + name_of_limb(*of_rig.begin()) + ", and the labels are bones of the " +

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds inputs that do not belong together, before anything is computed from them: a grey image read as labels, a rig
-// that lies beside the body or is mirrored, a rig whose left is the body's right, a rig of another limb, or a label of
-// one bone that lies along another bone. Each doubt is one sentence that says what is wrong and what to do.
+// outside the body or mirrored, a rig whose left is the body's right, a rig of another limb, or a label of one bone
+// that is along another bone. Each doubt is one sentence that says what is wrong and what to do.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace limber {
 
-// Returns the share of the rig's length that lies in tissue, [0, 1]. The tenth of each bone at either end, near a
-// joint, is not examined.
+// Returns the share of the rig's length that is in tissue, [0, 1]. A tenth of each bone at both ends, near the joints,
+// is not examined.
 double share_in_tissue(const LabelVolume& volume, const Armature& armature);
 
 std::vector<std::string> input_doubts(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature);

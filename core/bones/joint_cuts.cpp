@@ -17,42 +17,42 @@
 namespace limber {
 
 namespace {
-// Shares are of the shorter or longer of a joint's two rig bones. A joint's domain is the set of voxels among which its
-// cut is searched. A shaft is the tissue along a bone that surely belongs to the bone.
+// Limits of cuts at joints, as shares of the shorter or longer of a joint's two rig bones. A joint's domain is the set
+// of voxels in which its cut is searched. A shaft is the tissue along a rig bone that certainly belongs to the bone.
 constexpr double kReach = 0.6;       // reach of a joint's domain along the bones, share of the shorter bone
-constexpr double kReachAside = 0.3;  // least reach of a joint's domain in any direction, share of the longer bone
+constexpr double kReachAside = 0.3;  // smallest reach of a joint's domain in any direction, share of the longer bone
 constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
-constexpr double kShaftWidth = 0.1;  // thickness of a shaft from its innermost tissue, share of the shorter bone
-constexpr double kFarAside = 0.35;   // distance from a bone beyond which no tissue is its shaft, share of its length
-constexpr double kCoarse = 0.04;  // voxel size that doubles the weight of squared distances, share of the shorter bone
-constexpr double kAway = 8;       // extra weight of cut area where shafts begin; rises with the squared distance
-// Distance from the expected cut, as a share of the distance to the shafts, from which on the weight of cut area rises
-// with the fourth power. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
+constexpr double kShaftWidth = 0.1;  // thickness of the innermost tissue that is shaft, share of the shorter bone
+constexpr double kFarAside = 0.35;   // tissue further than this from a bone is never its shaft, share of its length
+constexpr double kCoarse = 0.04;     // at this voxel size squared distances count twice, share of the shorter bone
+constexpr double kAway = 8;  // extra weight of cut area where shafts begin; proportional to the squared distance
+// Beyond this distance from the expected cut, as a share of the distance to the shafts, the weight of cut area rises
+// with the fourth power of the distance. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
 constexpr double kSteep = 0.4;
-// Length of a rig bone, in radii of the joint, below which the weight of cut area rises less steeply, since a short rig
-// bone places the joint less exactly.
+// If a rig bone is shorter than this number of joint radii, the weight of cut area rises less steeply, since a short
+// rig bone determines the position of the joint less exactly.
 constexpr double kSlender = 8;
 constexpr double kSide = 0.6;  // largest distance between bones that touch side by side, share of the shorter bone
-// Ratio of a voxel's distances to its nearest and second nearest bone, below which the voxel surely belongs to the
-// nearest.
+// A voxel certainly belongs to its nearest bone if the ratio of its distances to the nearest and to the second nearest
+// bone is below this.
 constexpr double kSideShaft = 0.5;
-// Ratio of a cut's area to the thinner bone's cross-section from which on the cut is uncertain. Bones whose joints are
-// open, but which touch in scans of 1 to 3 mm, stay below it.
+// A cut is uncertain if the ratio of its area to the thinner bone's cross-section is at least this. Bones with open
+// joints, even if they touch in scans of 1 to 3 mm, have smaller ratios.
 constexpr double kBroad = 1.5;
 constexpr double kMarrow = 4;   // factor on the weight of cut area through marrow
 constexpr double kBall = 0.02;  // smallest radius of a joint's ball, share of the length of the bone with the ball
 constexpr double kLargestBall = 0.1;  // largest radius of a joint's ball, share of the length of the bone with the ball
-constexpr double kBallCore = 0.8;     // share of a ball's radius within which tissue surely belongs to the ball
-constexpr double kBallWidth = 0.5;    // distance from a ball at which cut area weighs as where shafts begin, in radii
-// Distance from a bone's head, as a share of the bone's length, from which on another child of the bone's parent may
-// sit on the bone.
+constexpr double kBallCore = 0.8;     // tissue within this share of a ball's radius certainly belongs to the ball
+constexpr double kBallWidth = 0.5;    // radii from a ball at which cut area weighs as much as where shafts begin
+// Another child of the bone's parent may be attached along the bone, if its head is at least this share of the bone's
+// length away from the bone's head.
 constexpr double kSitsAlong = 0.25;
 constexpr double kClosed = 0.5;  // contact area above which bones count as fused, share of the joint's cross-section
-constexpr double kJointReach = 0.15;  // least distance within which a joint's shape is measured, share of the parent
+constexpr double kJointReach = 0.15;  // smallest distance within which a joint's shape is measured, share of the parent
 constexpr double kJointSlice = 0.06;  // half thickness of the slice that measures a joint, share of the shorter bone
 constexpr std::int32_t kHard = 1 << 28;
 
-// Returns, for the connection to each of the 26 neighbours of a voxel, the area that counts as cut if it is cut, mm^2.
+// Returns, for the edge to each of the 26 neighbours of a voxel, the area that is cut if the edge is cut, mm^2.
 std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
   std::array<glm::dvec3, 26> edge;
   int count = 0;
@@ -102,8 +102,8 @@ struct Near {
   }
 };
 
-// The data that all cuts share. A cut is computed in a set of voxels around a joint, its domain, and changes a
-// connection between two voxels only if both are in its domain.
+// The data that all cuts share. A cut is computed in its domain, a set of voxels around a joint, and changes an edge
+// between two voxels only if both are in the domain.
 struct Scene {
   BoneGraph& graph;
   const LabelVolume& volume;
@@ -144,9 +144,9 @@ struct Found {
   std::vector<std::int32_t> at_cuts;  // voxels that lost connections by the cut
 };
 
-// One cut between two rig bones. Its domain (the voxels that it may separate) holds only voxels whose nearest rig bone
-// is one of the two. It reads and changes only connections inside the domain, so cuts that share no rig bone may run in
-// parallel.
+// One cut between two rig bones. Its domain (the voxels that it may separate) contains only voxels whose nearest rig
+// bone is one of the two. The cut reads and changes only edges inside the domain, so cuts that share no rig bone may
+// run in parallel.
 class Cut {
  public:
   Cut(Scene& scene, int first, int second) : scene_(scene), bones_(scene.bones), bone_{first, second} {}
@@ -177,7 +177,7 @@ class Cut {
     } else {
       cut_across(normal, shorter);
     }
-    // Length of the part of each shaft that lies inside the domain, mm.
+    // Length of the part of each shaft that is inside the domain, mm.
     const double shaft = (kReach - kShaft) * shorter;
     const double thinner =
         std::min(volume_along(0, joint, kShaft * shorter), volume_along(1, joint, kShaft * shorter)) / shaft;
@@ -226,14 +226,14 @@ class Cut {
     };
     const JointSurface surface = surface_at(normal, shorter);
     std::vector<std::uint8_t> side = cut_along(surface, 1);
-    // Where the two bones are fused, only the shape of the joint tells where one bone ends and the other begins.
+    // If the two bones are fused, only the shape of the joint shows where one bone ends and the other begins.
     const double section = std::numbers::pi * surface.radius * surface.radius;
     if (surface.shape.sharp > 1 && area_of(side) > kClosed * section) side = cut_along(surface, surface.shape.sharp);
     part(side);
   }
 
-  // Returns the radius of the bones at a joint, mm: that of a circle with the area of bone tissue in a slice at right
-  // angles to `axis`.
+  // Returns the radius of the bones at a joint, mm: the radius of a circle with the same area as the bone tissue in a
+  // slice perpendicular to `axis`.
   //   half  half the thickness of the slice, mm
   double radius_at(const glm::dvec3& joint, const glm::dvec3& axis, double half) const {
     const glm::dvec3& spacing = scene_.volume.grid.spacing;
@@ -256,8 +256,8 @@ class Cut {
                             std::min({spacing.x, spacing.y, spacing.z}));
   }
 
-  // Returns the normal, towards the child, of the plane that halves the angle between parent and child. If the child's
-  // head does not lie on the parent, returns the child's own direction.
+  // Returns the normal, towards the child, of the plane that bisects the angle between parent and child. If the child's
+  // head is not on the parent, returns the child's own direction.
   static glm::dvec3 normal_of_joint(const Bone& parent, const Bone& child) {
     const glm::dvec3 along = glm::normalize(child.tail - child.head),
                      of_parent = glm::normalize(parent.tail - parent.head);
@@ -320,7 +320,7 @@ class Cut {
         voxel.shaft = which;
   }
 
-  // Returns the volume of the bone tissue that is nearest to one of the two rig bones and lies at least `beginning` mm
+  // Returns the volume of the bone tissue that is nearest to one of the two rig bones and at least `beginning` mm away
   // from the joint, mm^3.
   double volume_along(int which, const glm::dvec3& joint, double beginning) const {
     const Bone& bone = bones_[bone_[which]];
@@ -348,13 +348,13 @@ class Cut {
     return std::any_of(reached.begin(), reached.end(), [&](std::int32_t i) { return domain_[i].shaft == 1; });
   }
 
-  // Returns the weight of cut area by its distance from the expected cut.
-  //   off  distance from the expected cut, as a share of the distance at which the shafts begin
+  // Returns the factor on the area of a cut, as a function of the distance from the expected cut.
+  //   off  this distance, as a share of the distance at which the shafts begin
   static double weight_away(double off) { return 1 + kAway * off * off; }
 
-  // Returns the cut with the least weighted area: for each voxel of the domain 1 on the first bone's side, else 0.
+  // Returns the cut with the smallest weighted area: for each voxel of the domain 1 on the first bone's side, else 0.
   // Empty if no tissue connects the two shafts.
-  //   weight  returns the factor on the area at (voxel, world point)
+  //   weight  returns the factor on the area for (voxel, world point)
   std::vector<std::uint8_t> least_cut(const auto& weight) const {
     if (!is_connected()) return {};
     CutGraph<26> cut{neighbour_, std::vector<std::array<std::int32_t, 26>>(domain_.size()),
@@ -428,8 +428,8 @@ class JointCutter {
     });
   }
 
-  // Cuts each bone from its parent. A bone whose head lies nearer to another child of its parent is also cut from that
-  // child, such as a thumb that the rig attaches to the forearm beside the hand. The cuts run in waves. The cuts of one
+  // Cuts each bone from its parent. A bone whose head is nearer to another child of its parent, such as a thumb that
+  // the rig attaches to the forearm beside the hand, is also cut from that child. The cuts run in waves: cuts of one
   // wave share no bone, and cuts that share a bone keep the order of the rig.
   void cut_joints(Progress& progress) {
     std::vector<std::array<int, 2>> joints;
@@ -458,7 +458,7 @@ class JointCutter {
     keep(found);
   }
 
-  // Cuts between bones that have no joint but lie side by side, such as fingers that are pressed together.
+  // Cuts between bones that have no common joint but are side by side, such as fingers that are pressed together.
   void cut_sides() {
     std::map<std::array<int, 2>, std::vector<std::int32_t>> between;
     for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
@@ -497,8 +497,8 @@ class JointCutter {
   }
 
   void find_nearest() {
-    // Bones that meet share an end point. So they are shortened for this search; near a joint their directions then
-    // decide.
+    // Bones that meet share an end point. So they are shortened for this search; near a joint, their directions then
+    // decide which bone is nearer.
     std::vector<Bone> inner = scene_.bones;
     for (Bone& bone : inner)
       bone.head = glm::mix(bone.head, bone.tail, 0.1), bone.tail = glm::mix(bone.head, bone.tail, 8.0 / 9);
@@ -513,7 +513,7 @@ class JointCutter {
     scene_.along.resize(scene_.bones.size());
     for (std::int32_t i = 0; i < scene_.graph.size(); ++i) {
       Near& near = scene_.near[i];
-      if (near.bone[0] < 0) continue;  // the distances to the rig bones are not finite numbers
+      if (near.bone[0] < 0) continue;  // the distances to the rig bones are not finite
       near.rank = static_cast<std::int32_t>(scene_.along[near.bone[0]].size());
       scene_.along[near.bone[0]].push_back(i);
     }

@@ -11,13 +11,12 @@ namespace {
 // Squared distance from the joint's axis, in squared radii of the joint, beyond which the surface no longer curves.
 constexpr double kRim = 1.3;
 constexpr double kRound = 1.1;  // ratio of a joint's width to its depth below which the joint has no hinge direction
-// Ratio of a joint's width to its depth from which on the direction of its width is surely the hinge.
+// If the ratio of a joint's width to its depth is at least this, the direction of the width is certainly the hinge.
 constexpr double kClearlyWide = 1.25;
 
-// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. If a rig's joint
-// does not lie in the middle of the joint's gap, JointShape::level is off by the same distance. The direction of a
-// short rig bone, such as a hand's, is less exact, and following it closely would do harm. So the wrist's surface does
-// not turn with the hand.
+// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. If a rig's joint is
+// not in the middle of the joint's gap, JointShape::level includes this offset. The direction of a short rig bone, such
+// as a hand's, is inexact, so the wrist's surface does not turn with the hand.
 constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};        // the knuckle, a ball in a shallow cup
 constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a finger's middle joint, a roller across the finger
 constexpr JointShape kFingerEnd{-0.1, 0.1, -0.45, 0.4, 2};
@@ -30,8 +29,8 @@ constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};  // the knee, a shallow cup of th
 // The ankle, with the talus held between the ends of the shank's bones.
 constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};
 
-// The direction at right angles to an axis in which points spread most, and the ratio of their spread in it to their
-// spread at right angles to it.
+// The direction perpendicular to an axis in which points spread most, and the ratio of their spread in it to their
+// spread perpendicular to both.
 struct Width {
   glm::dvec3 direction;
   double ratio;

@@ -13,19 +13,18 @@
 
 namespace limber {
 
-// The surface between two bones as a paraboloid through the joint. The unit of its lengths and curvatures is the radius
-// of the bones at the joint.
+// The surface between two bones as a paraboloid through the joint. Lengths and curvatures are in units of the radius of
+// the bones at the joint.
 struct JointShape {
   // Distance of the surface's middle from the rig's joint, positive towards the child bone.
   double level = 0;
-  // Curvatures along the hinge (the widest direction of the joint) and at right angles to the hinge. They are negative
-  // if the end of the parent bone is round.
+  // Curvatures along the hinge (the widest direction of the joint) and perpendicular to it. They are negative if the
+  // end of the parent bone is round.
   double along_hinge = 0, across_hinge = 0;
-  // Orientation of the surface. 0: in the plane that halves the angle between the bones; 1: at right angles to the
-  // child bone; negative: tilted the other way.
+  // Orientation of the surface. 0: in the plane that bisects the angle between the bones; 1: perpendicular to the child
+  // bone; negative: tilted the other way.
   double turn = 0;
-  // Factor on distances from the surface that applies if the bones are fused. Above 1, the cut follows the surface more
-  // closely.
+  // Factor on distances from the surface if the bones are fused. Above 1, the cut follows the surface more closely.
   double sharp = 1;
 };
 

@@ -10,15 +10,16 @@ namespace {
 
 using Points = std::vector<BoneDistance::SurfacePoint>;
 
-// The overlap of two bones at one shift. `cost` is the sum of the squares of all depths beyond the allowed ones;
-// `gradient` and `hessian` (Gauss-Newton) belong to half that sum. `depth` is the largest of these depths, mm.
+// The overlap of two bones at one shift. `cost` is the sum of the squares of all depths beyond the allowed depth.
+// `gradient` and `hessian` (Gauss-Newton) are derivatives of half of this sum. `depth` is the largest of these depths,
+// mm.
 struct Overlap {
   double cost = 0, depth = 0;
   glm::dvec3 gradient{0};
   glm::dmat3 hessian{0};
 };
 
-// The two bones of a joint, the turning bone in one step of the joint's rotation.
+// The two bones of a joint, with the turning bone at one step of the joint's rotation.
 class TurnedBones {
  public:
   //   reach  upper limit on the length of a shift, mm
@@ -46,15 +47,15 @@ class TurnedBones {
   }
 
  private:
-  // Returns true if a shift of at most `reach` mm may bring a surface point of one bone into the other bone. The factor
-  // 1.2 is needed because the interpolated distance may change by a little more than the point moves.
+  // Returns true if a shift of at most `reach` mm may move a surface point of one bone into the other bone. The factor
+  // 1.2 is needed because the interpolated distance may change by slightly more than the point moves.
   static bool comes_near(const BoneDistance& bone, const glm::dvec3& place, double mm, double reach) {
     const auto there = bone.at(place);
     return there ? there->mm + mm < 1.2 * reach : bone.outside(place) < reach;
   }
 
-  // Returns the depth of overlap that is allowed, mm: half a voxel along the contact's normal, averaged over the voxel
-  // axes of both bones.
+  // Returns the allowed depth of overlap, mm: half a voxel along the contact's normal, averaged over the voxel axes of
+  // both bones.
   double allowed(const glm::dvec3& normal) const {
     return (glm::length(bones_.spacing * normal) + glm::length(bones_.spacing * (back_.linear * normal))) / 4;
   }
@@ -74,7 +75,7 @@ class TurnedBones {
 
   const JointBones& bones_;
   AffineTransform motion_, back_;
-  Points fixed_, turning_;  // surface points that can reach the other bone, those of the turning bone after its motion
+  Points fixed_, turning_;  // surface points that can reach the other bone; turning_: after the motion
 };
 
 // Returns `shift` shortened so that both limits of `bound` hold.
@@ -111,7 +112,7 @@ glm::dvec3 descend(const TurnedBones& bones, glm::dvec3 shift, double weight, co
   return shift;
 }
 
-// Returns `shift` shortened as far as possible by bisection, so that the overlap stays no deeper than `depth` mm.
+// Returns `shift` shortened by bisection as far as the overlap stays at most `depth` mm deep.
 glm::dvec3 shortened(const TurnedBones& bones, const glm::dvec3& shift, double depth) {
   double blocked = 0, free = 1;
   for (int i = 0; i < 8; ++i) {

@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kMostSeen = 200'000;  // upper limit on the number of voxels visited for one piece
-// A bone voxel is nearby if it lies at most this many times as far as the nearest one.
+// A bone voxel is nearby if it is at most this many times as far from the piece as the nearest bone voxel.
 constexpr int kNearby = 2;
 // A rig bone is much closer than another if its mean distance is less than this share of the other's.
 constexpr float kMuchCloser = 0.5f;
@@ -21,7 +21,7 @@ int bone_of_lonely_piece(const LabelVolume& volume, const TissueVoxels& tissue, 
                          std::int64_t& budget) {
   std::unordered_set<std::int64_t> seen;
   for (const glm::ivec3& v : voxels) seen.insert(tissue.index_of(v));
-  int nearest = -1, closest = -1;  // rig bone of the nearest voxel, and the one with the least mean distance
+  int nearest = -1, closest = -1;  // rig bone of the nearest voxel, and rig bone with the smallest mean distance
   int last = std::numeric_limits<int>::max();
   for (int steps = 1; steps <= last && !voxels.empty() && budget > 0 && seen.size() < kMostSeen; ++steps) {
     std::vector<glm::ivec3> next;

@@ -22,7 +22,7 @@ struct CutGraph {
 };
 
 // Returns 1 for every node on the source's side of a minimum cut, else 0. Nodes that the source cannot reach after the
-// cut are on the sink's side. The sum of the positive `terminal` values must stay below 2^62.
+// cut count as on the sink's side. The sum of the positive `terminal` values must stay below 2^62.
 template <int Edges>
 std::vector<std::uint8_t> min_cut(CutGraph<Edges> graph);
 extern template std::vector<std::uint8_t> min_cut(CutGraph<6> graph);

@@ -12,10 +12,10 @@
 namespace limber {
 
 namespace {
-// Share of the voxels of a connected component of bone on one side of the body, from which on the whole component
-// belongs to this side. Its other voxels only lie nearer to a rig bone of the other side that reaches across.
+// If at least this share of the voxels of a connected component of bone is on one side of the body, the whole component
+// belongs to this side. Its other voxels are only nearer to a rig bone of the other side that reaches across.
 constexpr double kClearMajority = 0.85;
-// Share of a bone's voxels that decide which rig bone carries the bone: those nearest to any rig bone.
+// Share of a bone's voxels that decide which rig bone the bone follows: those nearest to any of the rig bones.
 constexpr double kAttached = 0.1;
 constexpr std::int64_t kGrain = 65536;  // voxels of the graph per block of a parallel loop
 
@@ -66,7 +66,7 @@ class Assigning {
     std::vector<FoundBy> found_by(set_of.size(), FoundBy::Shape);
     for (const auto& [label, bones] : labels_) found_by[label] = bones.found_by;
     set_of_.resize(graph_.size());
-    std::vector<std::vector<std::int64_t>> counts((graph_.size() + kGrain - 1) / kGrain);  // of each block and set
+    std::vector<std::vector<std::int64_t>> counts((graph_.size() + kGrain - 1) / kGrain);  // by block and set
     parallel_for(graph_.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       std::vector<std::int64_t>& count = counts[begin / kGrain];
       count.resize(sets_.size());
@@ -83,7 +83,9 @@ class Assigning {
   }
 
   // Lists the voxels of every set by their index in the graph.
-  //   counts  for each block of voxels, the number of voxels in each set; becomes where the block begins in the set
+  //   counts  in: for each block of voxels, the number of voxels in each set; out: the index in the set at which the
+  //   block
+  //           begins
   void list_voxels(std::vector<std::vector<std::int64_t>>& counts) {
     for (std::size_t k = 0; k < sets_.size(); ++k) {
       std::int64_t total = 0;
@@ -168,10 +170,10 @@ class Assigning {
         ->first;
   }
 
-  // Lets marrow and spongy bone without a name follow the rig bones of named labels that they touch, spreading breadth
-  // first.
+  // Assigns marrow and spongy bone without a name to the rig bones of named labels that they touch, by breadth-first
+  // search.
   void spread_into_marrow() {
-    // Only voxels beside marrow without a name have a voxel to spread to.
+    // The search starts at the voxels that touch marrow without a name; all others have no voxel to spread to.
     std::vector<std::vector<std::int32_t>> starts((graph_.size() + kGrain - 1) / kGrain);
     parallel_for(graph_.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
@@ -210,7 +212,7 @@ class Assigning {
   const std::map<Label, LabelBones>& labels_;
   AffineTransform world_from_voxel_;
   std::vector<Set> sets_;
-  // Index in sets_ for each voxel of the graph; -1: rig bones of the voxel's label are not known.
+  // Index in sets_ for each voxel of the graph; -1: the rig bones of the voxel's label are unknown.
   ZeroedVector<int> set_of_;
   std::vector<bool> seen_;
   NamedBones named_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Assigns bone voxels to rig bones if the labels' names say which bone of the body they are. A label that holds left
-// and right is split into its connected components, and a component that holds both sides is split by the nearer side
-// of the rig. A single bone of the body is never cut: if several rig bones may carry it (a rib on a rig with two thorax
-// bones), its voxels nearest to these rig bones decide for the whole bone, since the bone is attached there. Marrow and
-// spongy bone without a name follow the named bone around them.
+// Assigns bone voxels to rig bones if the labels' names say which bone of the body they are. A label that contains left
+// and right is split into its connected components, and a component that contains both sides is split by the nearer
+// side of the rig. A single bone of the body is never cut: if it may follow several rig bones (a rib on a rig with two
+// thorax bones), its voxels nearest to these rig bones decide for the whole bone, since the bone is attached there.
+// Marrow and spongy bone without a name follow the named bone around them.
 #pragma once
 
 #include <map>
@@ -26,7 +26,7 @@ struct NamedBones {
 NamedBones assign_named_bones(const BoneGraph& graph, const LabelVolume& volume, const std::vector<TissueKind>& kinds,
                               const Armature& armature, const std::map<Label, LabelBones>& labels);
 
-// The voxels whose rig bones do not follow from names. Their graph has no connections between different groups.
+// The voxels whose rig bones are not known from names. Their graph has no edges between different groups.
 struct Unsettled {
   BoneGraph graph;
   std::vector<std::int32_t> from;  // for each voxel of this graph, its index in the whole graph

@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-// Distance from the shoulder joint within which a shoulder blade comes, as a share of the upper arm's length. In the
-// BodyParts3D man the shoulder blade comes as near to the joint as a fifteenth of that length, but a rib only a fifth.
+// Tissue within this distance of the shoulder joint counts as shoulder blade, as a share of the upper arm's length. In
+// the BodyParts3D man the distance of the shoulder blade is 1/15 of that length, that of the nearest rib 1/5.
 constexpr double kReach = 0.15;
 
 }  // namespace

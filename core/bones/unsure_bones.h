@@ -9,8 +9,8 @@
 
 namespace limber {
 
-// Returns one line for each label that follows a substitute, because the rig has no bone for it, and one line about all
-// pairs of bones that touch so broadly that the cut between them is uncertain.
+// Returns one line for each label that follows a substitute bone because the rig has no bone that matches its name, and
+// one line about all pairs of bones that touch so broadly that the cut between them is uncertain.
 std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable& tissues, const Armature& armature);
 
 }  // namespace limber
