@@ -21,10 +21,10 @@ namespace limber {
 
 namespace {
 
-// Total weight of all point pairs in the fit, against the priors: the weight of kPairs pairs whose distances have a
+// Total weight of all point pairs, relative to the priors: it equals the weight of kPairs pairs whose distances have a
 // standard deviation of kPairSpread mm.
 constexpr double kPairs = 1000, kPairSpread = 5;
-// Standard deviations of the prior on bone sizes. A log stretch is the logarithm of a bone's scale factor; the prior
+// Standard deviations of the prior on bone sizes. A log stretch is the logarithm of a bone's scale factor. The prior
 // limits its difference between neighbouring bones, and between the directions along and across one bone.
 constexpr double kNeighbourStretch = 0.07, kRoundStretch = 0.12;
 constexpr double kHingeAside = 0.1;  // prior standard deviation of a hinge joint's rotation off its axis, radians
@@ -137,8 +137,8 @@ struct Pair {
   double weight;
 };
 
-// The points that one stage of the fit matches. Each atlas point (`rest`; in the present pose `here`) is matched with
-// its nearest surface point, and each surface point in `goals` with its nearest atlas point.
+// The point pairs of one stage of the fit. Each atlas point (`rest`: at rest, `here`: in the present pose) is paired
+// with its nearest surface point, and each surface point in `goals` with its nearest atlas point.
 struct Asked {
   Asked(const Mannequin& mannequin, const std::vector<AtlasPoint>& points, const FitSurface& surface,
         const FitStage& stage) {
@@ -212,8 +212,8 @@ class Step {
   }
 
   void add(const Pair& pair) {
-    // The part of a pair's distance along the surface normal has full weight. The part along the surface has the small
-    // weight kAlong: points can slide along the surface, but not without limit.
+    // The component of a pair's distance along the surface normal has full weight. The component along the surface has
+    // the small weight kAlong, so that points can slide along the surface, but not without limit.
     constexpr double kAlong = 0.15;
     add(pair, kAlong * glm::dmat3(1) + (1 - kAlong) * glm::outerProduct(pair.normal, pair.normal));
   }
@@ -230,7 +230,7 @@ class Step {
       if (turn_at_[b] < 0 || parent < 0) continue;
       const glm::dvec3 r = rotation_vector(glm::transpose(m_.turn[parent]) * m_.turn[b]);
       const double spread = spread_of_turn(rig.bones[b].name), w = share / (spread * spread);
-      // `direction`: unit vector in the parent's rest frame
+      // direction: unit vector in the parent's rest frame
       const auto like = [&](const glm::dvec3& direction, double weight) {
         const glm::dvec3 row = m_.turn[parent] * direction;
         for (int i = 0; i < 3; ++i) {
@@ -308,7 +308,7 @@ class Step {
  private:
   // The degrees of freedom that move the points of one bone, each with its first column in the Jacobian: translation of
   // the bone's joint (0), rotation (3), stretch along and across the bone (6, 7), and the twist that a forearm takes
-  // over from its hand (8).
+  // from its hand (8).
   static constexpr int kWays = 9;
   using Ways = Eigen::Matrix<double, 3, kWays>;
   struct BoneSum {
@@ -400,7 +400,7 @@ class Step {
   Eigen::MatrixXd H_;
   Eigen::VectorXd g_;
   std::vector<BoneSum> sums_;      // sums over the point pairs of each bone
-  std::map<int, Column> columns_;  // derivatives of the current bone's degrees of freedom by each variable of the fit
+  std::map<int, Column> columns_;  // derivatives of the current bone's degrees of freedom by the fit's variables
 };
 
 }  // namespace
@@ -443,8 +443,8 @@ std::vector<Segment> segments_of(const Armature& rig, const std::vector<std::uin
   return segments;
 }
 
-// Returns a byte per bone: 1 for bones that can be fitted to the axis of a rod (a bone that the volume draws as a round
-// bar). Hands, fingers and the jaw get 0: hands are too short and have too many bones.
+// Returns a byte per bone: 1 for bones that can be fitted to the axis of a rod (a round bar that represents a bone in
+// the volume). Hands, fingers and the jaw get 0, because hands are too short and have too many bones.
 std::vector<std::uint8_t> without_hands(const Armature& rig) {
   std::vector<std::uint8_t> kept;
   for (const Bone& bone : rig.bones) {
@@ -511,7 +511,7 @@ void fit_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& all_cells, co
 
 namespace {
 
-// Sums over points, from which the points' best-fit line and their mean squared distance from the line follow.
+// Sums over points, which give the points' best-fit line and their mean squared distance from it.
 struct Cloud {
   double count = 0;
   glm::dvec3 sum{0};
@@ -532,8 +532,8 @@ struct Cloud {
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread(), Eigen::EigenvaluesOnly).eigenvalues();
     return std::max(values[0] + values[1], 1e-3);
   }
-  // Returns the point of the best-fit line whose coordinate along `axis` is `coordinate`; the mean of the points if the
-  // line runs nearly across `axis`.
+  // Returns the point of the best-fit line that has the given coordinate along `axis`. If the line is nearly
+  // perpendicular to `axis`, returns the mean of the points.
   glm::dvec3 point(const glm::dvec3& axis, double coordinate) const {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(spread());
     const Eigen::Vector3d v = solver.eigenvectors().col(2);
@@ -543,8 +543,8 @@ struct Cloud {
   }
 };
 
-// Returns the best position of the joint in a limb that runs from `a` to `b`. There the bone cells on either side fit
-// best to a straight line each. Returns none if there are too few cells.
+// Returns the best position of the joint in a limb that runs from `a` to `b`: the position at which the bone cells on
+// each side of the joint fit best to a straight line. Returns none if there are too few cells.
 std::optional<glm::dvec3> parting(const std::vector<glm::dvec3>& cells, const glm::dvec3& a, const glm::dvec3& joint,
                                   const glm::dvec3& b) {
   const glm::dvec3 axis = glm::normalize(b - a);
@@ -581,8 +581,8 @@ void split_rods(Mannequin& mannequin, const std::vector<glm::dvec3>& cells) {
     int upper, lower, end;
     glm::dvec3 joint, goal;
   };
-  // The limbs to change, by the group of their upper bone. The left and the right limb are in one group, because they
-  // share their stretch.
+  // The limbs to change, by the group of their upper bone. The left and the right limb are in one group because they
+  // have a common stretch.
   std::map<int, std::vector<Limb>> limbs;
   for (int b = 0; b < mannequin.bone_count(); ++b) {
     const std::string name = without_side(rig.bones[b].name);

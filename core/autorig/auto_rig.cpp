@@ -43,7 +43,7 @@ std::vector<std::uint8_t> without_digits(const Armature& rig) {
   return free;
 }
 
-// Fits every initial guess of the pose roughly and the kInEarnest best ones more exactly, and keeps the best result.
+// Fits every initial guess of the pose roughly and the kInEarnest best of them more exactly. Keeps the best result.
 void take_best_start(Fitted& result, const FitTarget& target, std::vector<Mannequin> starts) {
   constexpr size_t kInEarnest = 5;
   const auto main = without_digits(result.atlas->rig);
@@ -70,14 +70,14 @@ void take_best_start(Fitted& result, const FitTarget& target, std::vector<Manneq
   result.residual = std::sqrt(least);
 }
 
-// Fits the body's segments to bones that the volume draws as rods (round bars along a rig). Returns false and changes
-// nothing unless nearly all bone then lies close to the segments, and the segments of long bones run inside bone.
+// Fits the body's segments to bones that are rods (round bars along a rig) in the volume. Returns false and changes
+// nothing unless after the fit nearly all bone is close to the segments and the segments of long bones are inside bone.
 // Anatomical bones do not pass this test.
 bool follow_rods(Mannequin& m, const FitTarget& target) {
   const double L = target.length;
   Mannequin rods = m;
-  // Anatomical bones are recognised after a few iterations: ribs, skull and hip bones lie far from the lines of any
-  // rig.
+  // Anatomical bones are recognised after a few iterations, because ribs, skull and hip bones are far from the lines of
+  // any rig.
   constexpr double kNearlyAll = 0.9;
   FitStage stage{.iterations = 8, .wide = 0.02 * L, .narrow = 0.02 * L, .bone_share = 0.8, .stride = 6};
   fit_rods(rods, target.bone_cells, *target.skin, stage);
@@ -93,10 +93,10 @@ bool follow_rods(Mannequin& m, const FitTarget& target) {
 }
 
 // Fits the segments of a body whose shape comes from the rig alone to the volume's bone tissue. Returns false and
-// changes nothing unless most of the bone then lies close to the segments, and no less of it than before the fit.
+// changes nothing unless after the fit most of the bone is close to the segments, and at least as much as before it.
 bool follow_bones(Mannequin& m, const FitTarget& target) {
-  // kClose: distance from a segment up to which bone counts as close, as a share of the tissue's diagonal. kMost: least
-  // share of the bone that must be close.
+  // kClose: bone up to this distance from a segment counts as close, as a share of the tissue's diagonal. kMost:
+  // smallest share of the bone that must be close.
   constexpr double kClose = 0.025, kMost = 0.8;
   const double L = target.length;
   Mannequin drawn = m;
@@ -123,7 +123,7 @@ void refine_by_skin(Fitted& result, const FitTarget& target) {
 void finish(Mannequin& m, const FitTarget& target, const FitSurface* bone, bool is_rods) {
   const double L = target.length;
   try_hands(m, target, bone);
-  // Where voxels are larger than the thickness of finger bones, the skin is more exact than the bones and gets more
+  // If voxels are larger than the thickness of finger bones, the skin is more exact than the bones and gets more
   // weight.
   const double bone_share = 0.8 * std::min(1.0, 4 / target.cell);
   if (is_rods) return;
@@ -154,8 +154,8 @@ void refine(Fitted& result, const FitTarget& target, Progress& progress) {
   progress.update("fitting", 0.6);
   const Mannequin before = m;
   finish(m, target, bone, result.is_rods);
-  // A hand may be rotated the wrong way if less than the share kLittle of its fingers' points lies near the skin.
-  // Another rotation is preferred if it multiplies this share by kBetter or more.
+  // If less than the share kLittle of the fingers' points is near the skin, a hand may be rotated the wrong way.
+  // Another rotation is used if it multiplies this share by at least kBetter.
   constexpr double kLittle = 0.78, kBetter = 1.05;
   double most = hands_near(m, target);
   for (double twist : {0.0, 3.14, 1.57, -1.57}) {
@@ -223,7 +223,7 @@ Fitted best_start(const std::vector<AtlasKind>& kinds, const FitTarget& target, 
   return best;
 }
 
-// Returns the bones of the limb that ends with the bone `last`, from the first one at the trunk outwards.
+// Returns the bones of the limb that ends with the bone `last`, starting at the trunk.
 std::vector<int> limb_to(const Armature& rig, int last) {
   std::vector<int> children(rig.bones.size(), 0), limb{last};
   for (const Bone& bone : rig.bones)
@@ -236,14 +236,14 @@ std::vector<int> limb_to(const Armature& rig, int last) {
 
 // Rotates and stretches limbs so that each one ends at an end of the tissue. Left and right limbs get the same stretch.
 void reach_ends(Mannequin& m, const Occupancy& body) {
-  // Upper limits: kMost on the change of a limb's log stretch; kNear on the distance from a limb's end to the end of
-  // the tissue, as a share of the limb's length.
+  // Upper limits. kMost: change of a limb's log stretch. kNear: distance from a limb's end to the end of the tissue, as
+  // a share of the limb's length.
   constexpr double kMost = 0.6, kNear = 0.7;
   const Armature& rig = m.atlas().rig;
   std::vector<std::uint8_t> is_last(rig.bones.size(), 1);
   for (const Bone& bone : rig.bones)
     if (bone.parent >= 0) is_last[bone.parent] = 0;
-  // For each group of bones (left and right pair): the sum of log stretches, and their number.
+  // For each group of bones (left and right pair): the sum and the number of log stretches.
   std::map<int, std::pair<double, int>> stretch;
   struct Aim {
     int root, last;
@@ -286,8 +286,8 @@ Fitted capsule_start(const Armature& rig, const FitTarget& target, Progress& pro
   return tried;
 }
 
-// Sets the rotation of each bone without visible tissue: that of its counterpart on the other side, mirrored, or else
-// the one that the atlas has at rest relative to the parent.
+// Sets the rotation of each bone without visible tissue to the mirrored rotation of its counterpart on the other side
+// or, if there is none, to the atlas's rest rotation relative to the parent.
 void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
   Mannequin& m = *fitted.body;
   const Armature& rig = m.atlas().rig;
@@ -309,8 +309,8 @@ void lay_unseen(Fitted& fitted, const std::vector<std::uint8_t>& seen) {
   m.settle();
 }
 
-// Returns the labels that are bone according to the tissue table. If the table gives no kinds, returns the label that
-// runs along the long bones of the fitted body, and adds a warning.
+// Returns the labels that are bone according to the tissue table. If the table has no tissue kinds, returns the label
+// found along the long bones of the fitted body, and adds a warning.
 LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, const Fitted& fitted,
                      std::vector<std::string>& warnings) {
   LabelSet labels(65536, 0);
@@ -386,8 +386,8 @@ void warn_of_joints(AutoFit& result) {
 }  // namespace
 
 double error_by_extents(const LabelVolume& volume) {
-  // Estimated error of a joint of a rig that was only scaled to the tissue, as a share of the tissue's diagonal. It is
-  // that large because the body may be upside down, with every joint at the other end.
+  // Estimated error of a joint of a rig that was only scaled to the tissue, as a share of the tissue's diagonal. The
+  // error is this large because the body may be upside down, so that every joint is at the other end.
   constexpr double kShare = 0.35;
   return kShare * glm::length(glm::dvec3(tissue_box(volume).size) * volume.grid.spacing);
 }
@@ -445,19 +445,20 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
       const int match = placed.joint_of[b];
       JointFit joint;
       if (match >= 0) joint = found.how[match];
-      // A bone without a found joint moves along with its parent. Its joint is a little less certain than the parent's.
+      // A bone without a found joint moves with its parent. Its joint is slightly less certain than the parent's.
       else if (rig.bones[b].parent >= 0)
         joint.confidence = 0.7 * result.joints[rig.bones[b].parent].confidence,
         joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
       result.joints.push_back(joint);
     }
-    // Upper limit on how far a joint outside the tissue is moved to get inside, as a multiple of the joint's estimated
-    // error.
+    // Upper limit on how far a joint outside the tissue is moved to get it inside, as a multiple of the joint's
+    // estimated error.
     constexpr double kGivesWay = 1.25;
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);
     result.armature = with_fitted_limits(drawn_inside(placed.armature, volume, target.cuts, free), rig);
-    // Distance of the fitted body from the volume above which a warning is added, as a share of the tissue's diagonal.
+    // A warning is added if the distance of the fitted body from the volume exceeds this share of the tissue's
+    // diagonal.
     constexpr double kUnlike = 0.016;
     if (result.misfit_mm > kUnlike * target.length)
       result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
@@ -470,8 +471,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
 std::string suggest_template(const LabelVolume& volume, Progress& progress) {
   const FitTarget target = make_fit_target(volume);
   if (!has_shape(target)) return "arm";
-  // A whole body has five prominent tissue ends (head, hands and feet), or at least three where the arms lie against
-  // the trunk.
+  // A whole body has five prominent tissue ends (head, hands and feet), or at least three if the arms touch the trunk.
   const size_t ends = limb_paths(target.rough_body, PathCentre::Thickest).size();
   if (ends >= 5) {
     const double whole = best_start({AtlasKind::Body}, target, progress).residual;

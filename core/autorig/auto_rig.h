@@ -4,18 +4,20 @@
 //   1  the ends of the tissue and the paths to them give the limbs (core/autorig/limb_paths.h), whatever their pose and
 //      the orientation of the body;
 //   2  the skin gives pose and proportions (core/autorig/articulated_fit.h);
-//   3  where labels name bones, joints lie where two bones meet (core/autorig/named_joints.h), and the body is laid
-//      along them;
-//   4  where the tissue table says what is bone, the bones' surfaces give the joints. Bones that the volume draws as
-//      rods are followed along their axes instead. Without a table, the label through which the long bones run counts
-//      as bone (core/bones/guess_bone_labels.h);
+//   3  if labels name bones, joints are placed where two bones meet (core/autorig/named_joints.h), and the body's limbs
+//   are
+//      moved onto them;
+//   4  if the tissue table says which labels are bone, the bones' surfaces give the joints. If the volume has rods
+//   instead
+//      of anatomical bones, the rods' axes are used. Without a table, the label along the long bones is used as bone
+//      (core/bones/guess_bone_labels.h);
 //   5  where the skin differs from that of the known body, landmarks of the volume's own shape correct the joints
 //      (core/autorig/joint_landmarks.h).
 // If the body is cut off (core/autorig/cut_planes.h), only the part in the volume is fitted. The joints beyond the cut
-// are placed by proportion, and a warning says so.
+// are placed by proportion, and a warning lists them.
 //
 // The joints of the given rig are then moved to the body's joints, matched by the meaning of their names
-// (core/rig/joint_names.h); joints between and below matched ones move along. For a rig whose names have no known
+// (core/rig/joint_names.h); joints between and below matched joints move with them. For a rig whose names have no known
 // meaning, such as an animal's, a body is built from the rig itself: a round limb about each bone
 // (core/autorig/capsule_atlas.h), fitted to the skin. A rig without a trunk is scaled to the tissue's extents.
 //
@@ -44,12 +46,12 @@ struct JointFit {
     Carried,
     Extents,
     Unseen
-  };  // Unseen: the joint lies beyond a cut
+  };  // Unseen: the joint is beyond a cut
   How how = How::Carried;
   double confidence = 0;  // [0, 1]
-  double error = 0;       // estimated error, mm: on bodies with known joints, nine of ten joints were off by less
+  double error = 0;       // estimated error, mm: on bodies with known joints, 9 of 10 joints had a smaller error
 };
-std::string_view to_string(JointFit::How how);  // such as "bone surface"
+std::string_view to_string(JointFit::How how);  // returns text such as "bone surface"
 
 struct AutoFit {
   Armature armature;
@@ -59,13 +61,12 @@ struct AutoFit {
   std::vector<std::string> warnings;  // sentences about what failed or is uncertain
 };
 
-// Returns the rig moved, rotated and scaled to the tissue. The axes of joint limits rotate along with their bones, and
-// limit angles are adapted to the fitted rest pose (core/autorig/fitted_limits.h). Throws Error for a volume without
-// tissue.
+// Returns the rig moved, rotated and scaled to the tissue. The axes of joint limits rotate with their bones, and limit
+// angles are adapted to the fitted rest pose (core/autorig/fitted_limits.h). Throws Error for a volume without tissue.
 AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig,
                  Progress& progress = no_progress());
 
-// Returns the rig scaled to the tissue's size and moved to its middle, without rotation.
+// Returns the rig, without rotation, scaled to the size of the tissue and centred on it.
 Armature scaled_to_tissue(const LabelVolume& volume, const Armature& rig);
 
 // Returns the estimated error, mm, of the joints of a rig that was only scaled to the tissue (scaled_to_tissue()).

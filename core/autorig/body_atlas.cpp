@@ -36,8 +36,8 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
     }
     return g;
   };
-  // Blocks of kBlock^3 cells that lie far from the surface are skipped. The factor 1.25 allows for signed distances
-  // that are wrong by a quarter.
+  // Skips blocks of kBlock^3 cells that are far from the surface. The factor 1.25 allows for signed distances that are
+  // wrong by 25 %.
   constexpr int kBlock = 4;
   const glm::ivec3 blocks = (cells + kBlock - 1) / kBlock;
   const double far = 1.25 * step * (0.5 + 0.5 * std::sqrt(3.0) * kBlock);
@@ -75,8 +75,8 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
   return points;
 }
 
-// Finds the rig bone that lies nearest to a point. The pelvis bone also includes links to both hips, so that it is as
-// wide as the hips.
+// Finds the rig bone nearest to a point. The pelvis bone also includes the links to both hips, so that it is as wide as
+// the hips.
 class Carriers {
  public:
   explicit Carriers(const Armature& rig) {
@@ -137,14 +137,14 @@ double skin_distance(const Anatomy& anatomy, const glm::dvec3& p, int* part = nu
   return least;
 }
 
-// Adds the skin points to the atlas. A point on a limb is carried by the limb's bone or its children, a point on the
-// trunk by the nearest bone.
+// Adds the skin points to the atlas. A point on a limb moves with the limb's bone or one of its children, a point on
+// the trunk with the nearest bone.
 void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers, const Box& region) {
   for (int f = 0; f < std::ssize(anatomy.flesh); ++f) {
     const Box box = anatomy.flesh[f].solid.box.grown(8);
     const auto of_this = [&](const glm::dvec3& p) {
       if (!region.touches({p, p})) return kFar;
-      // Far from a part of the flesh, the distance to this part alone suffices, and the union of all parts is not
+      // Far from a part of the flesh, the distance to this part alone is enough, and the union of all parts is not
       // computed.
       const double own = anatomy.flesh[f].solid.distance(p);
       return own > 45 ? own : skin_distance(anatomy, p);
@@ -167,7 +167,7 @@ void add_skin(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carriers
       for (int b = 0; b < std::ssize(atlas.rig.bones); ++b)
         if (atlas.rig.bones[b].parent == main) among.push_back(b);
       if (is_fine(atlas.rig.bones[main].name)) points = keep(points_on(box, kFineSkinStep, of_this));
-      // The flesh of a finger or toe is a single part, but several rig bones carry its points.
+      // The flesh of a finger or toe is a single part, but its points move with several rig bones.
       if (is_fine(atlas.rig.bones[main].name)) {
         for (int b = 0; b < std::ssize(atlas.rig.bones); ++b)
           if (std::find(among.begin(), among.end(), atlas.rig.bones[b].parent) != among.end() &&
@@ -189,8 +189,8 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
     if (!part.solid.box.touches(region)) continue;
     const auto distance = [&](const glm::dvec3& p) { return part.solid.distance(p); };
     const Box box = part.solid.box.grown(4);
-    // One rig bone carries all points of an anatomical bone: the thigh carries the kneecap, the foot the heel, and each
-    // phalanx or metacarpal has its own rig bone.
+    // All points of an anatomical bone move with one rig bone: the kneecap with the thigh, the heel with the foot, and
+    // each phalanx or metacarpal with its own rig bone.
     std::vector<AtlasPoint> points = points_on(box, kBoneStep, distance);
     if (points.empty() || is_fine(atlas.rig.bones[carriers.carrier(points)].name))
       points = points_on(box, kFineBoneStep * 1.5, distance);
@@ -206,7 +206,7 @@ void add_bones(BodyAtlas& atlas, const Anatomy& anatomy, const Carriers& carrier
 // Returns an atlas with the whole rig, but with points only near the rig bone `root` and its descendants (`root` empty:
 // with all points).
 BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
-  // Margin around the bones of the root and its descendants, mm: more than the thickness of flesh.
+  // Margin around the bones of the root and its descendants, mm: larger than the thickness of flesh.
   constexpr double kAround = 150;
   Box region{glm::dvec3(kFar), glm::dvec3(-kFar)};
   std::vector<std::uint8_t> below;
@@ -225,8 +225,8 @@ BodyAtlas whole_atlas(const Anatomy& anatomy, const std::string& root = "") {
   return atlas;
 }
 
-// Returns the part of an atlas that the bone `root` and its descendants carry. Removes "Right" from the names of the
-// bones.
+// Returns the part of an atlas that moves with the bone `root` and its descendants. Removes "Right" from the bones'
+// names.
 BodyAtlas branch(const BodyAtlas& whole, const std::string& root) {
   BodyAtlas part;
   std::vector<int> number(whole.rig.bones.size(), -1);

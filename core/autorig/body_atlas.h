@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The bodies of known shape (atlases) to which automatic rigging compares a volume: the skin and the bones of the
-// procedural phantoms as points on their surfaces, each with the rig bone that carries it. The points lie on the exact
-// surfaces (the phantoms are signed distances), so they do not depend on any voxel size. They are denser on hands and
-// feet.
+// procedural phantoms as points on their surfaces, each with the rig bone with which it moves. The points are on the
+// exact surfaces (the phantoms are signed distance functions), so they do not depend on any voxel size. The points are
+// denser on hands and feet.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace limber {
 
 struct AtlasPoint {
   glm::dvec3 place{0}, normal{0};  // position in mm, and unit outward normal
-  int bone = 0;                    // index of the bone in the atlas's rig that carries the point
+  int bone = 0;                    // index in the atlas's rig of the bone with which the point moves
 };
 
 struct BodyAtlas {

@@ -23,10 +23,10 @@ std::vector<double> reach_below(const Armature& rig) {
   return reach;
 }
 
-// Returns a byte per bone: 1 for bones of the trunk, which are the bones that carry at least two limbs, and all their
-// ancestors.
+// Returns a byte per bone: 1 for bones of the trunk. These are the bones to which at least two limbs are attached, and
+// all their ancestors.
 std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double>& reach) {
-  constexpr double kLimb = 0.2;  // least length of a limb as a share of the longest path from the root
+  constexpr double kLimb = 0.2;  // smallest length of a limb as a share of the longest path from the root
   const double whole = *std::max_element(reach.begin(), reach.end());
   std::vector<int> limbs(rig.bones.size(), 0);
   for (size_t b = 0; b < rig.bones.size(); ++b)
@@ -45,8 +45,8 @@ std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double
 }
 
 std::vector<double> radii_of(const Armature& rig, const std::vector<std::uint8_t>& trunk) {
-  // Radius of the flesh about a bone. kTrunk and kLimb: radius as a share of the trunk's length, and of a limb bone's
-  // length. kThinnest / 4: least radius as a share of the length of all bones together. kTaper: upper limit in a limb,
+  // Radius of the flesh about a bone. kTrunk: as a share of the trunk's length. kLimb: as a share of a limb bone's
+  // length. kThinnest / 4: lower limit as a share of the length of all bones together. kTaper: upper limit in a limb,
   // as a share of the parent's radius.
   constexpr double kTrunk = 0.2, kLimb = 0.2, kThinnest = 0.012, kTaper = 0.85;
   double trunk_length = 0, whole = 0;
@@ -74,7 +74,7 @@ void add_capsule(std::vector<AtlasPoint>& points, const Bone& bone, int number, 
   const int rows = std::max(4, static_cast<int>(whole / step));
   for (int r = 0; r < rows; ++r) {
     const double s = (r + 0.5) * whole / rows;
-    // `s` runs along the profile of the capsule: over one hemisphere, the cylinder and the other hemisphere.
+    // `s` is the position along the profile of the capsule: one hemisphere, the cylinder, then the other hemisphere.
     const double angle = s < arc ? (s - arc) / radius : s > arc + length ? (s - arc - length) / radius : 0;
     const double along = std::clamp(s - arc, 0.0, length) + radius * std::sin(angle), around = radius * std::cos(angle);
     const int count = std::max(4, static_cast<int>(6.283185307179586 * around / step));
@@ -100,7 +100,7 @@ BodyAtlas capsule_atlas(const Armature& rig) {
   atlas.rig = rig;
   for (int b = 0; b < std::ssize(rig.bones); ++b)
     add_capsule(atlas.skin, rig.bones[b], b, radii[b], std::min(whole / 45, 0.7 * radii[b] + whole / 200));
-  // Removes points inside the flesh of another bone, because they do not lie on the skin.
+  // Removes points inside the flesh of another bone, because they are not on the skin.
   constexpr double kInside = 0.97;
   std::erase_if(atlas.skin, [&](const AtlasPoint& point) {
     for (int b = 0; b < std::ssize(rig.bones); ++b)

@@ -12,22 +12,22 @@ namespace limber {
 
 namespace {
 
-// Least width of a face at which the body is cut off, as a share of the longest side of the tissue's bounding box.
-// Where tissue merely touches the box, the face is smaller.
+// A face of the tissue's bounding box can be a cut only if the tissue in it is at least this wide, as a share of the
+// box's longest side. Tissue that merely touches the box is narrower.
 constexpr double kTouch = 0.03;
-// A label with a smaller share than this of the tissue's surface counts as inner (inside the body).
+// A label counts as inner (inside the body) if its share of the tissue's surface is smaller than this.
 constexpr double kRare = 0.02;
 // A face of the tissue's bounding box is a cut if at least this share of its voxels has inner labels, which are rare on
 // the tissue's surface. Measured: 0 on soles, 0.6 and more on cuts.
 constexpr double kInner = 0.3;
-// Distance from a face to the parallel section inside the tissue with which it is compared, mm.
+// Distance between a face and the parallel section inside the tissue with which the face is compared, mm.
 constexpr double kDeeper = 5;
 // A face of the tissue's bounding box is also a cut if its area is at least this share of the area of the section
 // kDeeper mm further inside. Measured: 0.5 at most on soles, 0.9 and more on cuts.
 constexpr double kStraight = 0.75;
 
-// Returns the share of each label in the tissue's surface. Surface voxels are searched along rows in x only, without
-// the two faces of the bounding box across x.
+// Returns the share of each label in the tissue's surface. Surface voxels are searched only along rows in x, without
+// the two faces of the bounding box that are perpendicular to x.
 std::vector<double> surface_shares(const LabelVolume& volume, const VoxelBox& box) {
   std::vector<double> count(65536, 0);
   const int first = box.lowest.x, last = box.lowest.x + box.size.x - 1;
@@ -43,7 +43,7 @@ std::vector<double> surface_shares(const LabelVolume& volume, const VoxelBox& bo
 }
 
 struct Layer {
-  double tissue = 0, inner = 0;  // number of tissue voxels, and of those whose labels are inner (rare on the surface)
+  double tissue = 0, inner = 0;  // number of tissue voxels, and number of those with inner labels (rare on the surface)
 };
 Layer layer_at(const LabelVolume& volume, const VoxelBox& box, const std::vector<double>& on_surface, int axis,
                int at) {
@@ -94,7 +94,8 @@ double beyond(const std::vector<TissueCut>& cuts, const glm::dvec3& place) {
 }
 
 void drop_cut_faces(std::vector<SurfacePoint>& points, const std::vector<TissueCut>& cuts, double near) {
-  constexpr double kFacing = 0.6;  // cosine of the angle between normals, above which a surface point faces the cut
+  // A surface point faces the cut if the cosine of the angle between the normals is above this.
+  constexpr double kFacing = 0.6;
   std::erase_if(points, [&](const SurfacePoint& point) {
     return std::any_of(cuts.begin(), cuts.end(), [&](const TissueCut& cut) {
       return std::abs(glm::dot(cut.normal, point.place) - cut.offset) < near &&

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kCells = 380;  // number of cells along the longest side of the tissue's bounding box
 constexpr double kRoughCells = 190;
-constexpr double kLeastBone = 0.004;  // least share of bone in all tissue; less bone tissue than this is no skeleton
+constexpr double kLeastBone = 0.004;  // smallest share of bone in all tissue; less bone tissue than this is no skeleton
 constexpr std::int64_t kBoneCells = 6000;
 
 // Returns the centres of at most `most` cells that are filled with tissue, evenly spread over all such cells.

@@ -24,7 +24,7 @@ struct FitTarget {
   double length = 0;  // diagonal of the tissue's extent, mm
   double cell = 0;    // largest side of a cell, mm
   std::optional<FitSurface> skin, bone;
-  std::vector<glm::dvec3> bone_cells;  // centres of at most some thousand cells of bone, evenly spread
+  std::vector<glm::dvec3> bone_cells;  // centres of at most a few thousand cells of bone, evenly spread
 };
 
 // Reduces a label volume to grids of cells and to surface points. Throws Error for a volume without tissue.
@@ -40,7 +40,7 @@ struct Fitted {
   std::shared_ptr<const BodyAtlas> atlas;  // the atlas that `body` refers to
   std::optional<Mannequin> body;
   double residual = 1e300;   // root mean square distance of `body` from the skin, mm; each distance is capped
-  bool is_rods = false;      // true: the volume draws its bones as rods (round bars along a rig)
+  bool is_rods = false;      // true: the volume's bones are rods (round bars along a rig)
   bool is_capsules = false;  // true: the atlas is made from the rig alone (capsule_atlas.h)
 };
 

@@ -12,16 +12,16 @@ namespace limber {
 
 namespace {
 
-// Largest angle, radians, by which a hinge may bend backwards beyond straight and still count as bending one way only.
-// Such a limb also never rests bent backwards by more than this angle.
+// A hinge counts as bending one way only if it bends backwards beyond straight by at most this angle, radians. Such a
+// limb also never rests bent backwards by more than this angle.
 constexpr double kBentBack = 15 * std::numbers::pi / 180;
-// Largest angle, radians, between a hinge's axis and the axis about which the resting limb is bent. Above it, the
-// hinge's axis counts as wrong. The axis of a forearm that points sideways deviates by less.
+// A hinge's axis counts as wrong if its angle to the axis about which the resting limb is bent is larger than this,
+// radians. The axis of a forearm that points sideways deviates by less.
 constexpr double kFarOff = 35 * std::numbers::pi / 180;
 
-// Returns the hinge axis of an elbow or knee. This is `carried`, the old axis rotated along with the bone, unless the
-// limb rests clearly bent and `carried` is far from the normal of the plane of its two bones. Then it is that normal,
-// because only the bend shows how a limb is rotated about its own length.
+// Returns the hinge axis of an elbow or knee. This is `carried`, the old axis rotated with the bone, unless the limb
+// rests clearly bent and `carried` is far from the normal of the plane of its two bones. In that case returns this
+// normal, because only the bend shows how a limb is rotated about its own length.
 glm::dvec3 axis_of_bend(const Armature& rig, int index, const glm::dvec3& carried) {
   const Bone& bone = rig.bones[index];
   const Bone& parent = rig.bones[bone.parent];

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-// Returns the confidence in the joint at the head of each bone, [0, 1]. It is the geometric mean of two shares: of the
-// bone's points and of its parent's points that lie near the volume's surface.
+// Returns the confidence in the joint at the head of each bone, [0, 1]: the geometric mean of the shares of the bone's
+// and of its parent's points that are near the volume's surface.
 std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
   const Mannequin& m = *fitted.body;
   const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
@@ -32,9 +32,9 @@ std::vector<double> shares_near(const Fitted& fitted, const FitTarget& target) {
   return result;
 }
 
-// Limits by which strangeness() compares the shapes of two surfaces, mm. Up to the distance `same`, the surfaces have
-// the same shape; from `same` + `other` on, their shapes differ entirely. `of_cell`: distance that voxels alone cause,
-// as a share of a cell's size.
+// Limits by which strangeness() compares the shapes of two surfaces, mm. Up to the distance `same` the shapes count as
+// equal; from `same` + `other` on, as entirely different. `of_cell` is the distance that is caused by voxels alone, as
+// a share of a cell's size.
 struct Likeness {
   double same, other, of_cell;
 };
@@ -69,9 +69,9 @@ std::vector<double> strangeness(const Mannequin& m, const std::vector<AtlasPoint
   return result;
 }
 
-// Returns for each bone how much the shape of the body differs from the atlas's, [0, 1]. It is measured on the skin,
-// and where bone tissue is known, also on the bones; the smaller value counts, so that fat over the bones does not
-// matter.
+// Returns for each bone how much the shape of the body differs from the atlas's, [0, 1]. The difference is measured on
+// the skin and, if bone tissue is known, also on the bones; the smaller value is used, so that fat over the bones does
+// not matter.
 std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
   const Mannequin& m = *fitted.body;
   std::vector<double> result =
@@ -84,7 +84,7 @@ std::vector<double> strangeness(const Fitted& fitted, const FitTarget& target) {
 }
 
 // Returns how much the shape of the whole body differs from the atlas's, [0, 1]: the mean over all bones except fingers
-// and jaw, but 1 where voxels are too coarse to compare shapes.
+// and jaw. If voxels are too coarse to compare shapes, returns 1.
 double whole_strangeness(const Fitted& fitted, const std::vector<double>& strange, const FitTarget& target) {
   // Cell sizes for the comparison of shapes, mm in a body of the atlas's size: up to kFine the comparison is exact,
   // from kCoarse on it is impossible.
@@ -98,10 +98,12 @@ double whole_strangeness(const Fitted& fitted, const std::vector<double>& strang
 }
 
 // Sets the errors of joints for a body whose shape comes from the rig alone. The skin shows the direction and the ends
-// of limbs, but not where along them they bend. A limb that does not lie on any skin may lie anywhere around its root.
+// of limbs, but not where along them they bend. A limb that does not coincide with any skin may be anywhere around its
+// root.
 void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const FitTarget& target) {
   // Parts of a joint's error: kOfWhole of the tissue's diagonal, kOfBone of a bone's length, and up to kLost of a
-  // bone's length in a limb that does not lie on the skin. From a confidence of kEnough on, a limb lies on the skin.
+  // bone's length in a limb that does not coincide with the skin. A limb coincides with it if the confidence is at
+  // least kEnough.
   constexpr double kOfWhole = 0.02, kOfBone = 0.2, kLost = 0.75, kEnough = 0.8;
   const Armature& rig = m.atlas().rig;
   std::vector<double> lost(rig.bones.size(), 0);
@@ -117,13 +119,13 @@ void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const M
 }  // namespace
 
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target) {
-  constexpr double kLeast = 0.3;  // share of a bone's skin points that are not cut off, from which on the bone is seen
+  constexpr double kLeast = 0.3;  // a bone is seen if at least this share of its skin points is not cut off
   const Mannequin& m = *fitted.body;
   std::vector<double> all(m.bone_count(), 0), inside(all);
   for (const AtlasPoint& point : m.atlas().skin)
     ++all[point.bone], inside[point.bone] += beyond(target.cuts, m.carried(point.bone, point.place)) <= 0;
   // Number of the connected group of seen bones that each bone belongs to; -1: the bone is not seen. The number is the
-  // index of the unseen parent of the group's topmost bone, or of the root.
+  // index of the root, or of the unseen parent of the group's topmost bone.
   std::vector<int> piece(m.bone_count(), -1);
   std::vector<double> weight(m.bone_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -141,9 +143,9 @@ std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& targ
 
 FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   using How = JointFit::How;
-  // Errors in mm below which nine of ten joints stayed on segmented adults. kLeastError holds for a body of the atlas's
-  // shape; in a body of another shape, one of the other values is added. kHipsBySkin is that large because even the
-  // authors of rigs place hips 5 cm apart where only skin is known.
+  // On segmented adults, 9 of 10 joints had smaller errors than these, mm. kLeastError applies to a body of the atlas's
+  // shape; in a body of another shape, one of the other values is added. kHipsBySkin is large because even rig authors
+  // place hips 5 cm apart if only skin is known.
   constexpr double kLeastError = 4, kByBone = 14, kCollarByBone = 28, kFingerByBone = 14, kBySkin = 22,
                    kShoulderBySkin = 26, kCollarBySkin = 36, kHipsBySkin = 58, kByGirth = 12, kHandByGirth = 15,
                    kNeckByGirth = 22, kByBall = 9, kByAxis = 16;
@@ -152,8 +154,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   const bool by_bone = target.bone && !fitted.is_rods && !fitted.is_capsules;
   const std::vector<double> near = shares_near(fitted, target);
   const std::vector<double> strange = strangeness(fitted, target);
-  // The shape of the whole body counts for every joint. A body of another build has its joints in other positions, even
-  // where the surface at a single bone looks alike, as it always does at thin bones.
+  // The shape of the whole body is taken into account for every joint. A body of another build has its joints in other
+  // positions, even if the surface at a single bone looks alike, as it always does at thin bones.
   const double whole = whole_strangeness(fitted, strange, target);
   FoundJoints found;
   for (int b = 0; b < m.bone_count(); ++b) {
@@ -181,15 +183,15 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
     found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
     JointFit& joint = found.how[mark.bone];
     joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
-    // The error grows where the girth landmark (from the limb's cross-sections) and the fit to the skin disagree. The
+    // The error increases if the girth landmark (from the limb's cross-sections) and the fit to the skin disagree. The
     // fit may be shifted along the limb, and neither of the two supports a joint between their positions.
     if (how == How::Girth && joint.how == How::Skin)
       joint.error = std::max({joint.error, (1 - weight) * off, 4 * weight * (1 - weight) * weight * off});
     if (weight > 0.5) joint.how = how;
   };
-  // Returns the weight of a girth landmark by its distance from the fitted joint, [0, 1]. The fit to the skin is off
-  // along a limb by up to a tenth of the bone above, rarely more, so a landmark farther away does not belong to this
-  // joint. In a fit to rods the distance does not count, because that fit does not locate the hand.
+  // Returns the weight of a girth landmark, [0, 1], as a function of its distance from the fitted joint. The fit to the
+  // skin is off along a limb by up to a tenth of the bone above, rarely more, so a landmark farther away does not
+  // belong to this joint. In a fit to rods the distance is ignored, because that fit does not locate the hand.
   const auto believable = [&](const JointLandmark& mark) {
     constexpr double kSlides = 0.12, kNever = 0.24;
     const int above = rig.bones[mark.bone].parent;
@@ -200,15 +202,15 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   };
   for (const JointLandmark& mark : girth_landmarks(m, target.body)) {
     const std::string& name = rig.bones[mark.bone].name;
-    // Weight of a girth landmark (the narrowest cross-section of a limb). Where the bones' surface is known, elbow and
-    // wrist need no such landmark. At the knee, bones show the middle of the condyles and skin the gap below them; rigs
-    // bend halfway between.
+    // Weight of a girth landmark (the narrowest cross-section of a limb). If the bones' surface is known, elbow and
+    // wrist need no such landmark. At the knee, bones show the middle of the condyles and skin the gap below them; the
+    // knee of a rig is halfway between.
     const double share = name == "Neck"   ? 1
                          : by_bone        ? (name.ends_with("Shank") ? 0.5 : 0)
                          : fitted.is_rods ? double(name.ends_with("Hand"))
                                           : 1;
-    // In a bent limb the flesh folds, so that the narrowest cross-section lies further down. kBent: error that a right
-    // angle adds, mm. kHardlyBent: sine of the largest bend that adds no error.
+    // In a bent limb the flesh folds, so the narrowest cross-section is further down. kBent: error that a bend of 90
+    // degrees adds, mm. kHardlyBent: sine of the largest bend that adds no error.
     constexpr double kBent = 45, kHardlyBent = 0.09;
     const double bent = kBent * std::max(0.0, std::sin(mark.bend) - kHardlyBent);
     take(mark, How::Girth, share * strange[mark.bone] * believable(mark),
@@ -217,7 +219,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                    : kByGirth) +
              bent);
   }
-  // Error of a wrist whose hand lies against other tissue, mm, in a body of another shape. The skin has no narrowest
+  // Error of a wrist whose hand touches other tissue, mm, in a body of another shape. The skin has no narrowest
   // cross-section there, so the joint may be off along the limb.
   constexpr double kHandSlides = 38;
   for (int b = 0; b < m.bone_count(); ++b)
@@ -226,13 +228,13 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone))
       take(mark, How::Ball, strange[mark.bone], kByBall);
-  // Where little of the surface fits, no joint is certain, whatever evidence it was found by. A confidence below kFew,
+  // If little of the surface fits, no joint is certain, whatever evidence it was found by. A confidence below kFew,
   // kFewOfLimb or kFewOfHand gives an error of kFarOff or kLimbFarOff mm times the difference. The limits differ
-  // because limb bones of different bodies are much alike, trunk bones are not, and a ball joint is recognised by
-  // itself.
+  // because the limb bones of different bodies are much alike, while trunk bones are not. A ball joint gets the lowest
+  // limit, because its shape alone identifies it.
   constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100, kLimbFarOff = 300;
-  // Residual, as a share of the tissue's diagonal, above which every joint gets an error. Measured residuals: 0.011 at
-  // most on whole bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off,
+  // If the residual exceeds this share of the tissue's diagonal, every joint gets an error. Measured residuals: at most
+  // 0.011 on whole bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off,
   // and more on limbs that were fitted the wrong way round.
   constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
   const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.residual) / target.length - kUnlike);
@@ -246,7 +248,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
     return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
   };
   // Fingers far from the skin may belong to a hand that was fitted with the wrong rotation, so the error of finger
-  // joints grows.
+  // joints is increased.
   constexpr double kHandShare = 0.85, kHandFarOff = 120;
   if (!fitted.is_capsules) {
     const double lost = kHandFarOff * std::max(0.0, kHandShare - hands_near(m, target));
@@ -266,8 +268,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
 }
 
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
-  // Part of a joint's shift that the joints below it do not follow, as a share of the tissue's diagonal. A shift this
-  // small is only another convention for where the joint lies between the same two bones.
+  // Part of a joint's shift that the joints below do not follow, as a share of the tissue's diagonal. A shift this
+  // small only means another convention for the joint's position between the same two bones.
   constexpr double kElsewhere = 0.009;
   std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
   std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);
@@ -287,10 +289,10 @@ void take_named(FoundJoints& found, const Armature& rig, const std::vector<Named
 
 void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
                      std::vector<std::string>& warnings) {
-  // kNear: distance from a cut plane within which a joint counts as near it, as a share of the tissue's diagonal.
-  // kStrange: error of a joint, mm, above which the body does not have the atlas's shape there.
+  // kNear: a joint within this distance of a cut plane counts as near it, as a share of the tissue's diagonal.
+  // kStrange: if the error of a joint is above this, mm, the body does not have the atlas's shape there.
   constexpr double kNear = 0.05, kStrange = 5;
-  // Error of a joint that lies in a cut plane, mm, and growth of the error per mm beyond the plane.
+  // Error of a joint in a cut plane, mm, and increase of the error per mm beyond the plane.
   constexpr double kLeast = 36, kGrowth = 0.33;
   constexpr double kSureBall = 12;  // error below which a ball joint counts as certain even near a cut, mm
   const Armature& rig = fitted.atlas->rig;
@@ -307,8 +309,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       const double from_cut = out > 0 ? out : 0.1 * target.length;
       joint = {
           .how = JointFit::How::Unseen, .confidence = 0, .error = std::max(joint.error, kLeast + kGrowth * from_cut)};
-      // Each unseen bone between a joint and the seen bones adds to the joint's error, because it may have another
-      // rotation.
+      // Each unseen bone between a joint and the seen bones increases the joint's error, because the bone may have
+      // another rotation.
       if (parent >= 0 && !seen[parent])
         joint.error = std::max(
             joint.error, found.how[parent].error + kGrowth * glm::distance(found.places[parent], found.places[b]));

@@ -12,7 +12,7 @@ namespace {
 
 // The bones of one hand in the rig, and the settings for fitting the hand.
 struct HandFit {
-  // Bone indices: hand, first phalanx of the middle, the index and the little finger.
+  // Bone indices of the hand and of the first phalanges of the middle, the index and the little finger.
   int hand = 0, knuckle = 0, index = 0, little = 0;
   FitStage stage;
   double palm = 0;  // distance from the wrist to the middle knuckle, mm
@@ -38,7 +38,7 @@ std::optional<HandFit> hand_fit(const Mannequin& m, int hand) {
   return fit;
 }
 
-// Gives one hand the mirrored bend of the other hand.
+// Bends one hand like the mirrored other hand.
 void bend_alike(Mannequin& m, int hand, int other) {
   const Armature& rig = m.atlas().rig;
   const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);
@@ -53,8 +53,8 @@ void bend_alike(Mannequin& m, int hand, int other) {
   m.settle();
 }
 
-// Returns the body with hands that are open and have the scale of its arms and legs. A fit to the wrong fingers bends
-// and shrinks a hand, so a new fit starts from open hands.
+// Returns the body with open hands that have the scale of its arms and legs. A fit to the wrong fingers bends and
+// shrinks a hand, so a new fit starts from open hands.
 Mannequin with_fresh_hands(const Mannequin& m) {
   Mannequin fresh = m;
   const Armature& rig = m.atlas().rig;
@@ -97,7 +97,7 @@ void try_hands(Mannequin& m, const FitTarget& target, const FitSurface* bone) {
         if (std::abs(twist) > 1 && aside != 0) continue;
         Mannequin tried = m;
         tried.turn_branch(b, glm::mat3_cast(glm::angleAxis(twist, along) * glm::angleAxis(aside, normal)));
-        // A rotated hand must be clearly better than the best one so far: its residual must be lower by 3 %.
+        // A rotated hand is used only if its residual is at least 3 % lower than that of the best hand so far.
         keep_better(best, least, tried, *hand, twist == 0 && aside == 0 ? 1 : 0.97);
       }
     m = best;
@@ -128,7 +128,7 @@ Mannequin with_turned_hands(const Mannequin& m, double twist, const FitTarget& t
                               left ? -twist : twist, glm::normalize(turned.joint(hand->knuckle) - turned.joint(b)))));
     fit(turned, &*target.skin, nullptr, stage);
   }
-  // Only the arms may change in this fit, so position and sizes of the rest of the body are restored.
+  // Only the arms may change in this fit, so the position and the sizes of the rest of the body are restored.
   turned.root = m.root;
   std::vector<std::uint8_t> of_arm(m.group_count(), 0);
   for (int b = 0; b < m.bone_count(); ++b)

@@ -7,13 +7,13 @@
 
 namespace limber {
 
-// Tries to fit every hand again after rotations in its plane and about its length, and then bent like the other hand.
-// Keeps the best fit.
+// Fits every hand again after rotations in its plane and about its length, and then bent like the other hand. Keeps the
+// best fit.
 //   bone  may be null
 void try_hands(Mannequin& mannequin, const FitTarget& target, const FitSurface* bone);
 
-// Returns the body with hands that are open, have the scale of its arms and legs, and are rotated by `twist` and then
-// fitted to the skin. In that fit the forearms may also rotate, and sizes may change.
+// Returns the body with open hands that have the scale of its arms and legs, rotated by `twist` and then fitted to the
+// skin. In that fit the forearms may also rotate, and sizes may change.
 //   twist  rotation of the right hand about its length, radians; the left hand gets the opposite rotation
 Mannequin with_turned_hands(const Mannequin& mannequin, double twist, const FitTarget& target);
 

@@ -21,25 +21,25 @@ namespace limber {
 
 namespace {
 constexpr double kDegree = std::numbers::pi / 180;
-// Step between the joint angles at which the fit measures collisions, degrees. The margin around bones covers the
+// Step between the joint angles at which the fit measures collisions, degrees. The margin around bones allows for the
 // angles in between.
 constexpr double kFitStep = 3;
 constexpr double kVerifyStep = 1;  // step between the joint angles at which colliding voxels are counted, degrees
-constexpr double kLever = 100;     // shift of the axis that costs as much as a tilt by one radian, mm
-// Collision depth, mm, below which the cost is about quadratic and above which it is linear.
+constexpr double kLever = 100;     // a shift of the axis by this length costs as much as a tilt by one radian, mm
+// Collision depth, mm, below which the cost is about quadratic; above it the cost is linear.
 constexpr double kRound = 0.2;
-// Bone that stays farther than this from the bones of the other side at all angles is ignored, mm.
+// Bone that at all angles is farther than this from the bones of the other side is ignored, mm.
 constexpr double kNear = 20;
 
-// A change of the joint's axis, all in mm: shifts along the two directions across the axis, and tilts towards them
-// (radians times kLever).
+// A change of the joint's axis, all in mm: shifts along the two directions perpendicular to the axis, and tilts towards
+// them (radians times kLever).
 using Motion4 = Eigen::Vector4d;
 
 struct Axis {
   glm::dvec3 place, direction;  // a point on the axis (world, mm), and the axis's unit direction
 };
 
-// The joint's axis before the fit, and two unit vectors across it along which it may be shifted or tilted.
+// The joint's axis before the fit, and two unit vectors perpendicular to it along which it may be shifted or tilted.
 struct AxisFrame {
   Axis axis;
   glm::dvec3 across[2];
@@ -92,7 +92,7 @@ Side gather_side(const std::vector<glm::ivec3>& voxels) {
   return side;
 }
 
-// Decides which side of the joint owns the bone at a rest point. The rule is that by which rigid bones are written into
+// Decides which side of the joint owns the bone at a rest point, by the same rule by which rigid bones are written into
 // a posed volume (core/deform/inverse_map.h): the label read at the point is bone, and the side of the nearest bone
 // voxel owns the point.
 class PaintedBone {
@@ -220,8 +220,7 @@ class JointProblem {
 
   const AxisFrame& frame() const { return frame_; }
 
-  // Number of voxels that would be filled by bones of both sides: at the worst angle of the range, and summed over all
-  // angles.
+  // Number of voxels that bones of both sides would fill: at the worst angle of the range, and summed over all angles.
   struct Overlap {
     std::int64_t most = 0, sum = 0;
   };
@@ -238,8 +237,8 @@ class JointProblem {
             std::accumulate(count.begin(), count.end(), std::int64_t{0})};
   }
 
-  // Returns the voxels, at rest, of both sides that collide at some angle. Each voxel is listed once, in grid order (x
-  // fastest).
+  // Returns the rest positions of the voxels of both sides that collide at some angle. Each voxel is listed once, in
+  // grid order (x fastest).
   std::vector<glm::ivec3> colliding(const Motion4& motion) const {
     const Axis axis = frame_.moved(motion);
     std::vector<glm::ivec3> all;
@@ -260,8 +259,8 @@ class JointProblem {
     return all;
   }
 
-  // Returns the motion of the axis that minimizes its own square plus `weight` times the cost of collisions. The search
-  // starts at `motion`.
+  // Returns the motion of the axis that minimizes |motion|^2 plus `weight` times the cost of collisions. The search
+  // starts at the given `motion`.
   Motion4 solve(Motion4 motion, double weight, double margin) const {
     constexpr int kIterations = 12;
     double damping = 1e-3;
@@ -308,7 +307,7 @@ class JointProblem {
   }
 
   // Returns true if bone of the rotating side enters a voxel of the fixed side.
-  //   rest  the voxel's position rotated back: the rest point that the rotation takes to the voxel
+  //   rest  the rest point that the rotation moves to the voxel
   bool is_entered(const glm::dvec3& rest) const {
     return nearest_value(turning_.box, from_turning_, rest) < reach_ && painted_.by_turning(rest);
   }
@@ -382,15 +381,15 @@ bool within(const Motion4& motion, const FitJoint& settings) {
          std::atan(motion.tail<2>().norm() / kLever) <= settings.most_turned_degrees * kDegree;
 }
 
-// Returns true if fit `a` has fewer collisions than fit `b`, or equally many and a smaller motion.
+// Returns true if fit `a` has fewer collisions than fit `b`, or as many collisions and a smaller motion.
 bool better(const Fit& a, const Fit& b) {
   if (a.overlap.sum != b.overlap.sum) return a.overlap.sum < b.overlap.sum;
   return a.motion.squaredNorm() < b.motion.squaredNorm();
 }
 
-// Improves a fit by trying steps along one or two of the four variables of the motion; the step is halved when none
-// helps [Hooke & Jeeves 1961]. First the last collisions are removed, then the motion is shortened. Derivatives cannot
-// be used, because voxel counts are not differentiable.
+// Improves a fit by trying steps along one or two of the four variables of the motion; if no step helps, the step is
+// halved [Hooke & Jeeves 1961]. First the remaining collisions are removed, then the motion is shortened. Derivatives
+// cannot be used, because voxel counts are not differentiable.
 Fit polish(const JointProblem& problem, Fit best, const FitJoint& settings) {
   for (double step = 2; step > 0.2; step /= 2) {
     for (bool moved = true; moved;) {
@@ -418,7 +417,7 @@ Fit polish(const JointProblem& problem, Fit best, const FitJoint& settings) {
 // collisions.
 Fit least_motion(const JointProblem& problem, double voxel, const FitJoint& settings) {
   Fit best{Motion4::Zero(), problem.overlap(Motion4::Zero())};
-  // A smaller margin around bones moves the axis less. Where voxels still collide, the larger margin opens the joint
+  // With a smaller margin around bones the axis moves less. If voxels still collide, the larger margin opens the joint
   // more.
   for (const double margin : {0.375 * voxel, 0.75 * voxel}) {
     Motion4 motion = Motion4::Zero();

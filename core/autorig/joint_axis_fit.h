@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fits the axis of a joint to the bones around it. A rig's joint is rarely the anatomical one: rotating about it drives
-// bone into bone. The axis is moved and tilted as little as possible so that the bones that rotate with the joint do
-// not enter the fixed bones at any angle of a range.
+// Fits the axis of a joint to the bones around it. The joint of a rig is rarely at the anatomical position, so rotating
+// about it moves bone into bone. The axis is moved and tilted as little as possible so that the bones that rotate with
+// the joint do not enter the fixed bones at any angle of a range.
 //
 // The fixed bones become a signed distance field. The surface voxels of the rotating bones are moved through the range,
-// and every millimetre that they are deeper than a margin adds to the cost. With the squared motion of the axis as a
-// second term this is a least-squares problem in four variables (two shifts across the axis, two tilts), solved by
-// Levenberg-Marquardt [More 1978] with a rising weight of the collisions. It ends at the first axis for which no voxel
-// would be filled by both sides at any degree of the range. That axis is then moved back towards the old one as far as
-// this stays true.
+// and the depth by which they exceed a margin adds to the cost. With the squared motion of the axis as a second term
+// this is a least-squares problem in four variables (two shifts across the axis, two tilts), solved by
+// Levenberg-Marquardt [More 1978] with a rising weight of the collisions. The search ends at the first axis for which
+// no voxel would be filled by both sides at any degree of the range. That axis is then moved back towards the old one
+// as far as this stays true.
 #pragma once
 
 #include <string>
@@ -22,20 +22,20 @@ namespace limber {
 struct FitJoint {
   // Range of flexion angles in which the joint must be free of collisions.
   double minimum_degrees = 0, maximum_degrees = 90;
-  double reach_mm = 120;            // bone farther than this from the joint is ignored: no axis could separate it
+  double reach_mm = 120;            // bone farther than this from the joint is ignored, as no axis could separate it
   double most_moved_mm = 30;        // upper limit on the shift of the axis
   double most_turned_degrees = 20;  // upper limit on the tilt of the axis
 };
 
 struct FittedJoint {
-  // The fitted rig: the bone's head is moved, and its parent's tail with it where the two coincided. The bone's joint
-  // limits are a hinge about the fitted axis.
+  // The fitted rig: the bone's head is moved and, if its parent's tail coincided with it, this tail too. The bone's
+  // joint limits are a hinge about the fitted axis.
   Armature armature;
-  double moved_mm = 0;        // shift of the bone's head, at right angles to the axis
+  double moved_mm = 0;        // shift of the bone's head, perpendicular to the axis
   double turned_degrees = 0;  // tilt of the axis
-  // Number of voxels that bones of both sides fill, at the worst angle of the range.
+  // Number of voxels that bones of both sides fill, at the worst angle of the range, before and after the fit.
   std::int64_t overlap_before = 0, overlap_after = 0;
-  // Voxels, at rest, of both sides of the joint that collide at some angle: before and after the fit.
+  // Rest positions of the voxels of both sides that collide at some angle, before and after the fit.
   std::vector<glm::ivec3> colliding_before, colliding_after;
 };
 
@@ -46,7 +46,7 @@ FittedJoint fit_joint(const LabelVolume& volume, const TissueVoxels& tissue, con
                       Progress& progress = no_progress());
 
 // The result of fit_joints(), which fits the axis of every joint that a pose rotates by more than 5 degrees, parents
-// first. The fitted range is that rotation. A joint without bone tissue on one side stays as it is.
+// first. The fitted range is the rotation in the pose. A joint with no bone tissue on one side is not changed.
 struct FittedPose {
   struct Joint {
     std::string bone;
@@ -56,7 +56,7 @@ struct FittedPose {
   Armature armature;
   Pose pose;                  // the given pose with the same joint angles, but about the fitted axes
   std::vector<Joint> joints;  // joints that collided before the fit or whose axis moved
-  // One line per joint whose bones still collide, with the number of colliding voxels.
+  // One line for each joint whose bones still collide, with the number of colliding voxels.
   std::vector<std::string> warnings;
 };
 FittedPose fit_joints(const LabelVolume& volume, const TissueVoxels& tissue, const BoneParts& parts,

@@ -23,7 +23,7 @@ struct Section {
   bool is_open = false;
 };
 
-// Returns the cross-section of the tissue in a plane. Only the connected region nearest to `middle` counts.
+// Returns the cross-section of the tissue in a plane. Only the connected region nearest to `middle` is included.
 Section section_at(const Occupancy& body, const AffineTransform& to_cell, const glm::dvec3& middle,
                    const glm::dvec3& normal, const glm::dvec3& forward, double reach) {
   const double step = std::max({body.grid.spacing.x, body.grid.spacing.y, body.grid.spacing.z, reach / 40});
@@ -108,8 +108,8 @@ Profile profile_of(const Occupancy& body, const Bend& bend, double from, double 
 }
 
 // Returns the position of a limb's waist (its smallest cross-section): the middle of all sections that are hardly
-// larger than the smallest. Returns none unless the sections grow on both sides of the waist before the limb touches
-// other tissue.
+// larger than the smallest. Returns none unless on both sides of the waist the sections become larger before the limb
+// touches other tissue.
 std::optional<double> waist(const Profile& profile, double least_bulge) {
   constexpr double kHardly = 1.03;
   const auto& area = profile.area;
@@ -131,7 +131,7 @@ std::optional<double> waist(const Profile& profile, double least_bulge) {
   return profile.from + profile.step * (first + last) / 2.0;
 }
 
-// Where a joint lies relative to the waist of the limb (the smallest cross-section near the joint).
+// Position of a joint relative to the waist of the limb (the smallest cross-section near the joint).
 struct Waist {
   const char* bone;  // name, without side, of the bone whose head is the joint
   // Range of the search for the waist, as shares of the lengths of the bones above and below the joint.
@@ -142,7 +142,7 @@ struct Waist {
 };
 constexpr Waist kWaists[] = {
     {"Forearm", 0.35, 0.30, 0.07, 0},
-    // The knee lies in front of its section's middle, since the heads of calf and hamstrings lie behind the knee.
+    // The knee is in front of its section's middle, since the heads of calf and hamstrings are behind the knee.
     {"Shank", 0.28, 0.32, 0.01, 0.12},
     {"Hand", 0.35, 0.6, 0.04, 0},
 };
@@ -181,7 +181,7 @@ std::optional<Limb> limb_at(const Mannequin& m, const Occupancy& body, int bone,
   const double upper_length = glm::distance(limb.bend.above, limb.bend.corner),
                lower_length = glm::distance(limb.bend.corner, limb.bend.below);
   if (!(upper_length > 0) || !(lower_length > 0)) return std::nullopt;
-  // Cosine of 60 degrees: in a limb that bends by more, the joint has no clear cross-section.
+  // If a limb bends by more than 60 degrees (cosine 0.5), the joint has no clear cross-section.
   constexpr double kMostBent = 0.5;
   if (glm::dot(limb.bend.corner - limb.bend.above, limb.bend.below - limb.bend.corner) <
       kMostBent * upper_length * lower_length)
@@ -203,8 +203,8 @@ void add_waists(const Mannequin& m, const Occupancy& body, const Waist& known, s
   double mean = 0;
   for (const Limb& limb : limbs) mean += *limb.along / double(limbs.size());
   for (const Limb& limb : limbs) {
-    // Largest difference between the waist's position in one limb and the mean of left and right, as a share of the
-    // length of the bone above. A limb that differs by more uses its own waist instead of the mean.
+    // Upper limit on the difference between the waist's position in one limb and the mean of left and right, as a share
+    // of the length of the bone above. A limb with a larger difference uses its own waist instead of the mean.
     constexpr double kUnlike = 0.15;
     const double upper = glm::distance(limb.bend.above, limb.bend.corner);
     const double along = (std::abs(*limb.along - mean) < kUnlike * upper ? mean : *limb.along) + known.beyond * upper;
@@ -238,8 +238,8 @@ void add_neck(const Mannequin& m, const Occupancy& body, std::vector<JointLandma
   constexpr double kGrown = 2;
   const auto grown = std::find_if(least, area.end(), [&](double a) { return a > kGrown * *least; });
   if (grown == area.end()) return;
-  // Distance of the neck joint above the section whose area has grown to kGrown times the smallest, as a share of the
-  // length of neck and head.
+  // Distance from the section whose area is kGrown times the smallest up to the neck joint, as a share of the length of
+  // neck and head.
   constexpr double kAbove = 0.05;
   const auto k = std::max<std::ptrdiff_t>(0, (grown - area.begin()) - std::lround(kAbove * whole / profile.step));
   found.push_back({*neck, profile.sections[k].centre});
@@ -266,8 +266,7 @@ struct Ball {
   double radius = 0;
 };
 
-// Returns the sphere that fits the points best: the least squares of the differences between squared distances and the
-// squared radius.
+// Returns the sphere that fits the points best: least squares of (squared distance - squared radius).
 std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const glm::dvec3& near) {
   glm::dmat4 A(0);
   glm::dvec4 b(0);
@@ -284,9 +283,9 @@ std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const 
   return Ball{near + glm::dvec3(x), std::sqrt(squared)};
 }
 
-// Returns the sphere near `start` that gets the most votes. Every surface point votes, for each radius, for the centre
-// that lies behind it along its normal. The votes for a sphere are divided by its squared radius, so that the visible
-// share of its surface counts.
+// Returns the sphere near `start` that gets the most votes. For each radius, every surface point votes for the centre
+// at this distance behind it along its normal. The votes for a sphere are divided by its squared radius, so that the
+// visible share of its surface decides.
 std::optional<Ball> voted(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale) {
   const double cell = 3 * scale, reach = 30 * scale;
   double most = 0;

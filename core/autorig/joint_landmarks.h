@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds joints by shape alone, whatever the proportions of the body that was fitted:
-//   girth  A limb's cross-section is smallest a little above the elbow, at the knee and a little above the wrist; the
-//          neck begins where the section has grown to twice its smallest one. The distance from there to the joint is a
-//          share of the bone's length, as measured on segmented adults.
+//   girth  A limb's cross-section is smallest slightly above the elbow, at the knee and slightly above the wrist. The
+//   neck
+//          begins where the section is twice its smallest section. The distance from there to the joint is a share of
+//          the
+//          bone's length, as measured on segmented adults.
 //   balls  The heads of humerus and femur are spheres whose centres are the joints: every point of the bone surface
-//          votes for the centres that its normal points away from [Ballard 1981, generalized Hough transform; Cameron
+//          votes for the centres that are behind it along its normal [Ballard 1981, generalized Hough transform;
+//          Cameron
 //          et al. 1997 on the hip as the centre of its head].
 #pragma once
 
@@ -22,16 +25,16 @@ struct JointLandmark {
   double bend = 0;      // bend of the limb at the joint, radians
 };
 
-// Returns the landmarks of elbows, knees, wrists and neck that can be found. A left and a right joint both get the mean
-// of their two distances along the limb, unless these differ much.
+// Returns the landmarks of elbows, knees, wrists and neck that can be found. For a left and a right joint, the mean of
+// their two distances along the limb is used, unless the distances differ much.
 std::vector<JointLandmark> girth_landmarks(const Mannequin& mannequin, const Occupancy& body);
 
 // Returns the landmarks of shoulders and hips that can be found.
 //   bone  the surface of bone tissue
 std::vector<JointLandmark> ball_landmarks(const Mannequin& mannequin, const FitSurface& bone);
 
-// Returns the centre of the sphere that most surface points near `start` lie on. Its radius is that of an adult's
-// humerus or femur head times `scale`, and its centre lies within 35 mm times `scale` of `start`.
+// Returns the centre of the sphere near `start` on which most surface points are. The sphere's radius is that of an
+// adult's humerus or femur head times `scale`, and its centre is within 35 mm times `scale` of `start`.
 std::optional<glm::dvec3> ball_near(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale);
 
 }  // namespace limber

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::max();
 constexpr double kStep = 8;  // distance between points of a path, mm
-// Least prominence of a body end (see limb_paths.h), as a share of the longest path's length.
+// Smallest prominence of a body end (limb_paths.h), as a share of the longest path's length.
 constexpr double kLeastShare = 0.12;
 constexpr size_t kMostEnds = 12;
 
@@ -52,8 +52,8 @@ class Body {
     return best;
   }
 
-  // Computes for each cell the shortest distance through the tissue from the cell `from`, and the cell before it on
-  // that shortest path.
+  // Computes for each cell the length of the shortest path through the tissue from the cell `from`, and the previous
+  // cell on this path.
   void measure(std::int32_t from) {
     distance_.assign(cell_.size(), kUnseen);
     before_.assign(cell_.size(), -1);
@@ -81,9 +81,9 @@ class Body {
   }
   double distance(std::int32_t i) const { return distance_[i]; }
 
-  // Returns the local maxima of the distance, each with its prominence (see limb_paths.h). Cells are visited from the
-  // farthest inwards and join regions, one per maximum. Where two regions meet, the lower maximum's prominence is
-  // known, and its region joins the other.
+  // Returns the local maxima of the distance, each with its prominence (limb_paths.h). Cells are visited in descending
+  // order of distance and joined to regions, one for each maximum. When two regions meet, the prominence of the lower
+  // maximum is known, and its region is merged into the other.
   std::vector<std::pair<double, std::int32_t>> summits() const {
     std::vector<std::int32_t> order;
     for (std::int32_t i = 0; i < size(); ++i)
@@ -114,8 +114,8 @@ class Body {
     return found;
   }
 
-  // Returns the path from the cell `end` to the cell that distances are measured from. Every point is moved to the
-  // middle of the limb: the mean of the cells that are equally far from that cell.
+  // Returns the path from the cell `end` to the cell from which distances are measured. Every point is moved to the
+  // middle of the limb: the mean of the cells with the same distance.
   LimbPath path(std::int32_t end, double reach) const {
     std::vector<glm::dvec3> way;
     std::vector<double> far;

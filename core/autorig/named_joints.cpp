@@ -18,7 +18,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kFewest = 4;  // least number of surface voxels; a bone with fewer is ignored
+constexpr std::int64_t kFewest = 4;  // smallest number of surface voxels; a bone with fewer is ignored
 
 // --- which bone a label's name means
 
@@ -42,8 +42,8 @@ bool says_word(const std::string& text, const char* word) {
                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; }) != text.end();
 }
 
-// Returns the part of the skeleton that a label's name means. The part has the name of the atlas's bone where the atlas
-// has one. Returns "" for other labels.
+// Returns the part of the skeleton that a label's name means, under the atlas's name for this bone if the atlas has it.
+// Returns "" for other labels.
 std::string piece_of(const std::string& label_name) {
   const AnatomicalName name = anatomical_name(label_name);
   std::set<BoneRegion> regions = name.regions;
@@ -74,8 +74,9 @@ std::string piece_of(const std::string& label_name) {
   return "";
 }
 
-// Returns "Ulna" for a label that holds the ulna without the radius, and "Tibia" for one that holds the tibia alone;
-// else "". These bones form the hinges of their limbs: the ulna with the humerus, the tibia with femur and talus.
+// Returns "Ulna" for a label that contains the ulna without the radius, "Tibia" for one that contains only the tibia,
+// and "" otherwise. These bones form the hinges of their limbs: the ulna with the humerus, the tibia with femur and
+// talus.
 std::string hinged_bone_of(const std::string& label_name, const std::string& piece) {
   const auto says = [&](std::initializer_list<const char*> words) {
     return std::any_of(words.begin(), words.end(), [&](const char* word) { return says_word(label_name, word); });
@@ -88,9 +89,10 @@ std::string hinged_bone_of(const std::string& label_name, const std::string& pie
 // A joint at the head of one of the atlas's bones, and the two parts of the skeleton that meet in it.
 struct Meeting {
   const char* bone;  // name of the atlas's bone, without side
-  // Names of two parts of the skeleton; "Ulna" and "Tibia" mean the whole forearm or shank where they have no label.
+  // Names of two parts of the skeleton; "Ulna" and "Tibia" mean the whole forearm or shank if these bones have no
+  // label.
   const char *above, *below;
-  // true: only surfaces that face along the limb count, because a kneecap lies in front of the knee
+  // true: only surfaces that face along the limb are used, because the kneecap is in front of the knee
   bool along = false;
   bool ball = false;  // true: the bone below begins with a ball (a spherical head)
   double aside = 0;   // distance between the positions that different rig authors choose for this joint, mm
@@ -110,8 +112,8 @@ constexpr Meeting kMeetings[] = {
     {"Toes", "Foot", "Toes", false, false, 5},
 };
 
-// Returns the two parts of the skeleton that meet at the head of a finger's bone; none for other bones. `above` stores
-// the name to which the result points.
+// Returns the two parts of the skeleton that meet at the head of a finger's bone; none for other bones.
+//   above  out: storage of the name to which the result points
 std::optional<Meeting> finger_meeting(const std::string& bone, std::string& above) {
   for (const char* finger : {"Thumb", "Index", "Middle", "Ring", "Little"}) {
     const std::string f = finger;
@@ -126,7 +128,7 @@ std::optional<Meeting> finger_meeting(const std::string& bone, std::string& abov
   return std::nullopt;
 }
 
-// --- parts of the anatomical skeleton that have labels of their own in the volume
+// --- parts of the anatomical skeleton that have their own labels in the volume
 
 struct Piece {
   std::vector<SurfacePoint> points;  // surface voxels of the part, without normals
@@ -145,8 +147,8 @@ std::string without_side(const std::string& bone) {
   return bone.starts_with("Left") ? bone.substr(4) : bone.starts_with("Right") ? bone.substr(5) : bone;
 }
 
-// Returns the side of the body on which a point lies: that of the mannequin's nearer bone, of the left and right bones
-// that belong to `piece`, a part of the skeleton.
+// Returns the side of the body on which a point is: that of the nearer one of the mannequin's left and right bones that
+// belong to `piece`, a part of the skeleton.
 BodySide nearer_side(const Mannequin& m, const std::string& piece, const glm::dvec3& place) {
   double least = 1e300;
   BodySide side = BodySide::Middle;
@@ -231,9 +233,9 @@ struct Contact {
 
 // Returns the middle of the contact between two bones: the mean of the surface points at which the bones are nearest to
 // each other.
-//   along   unit vector, from which the connection of a pair may deviate by 60 degrees; zero: in any direction
-//   within  pairs of points up to this much farther apart than the nearest pair count, mm
-//   reach   largest distance of a pair, mm
+//   along   unit vector: the line between the points of a pair may deviate from it by 60 degrees; zero: any direction
+//   within  pairs count if they are at most this much farther apart than the nearest pair, mm
+//   reach   upper limit on the distance of a pair, mm
 std::optional<Contact> contact_of(const Piece& above, const Piece& below, const glm::dvec3& along, double within,
                                   double reach) {
   const PointTree tree(below.points);
@@ -305,17 +307,17 @@ struct Finder {
         .bone = 0,
         .place = contact->place,
         .error = kLeastError + kOfLength * length + kOfVoxel * voxel + kOfGap * contact->gap + meeting.aside};
-    // In the trunk the error is larger: vertebrae meet along their whole discs and processes, and rig authors choose
-    // different positions for the joint.
+    // In the trunk the error is larger, because vertebrae meet along their whole discs and processes, and rig authors
+    // choose different positions for the joint.
     if (side == BodySide::Middle && is_of_trunk(meeting.bone)) joint.error += kSpine * above->length;
     if (meeting.ball) {
       const bool is_hip = std::string(meeting.bone) == "Thigh";
       const double scale = below->length / (is_hip ? kAdultFemur : kAdultHumerus);
-      // kBallAway: largest distance of the ball's centre from the contact of the bones. kBallError, kShoulderError:
-      // error of the joint at the hip and at the shoulder. All in mm, for an adult.
+      // kBallAway: upper limit on the distance of the ball's centre from the contact of the bones. kBallError,
+      // kShoulderError: error of the joint at the hip and at the shoulder. All in mm, for an adult.
       constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 13;
-      // The ball's size is expected in proportion to the bone's length. A bone that is cut off looks short, and its
-      // ball would look too large. So the scale is limited.
+      // The ball's expected size is proportional to the bone's length. A bone that is cut off looks short, so its ball
+      // would look too large. Therefore the scale is limited.
       const auto ball = ball_of(volume, *below, contact->place, std::clamp(scale, 0.4, 1.3));
       if (ball && glm::distance(*ball, contact->place) < kBallAway * scale)
         joint.place = *ball,
@@ -326,8 +328,8 @@ struct Finder {
   }
 };
 
-// Adds the joint at the head of the pelvis bone. It lies between the hips. Its offset from their midpoint is half of
-// that in the mannequin, because some rigs place the joint in the midpoint itself.
+// Adds the joint at the head of the pelvis bone, between the hips. Its offset from the hips' midpoint is half of the
+// mannequin's offset, because some rigs place the joint exactly in the midpoint.
 void add_hips(const Mannequin& m, std::vector<NamedJoint>& joints) {
   constexpr double kError = 4, kOfWidth = 0.07;
   const auto at = [&](const char* name) {
@@ -382,7 +384,7 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
   const Armature& rig = m.atlas().rig;
   std::map<int, glm::dvec3> place;
   for (const NamedJoint& joint : joints) place[joint.bone] = joint.place;
-  // Returns the child that continues bone `b` and whose joint is known: for a hand the middle finger, else the first
+  // Returns the child that continues bone `b` and has a known joint: for a hand the middle finger, otherwise the first
   // child.
   const auto next_of = [&](int b) {
     int next = -1;
@@ -402,21 +404,22 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
       auto& [sum, count] = stretch[m.group_of(b)];
       sum += std::log(glm::distance(here, place[next]) / rest), ++count;
     }
-  // Largest plausible change of a bone's length against the atlas, as a natural logarithm.
+  // Upper limit on the change of a bone's length against the atlas, as a natural logarithm; larger changes are not
+  // plausible.
   constexpr double kMost = 1.2;
   for (const auto& [group, mean] : stretch)
     if (const double s = mean.first / mean.second; std::abs(s) < kMost)
       m.across[group] += 0.5 * (s - m.along[group]), m.along[group] = s;
   m.settle();
-  // Bones of the trunk are not rotated here: they carry limbs on both sides, and the fit of the surface rotates them
-  // later.
+  // Bones of the trunk are not rotated here, because limbs are attached to them on both sides; the fit of the surface
+  // rotates them later.
   for (const auto& [b, next] : spans)
     if (side_named(rig.bones[b].name) != BodySide::Middle || rig.bones[b].parent < 0 || place.size() < 2 ||
         rig.bones[0].name != "Hips") {
       const glm::dvec3 from = m.joint(next) - m.joint(b), to = place[next] - place[b];
       if (glm::length(from) > 0 && glm::length(to) > 0) m.turn_branch(b, glm::mat3_cast(shortest_turn(from, to)));
     }
-  // Shifts the whole body so that its joints lie at the named joints on average.
+  // Shifts the whole body so that the mean offset between its joints and the named joints is zero.
   glm::dvec3 shift(0);
   for (const auto& [b, here] : place) shift += (here - m.joint(b)) / double(place.size());
   if (!place.empty()) m.root += shift, m.settle();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds joints by the names of bones. Where labels say which bone is the femur and which the tibia
-// (core/bones/anatomical_name.h), the knee lies where the two come nearest to each other, whatever the body's build and
-// pose. Hips and shoulders lie at the centre of the ball at the end of femur and humerus. Marrow and spongy bone count
-// as part of the bone that their label names. Left and right in one label are separated by the fitted body.
+// Finds joints by the names of bones. If labels say which bone is the femur and which the tibia
+// (core/bones/anatomical_name.h), the knee is where the two come nearest to each other, whatever the body's build and
+// pose. Hips and shoulders are at the centre of the ball at the end of femur and humerus. Marrow and spongy bone belong
+// to the bone that their label names. If one label contains left and right, the fitted body separates them.
 #pragma once
 
 #include <vector>
@@ -21,13 +21,14 @@ struct NamedJoint {
 
 // Returns at most one joint for each bone of the mannequin, in the order of the bones. Returns no joints if no label
 // names a bone.
-//   mannequin  roughly fitted to the volume; tells left from right where the labels' names do not
+//   mannequin  roughly fitted to the volume; separates left from right if the labels' names do not
 std::vector<NamedJoint> named_joints(const LabelVolume& volume, const TissueTable& tissues, const Mannequin& mannequin);
 
 // Rotates and stretches the mannequin's bones so that they run from one named joint to the next.
 void lay_along(Mannequin& mannequin, const std::vector<NamedJoint>& joints);
 
-// Returns true if the left and right joints lie on the same sides as the mannequin's, or if the joints do not show it.
+// Returns true if the left and right joints are on the same sides as the mannequin's, or if the joints do not show a
+// side.
 bool same_sides(const Mannequin& mannequin, const std::vector<NamedJoint>& joints);
 
 }  // namespace limber

@@ -11,10 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kSure = 0.5;     // confidence from which on a joint counts as found for certain
-constexpr double kBetter = 1.02;  // another rotation is preferred only if it fits better by this factor
+constexpr double kSure = 0.5;     // a joint whose confidence is at least this counts as found for certain
+constexpr double kBetter = 1.02;  // another rotation is used only if it fits better by this factor
 
-// Returns the 24 rotations by right angles: the identity first, then the others that keep the vertical, then the
+// Returns the 24 rotations by right angles: first the identity, then the others that keep the vertical axis, then the
 // rest.
 std::vector<glm::dmat3> right_turns() {
   std::vector<glm::dmat3> turns;
@@ -35,16 +35,16 @@ std::vector<glm::dmat3> right_turns() {
   return turns;
 }
 
-// Returns the unit direction from the feet to the head of a rig; none if the names of its bones do not tell it.
+// Returns the unit direction from the feet to the head of a rig; none if the names of its bones do not show it.
 std::optional<glm::dvec3> line_of(const Armature& rig) {
   const Skeleton skeleton = skeleton_of(rig);
   const auto trunk = trunk_line(skeleton);
   return trunk ? std::optional(glm::normalize(*trunk)) : std::nullopt;
 }
 
-// Returns a measure of how well a rig fits: the length of its bones in tissue, times the share of its whole length that
-// is in tissue. The length rejects a rig so small that it fits anywhere, and the share rejects one that is larger than
-// the body.
+// Returns a measure of how well a rig fits: the length of its bones in tissue, times the share of its whole length in
+// tissue. The first factor rejects a rig so small that it fits anywhere, the second one a rig that is larger than the
+// body.
 double suits(const RigCheck& check, const Armature& rig) {
   double length = 0;
   for (const Bone& bone : rig.bones) length += glm::distance(bone.head, bone.tail);

@@ -8,13 +8,14 @@
 
 namespace limber {
 
-// Returns the rig scaled to the tissue and moved to its middle, in the best of 24 rotations by right angles. The best
-// rotation brings the most bone length, and the largest share of it, into tissue. A rig whose names tell head from feet
-// is placed upright. Throws Error for a volume without tissue.
+// Returns the rig scaled to the tissue and centred on it, in the best of 24 rotations by right angles. The best
+// rotation brings the largest length of bones, and the largest share of it, into tissue. A rig whose names show head
+// and feet is placed upright. Throws Error for a volume without tissue.
 Armature placed_in_tissue(const LabelVolume& volume, const Armature& rig);
 
-// Returns the result of auto_fit() (core/autorig/auto_rig.h). But if auto_fit() finds no joint for certain and
-// placed_in_tissue() brings more of the rig into tissue, returns the rig from placed_in_tissue() with a warning.
+// Returns the result of auto_fit() (core/autorig/auto_rig.h). If auto_fit() finds no joint for certain and
+// placed_in_tissue() brings more of the rig into tissue, returns the rig from placed_in_tissue() instead, with a
+// warning.
 AutoFit fitted_or_placed(const LabelVolume& volume, const TissueTable& tissues, const Armature& rig,
                          Progress& progress = no_progress());
 

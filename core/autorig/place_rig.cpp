@@ -79,7 +79,7 @@ glm::dmat3 shortest_turn(const glm::dvec3& from, const glm::dvec3& to) {
   return glm::mat3_cast(glm::angleAxis(std::atan2(s, c), across / s));
 }
 
-// The rotation and scale that bring a set of points as near as possible to other points [Umeyama 1991]; the identity if
+// The rotation and scale that move a set of points as near as possible to other points [Umeyama 1991]; the identity if
 // all points coincide.
 struct Similarity {
   glm::dmat3 turn{1};
@@ -121,8 +121,8 @@ glm::dvec3 along_line(const std::vector<glm::dvec3>& line, double share) {
   return line.back();
 }
 
-// Places the unmatched joints that lie between two matched joints of the rig's trunk. They are spread along the body's
-// trunk between the same two joints, in the proportions that they have in the rig.
+// Places the unmatched joints between two matched joints of the rig's trunk. They are spread along the body's trunk
+// between the same two joints, in their proportions in the rig.
 void spread_trunk(const Armature& rig, const Armature& there, const std::vector<glm::dvec3>& joints,
                   const std::vector<int>& match, std::vector<std::optional<glm::dvec3>>& place) {
   for (int top = 0; top < std::ssize(rig.bones); ++top) {
@@ -132,8 +132,8 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
     while (b >= 0 && match[b] < 0) chain.push_back(b), b = rig.bones[b].parent;
     if (b < 0) continue;
     chain.push_back(b);
-    // Bones of the body's chain between the same two joints. There is no chain unless one joint is an ancestor of the
-    // other in the body, too.
+    // Bones of the body's chain between the same two joints. There is a chain only if one joint is an ancestor of the
+    // other in the body too.
     std::vector<int> line;
     int a = match[top];
     while (a >= 0 && a != match[b]) line.push_back(a), a = there.bones[a].parent;
@@ -141,8 +141,8 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
     line.push_back(a);
     std::reverse(chain.begin(), chain.end());
     std::reverse(line.begin(), line.end());
-    // Only a spine is similar enough in rig and body to be spread. Where the body has no joint between the two, but the
-    // rig has several, the rig's bones move along with their parents instead.
+    // Only a spine is similar enough in rig and body for its joints to be spread. If the body has no joint between the
+    // two, but the rig has several, the rig's bones move with their parents instead.
     if (line.size() < 3 && chain.size() > 3) continue;
     std::vector<glm::dvec3> from, to;
     for (int c : chain) from.push_back(rig.bones[c].head);
@@ -157,7 +157,7 @@ void spread_trunk(const Armature& rig, const Armature& there, const std::vector<
   }
 }
 
-// The rotation and scale that carry a bone from rest to its new position.
+// The rotation and scale that take a bone from rest to its new position.
 struct Carry {
   glm::dmat3 turn{1};
   double scale = 1;
@@ -216,7 +216,8 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
       bone.head = c + above.vector(before.head - a);
     }
 
-    // The bone's new end: the new head of the child at its tail, or else the end of the bone's counterpart in the body.
+    // The bone's new end: the new head of the child at its tail or, without such a child, the end of the bone's
+    // counterpart in the body.
     const int child = child_at_tail(rig, b);
     std::optional<glm::dvec3> end;
     if (child >= 0 && place[child]) end = place[child];
@@ -233,7 +234,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
     }
     turn_limits(bone, before, carry[b].turn);
   }
-  // A bone that ended at its child's head ends there again.
+  // Moves the tail of a bone that ended at its child's head there again.
   for (int b = 0; b < count; ++b)
     if (const int child = child_at_tail(rig, b); child >= 0)
       result.armature.bones[b].tail = result.armature.bones[child].head;

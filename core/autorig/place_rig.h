@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moves any rig to the joints of a fitted body. Joints are matched by their names, or else by the meaning of the names.
-// A spine with another number of vertebrae is spread along the body's spine. A bone without a counterpart moves with
-// its parent, rotated and scaled as the parent is. Rolls and the axes of joint limits rotate along.
+// Moves any rig to the joints of a fitted body. Joints are matched by their names or, if these differ, by the meaning
+// of the names. A spine with another number of vertebrae is spread along the body's spine. A bone without a counterpart
+// moves with its parent, with the parent's rotation and scale. Rolls and the axes of joint limits rotate with the
+// bones.
 #pragma once
 
 #include <vector>
@@ -13,7 +14,7 @@ namespace limber {
 
 struct PlacedRig {
   Armature armature;
-  // For each bone of the rig: index of the body's bone to whose joint its head was moved; -1: the bone moves along with
+  // For each bone of the rig, the index of the body's bone to whose joint its head was moved; -1: the bone moves with
   // its parent.
   std::vector<int> joint_of;
 };

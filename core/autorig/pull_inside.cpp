@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-// Upper limits on the shift of a joint: kShare as a share of the length of each bone that begins or ends at the joint,
+// Upper limits on the shift of a joint: kShare as a share of the length of every bone that begins or ends at the joint,
 // and kMost in mm.
 constexpr double kShare = 0.5, kMost = 30;
 constexpr int kRounds = 60;
@@ -21,7 +21,7 @@ constexpr int kMostSteps = 20;  // upper limit on the number of steps in each di
 constexpr double kSlide = 0.6;  // cost of a shift along a free hinge's axis, relative to a shift across it
 
 // Returns the cost of a joint's shift, mm. A shift along a hinge's axis costs less than one across it, since the hinge
-// rotates its bone in the same way wherever the joint lies on the axis.
+// rotates its bone in the same way at every position on the axis.
 double harm(const glm::dvec3& shift, const glm::dvec3& axis) {
   const double along = glm::dot(shift, axis);
   return std::sqrt(std::max(0.0, glm::dot(shift, shift) - (1 - kSlide * kSlide) * along * along));
@@ -118,8 +118,8 @@ Armature drawn_inside(const Armature& rig, const LabelVolume& volume, const std:
     ends.push_back({head, joint_at(bone.tail, reach)});
   }
 
-  // The searches for the nearest tissue, by bone: a bone that is a free hinge has a search of its own, and the entry -1
-  // serves all other bones.
+  // The searches for the nearest tissue, by bone. A bone that is a free hinge has its own search; the entry -1 is used
+  // for all other bones.
   std::map<int, Nearest> nearest;
   nearest.emplace(-1, Nearest(volume, glm::dvec3(0)));
   for (int b = 0; b < std::ssize(rig.bones); ++b) {

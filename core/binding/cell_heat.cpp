@@ -150,8 +150,9 @@ class BrickCells {
     for_cells([&](std::int64_t k) { number_[whole_[k]] = -1; });
   }
 
-  const std::vector<std::int32_t>& whole() const { return whole_; }       // index of each chosen cell among all cells
-  std::int32_t number(std::int32_t cell) const { return number_[cell]; }  // the opposite; -1: not chosen
+  const std::vector<std::int32_t>& whole() const { return whole_; }  // index of each chosen cell among all cells
+  // Returns the index of a cell among the chosen cells; -1: the cell is not chosen.
+  std::int32_t number(std::int32_t cell) const { return number_[cell]; }
 
   CellGraph graph() const {
     const CellGraph& all = cells_.graph;

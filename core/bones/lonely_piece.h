@@ -18,7 +18,6 @@ namespace limber {
 //   distance  mean distance from the piece's voxels to each rig bone, mm
 //   bone_at   a function (index of a tissue voxel) -> its rig bone; -1: none
 //   budget    upper limit on the number of voxels to visit; the number of visited voxels is subtracted
-//   budget    upper limit on the number of voxels to visit; the number of visited voxels is subtracted
 int bone_of_lonely_piece(const LabelVolume& volume, const TissueVoxels& tissue, std::vector<glm::ivec3> voxels,
                          const std::vector<float>& distance, const std::function<int(std::int64_t)>& bone_at,
                          std::int64_t& budget);

@@ -16,7 +16,6 @@
 // the pose brings two bones closer together than `closing_mm`, or into each other, soft tissue could not become thin
 // enough between them: the nodes of bone there are not held either, and their tets belong to the joint. All bone voxels
 // still move rigidly in the posed volume.
-// the posed volume.
 #pragma once
 
 #include <map>

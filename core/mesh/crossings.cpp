@@ -20,12 +20,12 @@ struct Triangle {
   std::array<int, 3> node;
 };
 
-// --- Tests in a plane. Projecting along the axis in which the triangle's normal is longest keeps the triangle from
-// becoming flat.
+// --- Tests in a plane: points are projected along the axis in which the triangle's normal is longest, so that the
+// projected triangle is not degenerate.
 
 P2 flat(const P3& p, int axis) { return {p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-bool between(const P2& a, const P2& b, const P2& p) {  // requires that the three points lie on one line
+bool between(const P2& a, const P2& b, const P2& p) {  // requires that the three points are on one line
   return std::min(a[0], b[0]) <= p[0] && p[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= p[1] &&
          p[1] <= std::max(a[1], b[1]);
 }
@@ -64,7 +64,8 @@ bool meets_on_plane(const P3& p, const P3& q, const Triangle& t) {
 
 // --- Tests in space.
 
-// Returns whether the segment from p to q meets the triangle; the triangle's border and the segment's ends count.
+// Returns true if the segment from p to q and the triangle have a common point, including the triangle's border and the
+// segment's ends.
 bool segment_meets(const P3& p, const P3& q, const Triangle& t) {
   const int at_p = side_3d(t.corner[0], t.corner[1], t.corner[2], p),
             at_q = side_3d(t.corner[0], t.corner[1], t.corner[2], q);
@@ -107,7 +108,7 @@ bool cross(const Triangle& one, const Triangle& other) {
   return false;
 }
 
-// --- A uniform grid of cells, which finds triangles that lie near each other.
+// --- A uniform grid of cells, which finds triangles that are near each other.
 
 struct Box {
   P3 low, high;
@@ -147,8 +148,8 @@ class Cells {
 
   std::int64_t count() const { return std::ssize(first_) - 1; }
 
-  // Calls body for each pair of triangles of a cell whose bounding boxes overlap. A pair that shares several cells is
-  // passed in only one of them.
+  // Calls body for each pair of triangles in a cell whose bounding boxes overlap. A pair that is in several cells is
+  // passed for only one of them.
   template <class Body>
   void for_each_pair(std::int64_t cell, const Body& body) const {
     for (std::size_t i = first_[cell]; i < first_[cell + 1]; ++i)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the triangles of the default scene of a glTF 2.0 file: lists, strips and fans. Points and lines are skipped.
+// Reads the triangles of the default scene of a glTF 2.0 file: triangle lists, strips and fans. Points and lines are
+// skipped.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -28,14 +29,14 @@ std::string bytes_of_base64(std::string_view text) {
     else if (c >= 'a' && c <= 'z') digit = c - 'a' + 26;
     else if (c >= '0' && c <= '9') digit = c - '0' + 52;
     else if (c == '+' || c == '/') digit = c == '+' ? 62 : 63;
-    else break;  // "=" at the end, or no Base64: the bytes are too few then
+    else break;  // "=" at the end, or not Base64; the missing bytes are reported later
     word = word << 6 | static_cast<std::uint32_t>(digit);
     if ((bits += 6) >= 8) bytes += static_cast<char>(word >> (bits -= 8) & 255);
   }
   return bytes;
 }
 
-// Returns a text of a URI in which %20 and the like stand for characters.
+// Returns the text of a URI, with escapes such as %20 replaced by their characters.
 std::string decoded_uri(const std::string& uri) {
   const auto hex = [&](std::size_t i) {
     const std::string_view digits = "0123456789abcdef";
@@ -85,7 +86,7 @@ class GltfSurface {
  private:
   void place_mesh(const Triangles& triangles, const glm::dmat4& world_from_node) {
     soup_.check_triangles(soup_.triangles().size() + triangles.size());
-    // A mirrored mesh keeps its outside [glTF 2.0, 3.7.4].
+    // A mirroring transform reverses the order of a triangle's corners, so the outside stays outside [glTF 2.0, 3.7.4].
     const bool is_mirrored = glm::determinant(glm::dmat3(world_from_node)) < 0;
     for (const auto& triangle : triangles) {
       const int first = static_cast<int>(soup_.points().size());
@@ -151,7 +152,7 @@ class GltfSurface {
     const GltfDescription::View& view = gltf_.views[accessor.view];
     const std::string_view buffer = buffer_of(view.buffer);
     GltfElements elements{{}, accessor.count, view.stride > 0 ? view.stride : size, size};
-    // Each comparison keeps the numbers of the next so small that nothing overflows.
+    // Each comparison limits the numbers in the next one, so that none of them overflows.
     const bool fits =
         view.bytes <= buffer.size() && view.offset <= buffer.size() - view.bytes && accessor.offset <= view.bytes &&
         elements.stride >= size && (accessor.count <= 1 || elements.stride <= view.bytes) &&
@@ -199,8 +200,8 @@ class GltfSurface {
   const GltfDescription gltf_;
   const Path folder_;
   SurfaceSoup& soup_;
-  std::map<std::int64_t, Triangles> meshes_;     // those read so far, at their nodes' origins
-  std::map<std::int64_t, std::string> buffers_;  // those read so far from other files or from Base64
+  std::map<std::int64_t, Triangles> meshes_;     // meshes read so far, before their nodes' transforms
+  std::map<std::int64_t, std::string> buffers_;  // buffers read so far from other files or from Base64
   std::uint64_t loaded_bytes_ = 0;
 };
 }  // namespace

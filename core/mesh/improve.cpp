@@ -16,8 +16,8 @@ namespace {
 
 using Point = Eigen::Vector3d;
 
-// Badness (cosine of the smallest dihedral angle) above which a tet counts as flat: its smallest angle is below 6
-// degrees.
+// Badness (cosine of the smallest dihedral angle) of a tet with a dihedral angle of 6 degrees. A tet with a larger
+// badness counts as flat.
 const double kFlat = std::cos(6 * std::numbers::pi / 180);
 
 // Returns the badness of a tet: the cosine of its smallest dihedral angle, or 2 if its volume is not positive. A
@@ -34,8 +34,8 @@ double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::isfinite(worst) ? worst : 2;
 }
 
-// Upper limit on the distance by which a node of the skin leaves the surface that was fitted to the voxels, relative to
-// the mean length of the edges at the node.
+// Upper limit on the distance between a node of the skin and the surface that was fitted to the voxels, relative to the
+// mean length of the edges at the node.
 constexpr double kOffSkin = 0.05;
 
 constexpr int kAskEvery = 256;  // number of nodes (about 20 ms) between two checks for cancellation
@@ -77,7 +77,7 @@ class Improver {
   }
 
   // Moves the nodes of tets whose badness is above `enough`, until no move helps or `most` sweeps over the mesh are
-  // done. After the first sweep, tests only the tets around nodes that moved.
+  // done. After the first sweep, only the tets around moved nodes are tested.
   int sweeps(int most, double enough, double reach, Progress& progress) {
     std::vector<int> tets(mesh_.T.rows());
     std::iota(tets.begin(), tets.end(), 0);
@@ -101,7 +101,7 @@ class Improver {
     return moves;
   }
 
-  // Writes only the moved nodes back to the mesh, so that the positions of all others stay equal bit by bit.
+  // Writes only the moved nodes back to the mesh, so that the positions of all others stay equal, bit for bit.
   void write() {
     for (const int node : moved_) mesh_.V.row(node) = (turn_ * V_[node] + offset_).transpose();
   }
@@ -129,9 +129,9 @@ class Improver {
     list.erase(std::unique(list.begin(), list.end()), list.end());
   }
 
-  // Returns the position nearest to `there` to which the node may move: in its box, and at a node of the skin at most
-  // kOffSkin off its first position along the skin's normal. Returns nothing if the two limits exclude each other near
-  // `there`.
+  // Returns the position nearest to `there` to which the node may move: inside its box and, for a node of the skin, at
+  // most kOffSkin away from its first position along the skin's normal. Returns nothing if no position near `there`
+  // meets both limits.
   std::optional<Point> allowed(int node, Point there, double size) const {
     if (node >= net_.low.rows()) return there;
     const Point low = net_.low.row(node).transpose(), high = net_.high.row(node).transpose();
@@ -148,7 +148,7 @@ class Improver {
     return there;
   }
 
-  // Moves a node to the position with the least badness around it. Returns whether it moved.
+  // Moves a node to the position with the smallest badness around it. Returns true if the node moved.
   bool move(int node, double enough, double reach) {
     Point& place = V_[node];
     const Point start = place;
@@ -183,9 +183,9 @@ class Improver {
 
   TetMesh& mesh_;
   const LatticeNet& net_;
-  std::vector<int> first_, tet_;  // indices of the tets around node i: tet_[first_[i]] .. tet_[first_[i + 1] - 1]
+  std::vector<int> first_, tet_;  // the tets around node i are tet_[first_[i]] to tet_[first_[i + 1] - 1]
   std::vector<Point> V_;
-  std::unordered_map<int, Skin> skin_;  // by node of the surface at air
+  std::unordered_map<int, Skin> skin_;  // by node, for nodes of the surface at air
   std::vector<int> moved_;
   Eigen::Matrix3d turn_;
   Eigen::Vector3d offset_;
@@ -198,7 +198,7 @@ int improve(TetMesh& mesh, const LatticeNet& net, const ImproveSettings& setting
   Improver improver(mesh, net);
   const double enough = std::cos(settings.enough_degrees * std::numbers::pi / 180);
   int moves = 0;
-  // The flattest tets come first, since a node that has moved for one tet leaves less room for the next.
+  // Improves the flattest tets first, since a node that has moved for one tet can move less for the next.
   for (const double goal : {kFlat, enough}) moves += improver.sweeps(settings.sweeps, goal, 0.3, progress);
   improver.write();
   return moves;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Improves tets by moving their nodes [Freitag & Ollivier-Gooch, Tetrahedral mesh improvement using swapping and
-// smoothing, 1997]: each node of a flat tet moves to where the smallest dihedral angle around the node is largest.
-// Nodes of the surface stay in their boxes (LatticeNet::low, high), so that the surface still cannot cross itself, and
-// nodes of the skin stay close to the surface that was fitted to the voxels; other nodes move freely.
+// smoothing, 1997]: each node of a flat tet moves to the position that maximizes the smallest dihedral angle around the
+// node. Nodes of the surface stay in their boxes (LatticeNet::low, high), so that the surface still cannot cross
+// itself, and nodes of the skin stay close to the surface that was fitted to the voxels; other nodes move freely.
 #pragma once
 
 #include "core/mesh/lattice_net.h"
@@ -11,7 +11,7 @@
 namespace limber {
 
 struct ImproveSettings {
-  double enough_degrees = 10;  // tets whose smallest dihedral angle is larger stay unchanged
+  double enough_degrees = 10;  // tets whose smallest dihedral angle is larger are not changed
   int sweeps = 12;
 };
 

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 constexpr double kFurthest = 0.4;  // largest distance of a vertex from its cube's centre along each axis, voxels
-// Step lengths of one smoothing step: first towards the mean of the neighbours, then slightly further away from it,
-// since the body would shrink otherwise [Taubin, SIGGRAPH 1995]. The pass band is 0.1.
+// Step lengths of one smoothing step: first towards the mean of the neighbours, then slightly further back, since the
+// body would shrink otherwise [Taubin, SIGGRAPH 1995]. The pass band is 0.1.
 constexpr double kSteps[2] = {0.5, -0.5 / (1 - 0.5 * 0.1)};
 
 struct Quad {
@@ -46,8 +46,9 @@ struct Bordered {
   std::array<std::int64_t, 3> step;
 };
 
-// Returns whether the surface of one tissue passes an edge of the net twice. a, b, c, d are the labels of the four
-// voxels around that edge: the tissue then fills two diagonally opposite voxels and neither of the other two.
+// Returns true if the surface of one tissue passes an edge of the net twice. a, b, c, d are the labels of the four
+// voxels around that edge. The surface passes it twice if the tissue fills two diagonally opposite voxels and neither
+// of the others.
 bool passes_twice(Label a, Label b, Label c, Label d) {
   return (a == c && a != 0 && b != a && d != a) || (b == d && b != 0 && a != b && c != b);
 }
@@ -71,7 +72,7 @@ class Net {
     glm::ivec3 corner;
     int quad;
   };
-  // Returns the index of that voxel of the triangle's pair which has the label.
+  // Returns the index of that voxel of the triangle's pair of voxels which has the label.
   std::int64_t voxel_of(const Triangle& triangle, Label label) const {
     const Quad& quad = quads_[triangle.quad];
     return quad.below == label ? quad.voxel : quad.voxel + body_.step[quad.axis];
@@ -117,8 +118,8 @@ void Net::add_quad(const std::array<int, 4>& corner, std::int64_t voxel, int axi
   quads_.push_back(quad);
 }
 
-// Walks over the cubes layer by layer. Only the vertices of two layers are stored, since every quad joins vertices of
-// one layer or of two successive layers.
+// Visits the cubes layer by layer. Only the vertices of two layers are stored, since every quad joins vertices of one
+// layer or of two successive layers.
 void Net::build(Progress& progress) {
   const glm::ivec3 size = body_.size;
   const auto [sx, sy, sz] = body_.step;
@@ -216,8 +217,8 @@ class Sets {
 };
 
 LabelSurface Net::surface_of(Label label, const std::vector<int>& triangles) const {
-  // The edges of all triangles, sorted so that edges between the same two vertices follow each other. If there are four
-  // of these, the two that belong to the same voxel of the tissue follow each other.
+  // The edges of all triangles, sorted so that edges between the same two vertices are adjacent. If there are four of
+  // them, the two that belong to the same voxel of the tissue are adjacent.
   struct Side {
     int low, high;
     std::int64_t voxel;

@@ -15,7 +15,7 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kPushes = 12;  // how often one point may be pushed outwards; after that, samples become tissue
+constexpr int kPushes = 12;  // upper limit on pushes of one point outwards; after that, samples become tissue
 constexpr int kRounds = 90;
 constexpr std::int64_t kBricks = 64, kVoxels = 4096;  // bricks per task, voxels per task
 
@@ -37,7 +37,7 @@ std::vector<glm::ivec3> select(std::int64_t count, std::int64_t grain, const Vox
   return all;
 }
 
-// Returns the tissue voxels of those cells that contain air, in brick order. Only these voxels can lie outside the
+// Returns the tissue voxels in those cells that contain air, in brick order. Only these voxels can be outside the
 // surface.
 std::vector<glm::ivec3> find_near_air(const SurfaceNet& net, const SmallestCells& smallest,
                                       const TissueVoxels& tissue) {
@@ -59,7 +59,8 @@ std::vector<glm::ivec3> find_outside(const SurfaceNet& net, const SampleLattice&
       [&](const glm::ivec3& v) { return net.is_air(lattice.fine_from_voxel * glm::dvec3(v)); });
 }
 
-// Returns those of the voxels outside the surface that have no tissue voxel inside it within kNearVoxels.
+// Returns those voxels of `outside` (outside the surface) that have no tissue voxel inside the surface within
+// kNearVoxels.
 std::vector<glm::ivec3> find_missed(const SurfaceNet& net, const SampleLattice& lattice, const TissueVoxels& tissue,
                                     const Grid& grid, const std::vector<glm::ivec3>& outside) {
   const auto is_near_inside = [&](const glm::ivec3& v) {
@@ -82,7 +83,7 @@ struct Missed {
   glm::dvec3 place() const { return sum / double(count); }
 };
 
-// Returns the cells that have tissue voxels outside the surface, those with most of such voxels first.
+// Returns the cells that have tissue voxels outside the surface, the cells with the most such voxels first.
 std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const std::vector<glm::ivec3>& outside) {
   std::unordered_map<std::int64_t, std::size_t> place_of;
   std::vector<Missed> missed;
@@ -98,8 +99,8 @@ std::vector<Missed> cells_that_miss(const SampleLattice& lattice, const std::vec
   return missed;
 }
 
-// Returns a lattice edge for each cell that has tissue voxels outside the surface: of the edges between tissue and air,
-// the one whose point of the surface net is nearest to the mean of those voxels. Null if there is none.
+// Returns one lattice edge for each cell that has tissue voxels outside the surface: of the edges between tissue and
+// air, the one whose point of the surface net is nearest to the mean of these voxels. Null: there is no such edge.
 std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const std::vector<Missed>& missed) {
   std::vector<int> miss_at(net.nodes().size(), -1);
   for (std::size_t m = 0; m < missed.size(); ++m)
@@ -119,9 +120,10 @@ std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const 
   return nearest;
 }
 
-// Pushes outwards the net's point in the cell or its point on the edge: the one nearer to the cell's voxels outside the
-// surface, or the other point if the nearer one has reached its limit of pushes. Pushing only one keeps the surface
-// close to the voxels; late rounds push both points, to end sooner. Returns false if both have reached their limit.
+// Pushes one of two points of the net outwards: the point in the cell, or its point on the edge. Selects the one nearer
+// to the cell's voxels outside the surface, or the other one if the nearer one has reached its limit of pushes. Pushing
+// only one point keeps the surface close to the voxels; late rounds push both, to finish sooner. Returns false if both
+// have reached their limit.
 bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& miss, const SurfaceNet::Edge* edge,
           int round, Pushes& pushes) {
   const int node = net.node_of(miss.cell);
@@ -138,8 +140,9 @@ bool push(const SurfaceNet& net, const SampleLattice& lattice, const Missed& mis
   return first_can || pushes_second;
 }
 
-// Brings at least `to_gain` of the voxels outside the surface closer to being inside, starting with the cells that have
-// most of them: pushes points of the net outwards, or makes samples tissue. Returns whether any sample became tissue.
+// Moves the surface towards voxels outside it, for at least `to_gain` of these voxels, starting with the cells that
+// have most of them: pushes points of the net outwards, or makes samples tissue. Returns true if a sample became
+// tissue.
 bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<Missed>& missed, std::int64_t to_gain,
                int round, Pushes& pushes) {
   bool any_became = false;
@@ -205,7 +208,7 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
   const auto allowed = static_cast<std::int64_t>((1 - settings.least_near) * double(voxels.tissue.size()));
   auto net = std::make_unique<SurfaceNet>(lattice, voxel_at);
   std::vector<glm::ivec3> near_air, outside;
-  bool is_known = false;  // whether near_air was found for the current net
+  bool is_known = false;  // true: near_air was found for the current net
   for (int round = 0;; ++round) {
     progress.update("surface", 1 - 1 / (1 + 0.3 * (round + 1)));
     net->place(pushes);
@@ -213,7 +216,7 @@ LatticeNet lattice_net(const VoxelRegions& voxels, const LatticeNetSettings& set
       return find_missed(*net, lattice, voxels.tissue, voxels.grid, find_outside(*net, lattice, among));
     };
     if (round > 0) outside = missed(outside);
-    if (round == 0 || std::ssize(outside) <= allowed) {  // moved points may have left other voxels outside
+    if (round == 0 || std::ssize(outside) <= allowed) {  // other voxels may be outside after points have moved
       if (!std::exchange(is_known, true)) near_air = find_near_air(*net, smallest, voxels.tissue);
       outside = missed(near_air);
     }

@@ -2,11 +2,11 @@
 // Fits a surface net over a lattice (surface_net.h) to a body's voxels, and fills it with the lattice's tets.
 //
 // Every sample of the lattice has a region: soft tissue, one of the bones of a rig, or air. The net's points on lattice
-// edges lie at the border between the voxels of two regions, and the net encloses the tissue's volume. Some voxels lie
-// outside the surface, as many as the surface encloses air. Where tissue voxels lie further out than kNearVoxels,
-// nearby points of the net are pushed outwards. Where that is not enough, the samples around these voxels become
-// tissue, until the surface comes near them. Two bones never share a cell: between them is at least one cell of soft
-// tissue, so no node belongs to two bones.
+// edges are at the border between the voxels of two regions, and the net encloses the same volume as the tissue. So
+// some tissue voxels are outside the surface, as many as there are air voxels inside. If tissue voxels are further out
+// than kNearVoxels, nearby points of the net are pushed outwards. If that is not enough, the samples around these
+// voxels become tissue, until the surface is near the voxels. Two bones never share a cell: between them is at least
+// one cell of soft tissue, so no node belongs to two bones.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@
 
 namespace limber {
 
-// Distance, voxels, within which tissue outside the mesh must have tissue inside it. It then moves with the mesh's
-// border.
+// A tissue voxel outside the mesh must have a tissue voxel inside it within this distance, voxels. The voxel outside
+// then moves with the mesh's border.
 inline constexpr int kNearVoxels = 2;
 
 // The region of each tissue voxel: TetMesh::kSoft, or 1 + the index of the rig bone to which the voxel belongs.
@@ -33,9 +33,8 @@ struct LatticeNetSettings {
   // The distance between samples near the surface. It is increased if there would be more than 12 million samples.
   double spacing_mm = 8;
   std::vector<glm::dvec3> fine_around;  // positions of joints that bend, world, mm
-  double fine_radius_mm = 40;           // closer to these joints than this, samples are half as far apart
-  double least_near =
-      0.9995;  // share of the tissue voxels that must lie inside the surface or within kNearVoxels of it
+  double fine_radius_mm = 40;           // within this distance of these joints, samples are half as far apart
+  double least_near = 0.9995;  // share of the tissue voxels that must be inside the surface or within kNearVoxels of it
 };
 
 struct LatticeNet {
@@ -47,7 +46,7 @@ struct LatticeNet {
   AffineTransform world_from_lattice;
   double spacing_mm = 0;  // the spacing in use, which may be larger than requested
   double covered = 0;     // share of tissue voxels inside the surface
-  double near = 0;        // share of tissue voxels that lie inside the surface, or near voxels inside
+  double near = 0;        // share of tissue voxels inside the surface or within kNearVoxels of voxels inside
 };
 
 // Returns the surface net and its tets; both are empty for a body without voxels.

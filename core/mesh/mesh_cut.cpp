@@ -25,8 +25,8 @@ std::vector<Segment> plane_cut(const Eigen::MatrixX3d& V, const Eigen::MatrixX3i
     Segment line;
     int ends = 0;
     for (int i = 0; i < 3; ++i) {
-      // Interpolates an edge always from its smaller node, so that the lines of neighbouring faces end at exactly the
-      // same point.
+      // Always interpolates an edge from its node with the smaller index, so that the lines of neighbouring faces end
+      // at exactly the same point.
       const int a = std::min(F(f, i), F(f, (i + 1) % 3)), b = std::max(F(f, i), F(f, (i + 1) % 3));
       if ((height[a] < 0) == (height[b] < 0)) continue;
       const Eigen::RowVector3d p = V.row(a) + (V.row(b) - V.row(a)) * (height[a] / (height[a] - height[b]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Cuts the faces of a tet mesh with a plane: the resulting lines show the tets on a section through the body.
+// Intersects the faces of a tet mesh with a plane. The resulting lines show the tets on a section through the body.
 #pragma once
 
 #include <array>

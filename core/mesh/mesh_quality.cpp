@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kVolumeTolerance = 1e-9;  // largest error of a region's volume, as a share of the total volume
 
-// Fills in `covered` and `near`.
+// Computes MeshQuality::covered and MeshQuality::near.
 void measure_cover(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue, MeshQuality& quality) {
   quality.covered = quality.near = 1;
   if (tissue.size() == 0) return;
@@ -25,8 +25,8 @@ void measure_cover(const TetMesh& mesh, const Grid& grid, const TissueVoxels& ti
   const bool mirrored = glm::determinant(to_voxel.linear) < 0;
   std::vector<glm::dvec3> V(mesh.V.rows());
   for (std::size_t i = 0; i < V.size(); ++i) V[i] = to_voxel * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2));
-  // Lists the tets of each slice of voxels: each thread then fills whole slices, so that no two threads write to the
-  // same memory.
+  // Lists the tets of each slice of voxels, so that each thread can process whole slices and no two threads write to
+  // the same memory.
   std::vector<std::vector<int>> tets_of(grid.size.z);
   for (int tet = 0; tet < mesh.T.rows(); ++tet) {
     double low = 1e300, high = -1e300;
@@ -71,7 +71,7 @@ double total(const std::map<std::uint16_t, double>& volumes) {
   return sum;
 }
 
-// Returns whether a boundary is closed: its triangles run along each edge as often in one direction as in the other.
+// Returns true if a boundary is closed: its triangles pass each edge as often in one direction as in the other.
 bool is_closed(const Eigen::MatrixX3i& F) {
   std::vector<std::pair<std::int64_t, int>> passes;
   passes.reserve(F.size());

@@ -13,8 +13,8 @@ namespace limber {
 struct MeshQuality {
   double min_dihedral_degrees = 0;
   double share_below_5_degrees = 0;  // share of the tets whose smallest dihedral angle is below 5 degrees
-  double covered = 0;                // share of tissue voxels whose centre lies in a tet
-  double near = 0;                   // share of tissue voxels that are covered or have a covered one within kNearVoxels
+  double covered = 0;                // share of tissue voxels whose centre is in a tet
+  double near = 0;                   // share of tissue voxels that are covered or within kNearVoxels of a covered one
   double volume_ratio = 0;           // volume of the tets relative to that of the tissue voxels
 };
 
@@ -26,9 +26,9 @@ std::map<std::uint16_t, double> region_volumes(const TetMesh& mesh);
 //   V  node positions; the surface's nodes are its first rows
 std::map<std::uint16_t, double> enclosed_volumes(const RegionSurface& surface, const Eigen::MatrixX3d& V);
 
-// Returns a description of the mesh's first fault. It is empty if every tet is positively oriented, the boundary is
-// closed, no face belongs to more than two tets, and each region has its expected volume, to within 1e-9 of the total
-// volume.
+// Returns a description of the first fault of the mesh, or an empty string. There is no fault if every tet is
+// positively oriented, the boundary is closed, no face belongs to more than two tets, and each region has its expected
+// volume, to within 1e-9 of the total volume.
 std::string find_fault(const TetMesh& mesh, const std::map<std::uint16_t, double>& volumes);
 
 }  // namespace limber

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Meshes a body's tissue with tetrahedra: fits a surface net to the voxels, fills it with the lattice's own tets,
 // improves the flat ones, and checks the result. Filling with the lattice's tets needs no library and cannot fail.
-// TetGen may fill the same net instead; if TetGen fails, the result has the lattice's tets and a warning for the user.
+// TetGen can fill the same net instead; if TetGen fails, the result contains the lattice's tets and a warning for the
+// user.
 #pragma once
 
 #include <string>
@@ -20,7 +21,8 @@ struct MeshSettings {
   // Mesher::tetgen: the distance between the samples from which the surface is built.
   double spacing_mm = 8;
   Mesher mesher = Mesher::lattice;
-  std::vector<glm::dvec3> fine_around;  // joints that bend, world, mm; nodes near them are half as far apart
+  // Positions of joints that bend, world, mm; nodes near them are half as far apart.
+  std::vector<glm::dvec3> fine_around;
   double fine_radius_mm = 40;
   TetrahedralizeLimits limits = {};  // limits on TetGen's time and memory
 };
@@ -28,7 +30,7 @@ struct MeshSettings {
 struct TissueMesh {
   TetMesh mesh;                     // no tets for a body without voxels
   Mesher mesher = Mesher::lattice;  // the mesher that made the mesh
-  std::string warning;              // tells the user why the requested mesher was not used; empty if it was
+  std::string warning;              // message for the user: why the requested mesher was not used; empty if it was used
   double spacing_mm = 0;            // the spacing in use, which may be larger than requested
   double seconds = 0;
 };

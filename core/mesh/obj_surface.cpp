@@ -55,7 +55,7 @@ class ObjReader {
     soup_.add_point(p);
   }
 
-  // The vertices of a file are numbered from 1. Negative numbers count backwards; -1 is the last vertex so far.
+  // OBJ numbers the vertices of a file from 1. Negative numbers count backwards: -1 is the last vertex so far.
   void add_face(std::string_view line) {
     const auto count = static_cast<std::int64_t>(soup_.points().size());
     constexpr std::int64_t kMost = 3 * kMostSurfaceTriangles;
@@ -66,7 +66,7 @@ class ObjReader {
         soup_.refuse(in_quotes(word) + " stands where a face names a vertex", "correct the file");
       if (*vertex > last_) last_ = *vertex, line_of_last_ = line_;
       corners_.push_back(static_cast<int>(*vertex > 0 ? *vertex - 1 : count + *vertex));
-      soup_.check_triangles(corners_.size() - 1);  // before a face without end fills the memory
+      soup_.check_triangles(corners_.size() - 1);  // stops at an endless face before it fills the memory
     }
     if (corners_.size() < 3) soup_.refuse("a face has fewer than three corners", "correct the file");
     soup_.add_polygon(corners_);
@@ -74,10 +74,10 @@ class ObjReader {
 
   std::string_view rest_;
   SurfaceSoup& soup_;
-  std::string joined_;        // the lines of a statement that a backslash continues
-  std::vector<int> corners_;  // of the face that is being read
+  std::string joined_;        // a statement that backslashes continue over several lines, joined
+  std::vector<int> corners_;  // corners of the face that is being read
   std::int64_t line_ = 0;
-  std::int64_t last_ = 0, line_of_last_ = 0;  // the largest number of a vertex in a face, and where it stands
+  std::int64_t last_ = 0, line_of_last_ = 0;  // the largest vertex number in a face, and the line in which it occurs
 };
 }  // namespace
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads PLY [Turk, The PLY polygon file format, 1994]. Its header lists elements, each with a number of rows and with
-// properties, which are numbers or lists of numbers. Only x, y and z of "vertex" and the list "vertex_indices" (or
-// "vertex_index") of "face" are used; all the rest is skipped.
+// Reads PLY [Turk, The PLY polygon file format, 1994]. The header of a PLY file lists elements, each with a number of
+// rows and with properties, which are numbers or lists of numbers. Only x, y and z of "vertex" and the list
+// "vertex_indices" (or "vertex_index") of "face" are used; everything else is skipped.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -37,7 +37,7 @@ std::size_t size_of(PlyType type) {
 struct PlyProperty {
   std::string name;
   PlyType type;
-  std::optional<PlyType> count;  // the type of a list's length; none: a single number
+  std::optional<PlyType> count;  // type of the length of a list; none: the property is a single number
 };
 
 struct PlyElement {
@@ -129,7 +129,7 @@ class PlyReader {
   // ---- The rows.
 
   void read_element(const PlyElement& element) {
-    if (element.properties.empty()) return;  // its rows take no bytes, however many they are
+    if (element.properties.empty()) return;  // rows without properties take no bytes, whatever their number
     std::uint64_t row = 0;
     const bool is_known = element.name == "vertex" || element.name == "face";
     const std::string name = is_known ? element.name : in_quotes(element.name);
@@ -149,7 +149,7 @@ class PlyReader {
     soup_.place = [] { return std::string(); };
   }
 
-  // Returns the axis that each property of a vertex gives, or -1.
+  // Returns for each property of a vertex the axis of which it is the coordinate; -1: none.
   std::vector<int> axes_of(const PlyElement& element) const {
     std::vector<int> axes;
     int found = 0;
@@ -273,7 +273,7 @@ class PlyReader {
   PlyFormat format_ = PlyFormat::Ascii;
   std::vector<PlyElement> elements_;
   std::uint64_t vertices_ = 0;
-  std::vector<int> corners_;  // of the face that is being read
+  std::vector<int> corners_;  // corners of the face that is being read
 };
 }  // namespace
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
 
-// A number as the exact sum of at most N doubles whose bits do not overlap, from smallest to largest.
+// A number as the exact sum of at most N doubles whose bits do not overlap, in ascending order of magnitude.
 template <int N>
 struct Expansion {
   std::array<double, N> part;

@@ -11,16 +11,16 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kBorder = 3;   // width in cells of the air around the tissue, where samples may become tissue
-constexpr int kLargest = 4;  // largest cells deep inside, relative to the usual cell size
+constexpr int kBorder = 3;   // width in cells of the air border around the tissue, where samples may become tissue
+constexpr int kLargest = 4;  // upper limit on the size of cells deep inside, relative to the usual cell size
 constexpr std::int64_t kMostSamples = 12'000'000;
 
 struct Box {
   glm::dvec3 low{1e300}, high{-1e300};
 };
 
-// Returns the bounding box of whole tissue voxels, in voxel coordinates: it extends half a voxel beyond the outermost
-// centres.
+// Returns the bounding box of the tissue voxels in voxel coordinates. It includes the outermost voxels completely: it
+// extends half a voxel beyond their centres.
 Box extent_of(const TissueVoxels& tissue) {
   Box box;
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -78,7 +78,7 @@ void refine(SampleLattice& lattice, const LatticeNetSettings& settings) {
   });
 }
 
-// Joins eight cells of one size into one cell where they lie in one region and all cells that touch them have the same
+// Merges eight cells of one size into one cell if they are in one region and all cells that touch them have the same
 // size.
 void coarsen(SampleLattice& lattice, int size) {
   std::vector<glm::ivec3> deep;
@@ -102,14 +102,15 @@ void coarsen(SampleLattice& lattice, int size) {
 
 // The volumes of tissue and of each bone in the cube around each sample.
 struct Filling {
-  std::vector<float> tissue;                          // mm3 of any tissue, one per sample
-  std::vector<std::pair<std::uint64_t, float>> bone;  // (sample << 16 | region, mm3), sorted by that key
-  // [axis][i]: how many boxes count for a sample at coordinate i if all is tissue. Boxes are counted whole, so a cube
-  // of 2.6 voxels has two of them along an axis, or three.
+  std::vector<float> tissue;  // volume of all tissue around each sample, mm3
+  // Volume of each bone around each sample: (sample << 16 | region, mm3), sorted by key.
+  std::vector<std::pair<std::uint64_t, float>> bone;
+  // [axis][i]: number of boxes that count for a sample at coordinate i if everything is tissue. Boxes are counted
+  // whole, so a cube that is 2.6 boxes wide has two or three of them along the axis.
   std::vector<int> boxes[3];
-  float box = 0;  // mm3
+  float box = 0;  // volume of a box, mm3
 
-  // Returns the volume that counts for sample p if all around it is tissue, mm3.
+  // Returns the volume that counts for sample p if everything around it is tissue, mm3.
   float full(const glm::ivec3& p) const {
     return box * static_cast<float>(boxes[0][p.x] * boxes[1][p.y] * boxes[2][p.z]);
   }
@@ -129,10 +130,11 @@ int nearest_sample(double fine, int stride) {
   return static_cast<int>(std::floor(fine / double(stride) + 0.5)) * stride;
 }
 
-// Returns the place of the centre of piece i of `pieces` in a voxel, as a share of the voxel, from its centre.
+// Returns the offset of the centre of piece i of `pieces` from the voxel's centre along one axis, as a share of the
+// voxel.
 double centre_of_piece(int i, int pieces) { return (i + 0.5) / pieces - 0.5; }
 
-// Returns Filling::boxes of one axis. The grid is taken to go on beyond its faces.
+// Returns Filling::boxes for one axis, as if the grid continued beyond its border.
 std::vector<int> count_boxes(const SampleLattice& lattice, const Grid& grid, int axis, int pieces, int stride) {
   std::vector<int> boxes(lattice.size[axis], 0);
   const double voxel = lattice.fine_from_voxel.linear[axis][axis], offset = lattice.fine_from_voxel.offset[axis];
@@ -189,13 +191,13 @@ bool is_multiple(const glm::ivec3& p, int size) { return ((p.x | p.y | p.z) & (s
 
 struct Candidate {
   float share;   // share of the cube around the sample that the bone fills, [0, 1]
-  float mm3;     // volume of the bone there
-  float volume;  // of the cube, mm3
+  float mm3;     // volume of the bone there, mm3
+  float volume;  // volume of the cube, mm3
   std::int64_t at;
   std::uint16_t region;
 };
 
-// Gives each bone the samples of which it fills the largest share, so many that their volume matches the bone's.
+// Assigns to each bone the samples of which the bone fills the largest share, until their volume matches the bone's.
 // Samples of two bones never share a cell.
 void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
   std::map<std::uint16_t, std::vector<Candidate>> by_bone;
@@ -287,8 +289,8 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
   refine(lattice, settings);
   lattice.label.assign(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z, kAir);
 
-  // Computes the volumes around samples: first with the usual spacing, then with the half spacing near joints. Samples
-  // where cells of both sizes meet use the half spacing.
+  // Computes the volumes around samples: first with the usual spacing, then with half of it near joints. Samples
+  // between cells of both sizes use the half spacing.
   std::vector<Candidate> bones;
   for (const int stride : {lattice.usual, 1}) {
     if (stride < lattice.usual && std::count(lattice.cell_size.begin(), lattice.cell_size.end(), stride) == 0) break;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A lattice of samples over a body, each with its region: the input of the surface net (surface_net.h). Cells have the
-// requested size, half of it around joints, and two or four times as much deep inside a region, where small cells would
-// gain nothing. Sizes of cells that touch differ by a factor of two at most. Coordinates are counted in steps; a step
-// is the edge of the smallest cells.
+// A lattice of samples over a body, each with its region. It is the input of the surface net (surface_net.h). Cells
+// have the requested size, half of it around joints, and two or four times it deep inside a region, where small cells
+// would bring no benefit. The sizes of cells that touch differ by a factor of two at most. Coordinates are in steps; a
+// step is the edge of the smallest cells.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct SampleLattice {
   glm::ivec3 size{0};                   // number of sample positions along each axis
   double step = 0;                      // edge of the smallest cells, mm
   double spacing_mm = 0;                // distance between samples, except around joints and deep inside, mm
-  int usual = 1;                        // size in steps of cells with that distance between samples
+  int usual = 1;                        // size in steps of cells whose samples are spacing_mm apart
   std::vector<std::uint8_t> cell_size;  // size in steps of the cell around each smallest cell, by its lowest corner
   std::vector<std::uint16_t> label;     // #samples: the sample's region; kAir also for positions without a sample
   AffineTransform world_from_lattice;   // in mm; rotates and translates only
@@ -38,7 +38,7 @@ struct SampleLattice {
     return {smallest & ~(s - 1), s};
   }
 
-  // Returns whether there is a sample at p: there is one if p is a corner of a cell.
+  // Returns true if there is a sample at p, which means that p is a corner of a cell.
   bool has_sample(const glm::ivec3& p) const;
   // Returns the cells around sample p, one for each octant; a large cell may occur in several octants.
   std::array<Cell, 8> cells_around(const glm::ivec3& p) const;
@@ -48,7 +48,7 @@ struct SampleLattice {
   std::array<Cell, 4> cells_around_edge(const glm::ivec3& p, int axis) const;
 };
 
-// Returns, for a voxel, the index of the smallest cell around its centre in the lattice's arrays.
+// Finds, for a voxel, the index in the lattice's arrays of the smallest cell around the voxel's centre.
 class SmallestCells {
  public:
   SmallestCells(const SampleLattice& lattice, const Grid& grid);
@@ -57,11 +57,12 @@ class SmallestCells {
   }
 
  private:
-  std::vector<std::int64_t> along_[3];  // [axis][i]: what coordinate i of a voxel along the axis adds to the index
+  // [axis][i]: the part of the index that comes from coordinate i of a voxel along the axis.
+  std::vector<std::int64_t> along_[3];
 };
 
-// Places samples, spaced as the settings say, over the voxels and a border of air around them. A sample is tissue if
-// voxels fill half of the cube around the sample whose edge is the spacing. The body must have voxels.
+// Places samples over the voxels and over a border of air around them, with the spacing of the settings. A sample is
+// tissue if voxels fill at least half of the cube around it whose edge is the spacing. The body must have voxels.
 SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings);
 
 }  // namespace limber

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads STL. A binary file is a header of 80 bytes, the number of triangles, and 50 bytes for each: normal, three
-// corners, and two bytes that have no meaning. An ASCII file starts with the word "solid", as the header of a binary
-// file may, too. Normals are not read: the order of the corners says the same.
+// Reads STL. A binary file consists of a header of 80 bytes, the number of triangles, and 50 bytes for each triangle:
+// normal, three corners, and two bytes that have no meaning. An ASCII file starts with the word "solid"; the header of
+// a binary file may start with it too. Normals are not read, since the order of the corners contains the same
+// information.
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -44,7 +44,7 @@ void blur(Field& field) {
 }
 
 // Computes the mean of the points where the surface crosses the cube's edges, relative to the cube's lowest corner.
-// Returns false if all corners lie on one side of the surface.
+// Returns false if all corners are on one side of the surface.
 bool crossing(const Field& field, const glm::ivec3& cube, glm::dvec3& place) {
   float share[8];
   int inside = 0;

@@ -11,7 +11,8 @@
 namespace limber {
 
 namespace {
-// A triangle whose height is below this part of its longest side has no direction that could be computed.
+// A triangle whose height is below this share of its longest side counts as having no area: its normal cannot be
+// computed.
 constexpr double kLeastHeight = 1e-12;
 
 struct PointKey {
@@ -25,8 +26,8 @@ bool comes_before(const PointKey& a, const PointKey& b) {
   return a.index < b.index;
 }
 
-// Returns for each point the first point at the same position. Sorts instead of hashing, because no choice of points
-// makes sorting slow.
+// Returns for each point the first point at the same position. Uses sorting and not hashing, because no choice of
+// points makes sorting slow.
 std::vector<int> first_equal(const std::vector<glm::dvec3>& points) {
   std::vector<PointKey> keys;
   keys.reserve(points.size());

@@ -4,13 +4,13 @@
 //   .obj          the vertices and faces of all groups
 //   .ply          ASCII and binary of both byte orders; other elements and properties are skipped
 //   .gltf, .glb   all meshes of the default scene, placed by their nodes; skins and morph targets are not applied
-// STL, OBJ and PLY say neither unit nor axes: their numbers are taken as world (LPS), mm, as
-// core/export/surface_files.h writes them. glTF's metres with Y up are converted to these. Polygons are split into fans
-// of triangles. Corners at equal positions become one vertex, since STL has no other way to say that triangles are
+// STL, OBJ and PLY contain neither unit nor axes: their numbers are read as world coordinates (LPS) in mm, as written
+// by core/export/surface_files.h. glTF's metres with Y up are converted to these. Polygons are split into fans of
+// triangles. Corners at equal positions become one vertex, since STL has no other way to say that triangles are
 // neighbours. Triangles without area, and vertices that no triangle uses, are left out.
 //
-// Files are not trusted. No count in a file leads to more memory than the bytes of the file justify, and files that
-// a .gltf names are read only from its own folder and the folders below.
+// Files are not trusted. No count in a file makes the reader use more memory than the bytes of the file justify, and
+// files that a .gltf names are read only from its own folder and the folders below.
 #pragma once
 
 #include <string>
@@ -21,8 +21,8 @@
 namespace limber {
 
 constexpr std::size_t kMostSurfaceTriangles = 2'000'000;
-constexpr std::uint64_t kMostSurfaceBytes = std::uint64_t{1} << 30;  // 2 million triangles in ASCII STL take about half
-constexpr double kFarthestSurfacePoint = 1e6;                        // mm along each axis: a kilometre
+constexpr std::uint64_t kMostSurfaceBytes = std::uint64_t{1} << 30;  // 1 GiB; ASCII STL needs about half
+constexpr double kFarthestSurfacePoint = 1e6;                        // 1 km: limit on each coordinate, mm
 constexpr const char* kSurfaceFileEndings = ".stl, .obj, .ply, .glb or .gltf";
 
 // Throws Error if the file cannot be read, is damaged, has no triangle with an area, has more than
@@ -30,7 +30,9 @@ constexpr const char* kSurfaceFileEndings = ".stl, .obj, .ply, .glb or .gltf";
 TriangleMesh read_surface(const Path& path);
 
 // Parses the bytes of a file.
-//   path  names the format by its extension, the file in error messages, and the folder of files that a .gltf names
+//   path  path of the file: gives the format by its extension, the name for error messages, and the folder in which
+//   files
+//         that a .gltf names are searched
 TriangleMesh parse_surface(const std::string& bytes, const Path& path);
 
 }  // namespace limber

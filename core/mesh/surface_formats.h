@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The readers of surface files, one for each format, and the triangles that they collect. surface_file.h says what the
-// formats are; this header is for its source and theirs.
+// The readers of surface files, one for each format, and the class that collects their triangles. surface_file.h
+// describes the formats. Only surface_file.cpp and the readers include this header.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@
 namespace limber {
 
 // Collects the points and triangles of a file, at most kMostSurfaceTriangles triangles and three times as many points.
-// A point may be added before it is known whether a triangle uses it, and several points may be at one position.
+// A point may be added before it is known whether a triangle uses it, and several points may be at the same position.
 class SurfaceSoup {
  public:
   explicit SurfaceSoup(std::string file) : file_(std::move(file)) {}
@@ -26,10 +26,10 @@ class SurfaceSoup {
 
   [[noreturn]] void refuse(const std::string& what, const std::string& what_to_do) const;
 
-  void add_point(const glm::dvec3& p);            // mm; refuses a point that is not finite or too far away
+  void add_point(const glm::dvec3& p);            // in mm; throws Error for a point that is not finite or too far away
   void add_triangle(const glm::ivec3& f);         // indices of points, which may be added later
   void add_polygon(std::span<const int> f);       // splits a polygon with three or more corners into a fan of triangles
-  void check_triangles(std::size_t count) const;  // refuses `count` triangles if they are too many
+  void check_triangles(std::size_t count) const;  // throws Error if `count` triangles are too many
 
   const std::vector<glm::dvec3>& points() const { return points_; }
   const std::vector<glm::ivec3>& triangles() const { return triangles_; }
@@ -51,11 +51,11 @@ inline std::string_view next_word(std::string_view& rest) {
   return word;
 }
 
-// Each reader adds the triangles of a file with these bytes. All indices of triangles are points at the end.
+// Each reader parses the bytes of a file and adds its triangles. At the end, every index of a triangle must be a point.
 void read_stl(const std::string& bytes, SurfaceSoup& soup);
 void read_obj(const std::string& bytes, SurfaceSoup& soup);
 void read_ply(const std::string& bytes, SurfaceSoup& soup);
-//   folder  where the files are that a .gltf names
+//   folder  folder in which files that a .gltf names are searched
 void read_gltf(const std::string& bytes, bool is_binary, const Path& folder, SurfaceSoup& soup);
 
 }  // namespace limber

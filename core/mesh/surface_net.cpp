@@ -9,14 +9,13 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-// Least distance of a point from the ends of its cell, face or edge, as a share of their size.
+// Smallest distance of a point from the borders of its cell, face or edge, as a share of their size.
 constexpr double kMargin = 0.1;
 // Distance by which one push moves a point outwards, as a share of the size of its cell or edge.
 constexpr double kPushShare = 0.04;
 
-// Returns the position along an edge, in [0, 1], where one region ends and the other begins. Between tissue and air
-// this is where the outermost tissue ends. Between two tissues, this is the position with the fewest samples on the
-// wrong side.
+// Returns the position along an edge, in [0, 1], of the border between two regions. Between tissue and air this is the
+// end of the outermost tissue. Between two tissues, this is the position with the fewest samples on the wrong side.
 double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axis, int length, std::uint16_t first,
                     std::uint16_t second) {
   const int steps = std::clamp(static_cast<int>(std::ceil(2 * length / voxel_at.voxel_along(axis))), 4, 64);
@@ -74,8 +73,8 @@ SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at
   for (const Node& node : nodes_) fitted_.push_back(node.place);
 }
 
-// Calls body(from, at, axis, length, first, second) for each lattice edge with tissue at one end or both. `at` is the
-// index of its first sample; `first` and `second` are the regions at its ends.
+// Calls body(from, at, axis, length, first, second) for each lattice edge with tissue at one or both ends. `at` is the
+// index of the edge's first sample; `first` and `second` are the regions at its two ends.
 template <class Body>
 void SurfaceNet::for_each_edge(const Body& body) const {
   const std::int64_t strides[3] = {1, lattice_.size.x, std::int64_t{lattice_.size.x} * lattice_.size.y};
@@ -147,10 +146,10 @@ void SurfaceNet::number_cells() {
 }
 
 // Returns the key in face_node_ of a face at a lattice edge: the face between the cell in `slot` and the cell in the
-// next slot around the edge. It is a face of the smaller of the two cells, whose edge is `size`.
+// next slot around the edge. The face belongs to the smaller of the two cells, whose edge is `size`.
 std::int64_t SurfaceNet::face_between(const glm::ivec3& from, int axis, int slot, int size) const {
-  // Slots 0 to 3 lie at (-,-), (+,-), (+,+), (-,+) along the other two axes u and v; the faces after them lie at -v,
-  // +u, +v, -u.
+  // Slots 0 to 3 are at (-,-), (+,-), (+,+), (-,+) along the other two axes u and v. The faces after slots 0 to 3 are
+  // at -v, +u, +v, -u.
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   glm::ivec3 corner = from;
   if (slot == 0) corner[v] -= size;
@@ -229,8 +228,8 @@ void SurfaceNet::start_at_borders() {
 
 namespace {
 
-// Returns the distance along `outwards` from a position to the nearest border between tissue and air, in lattice
-// steps, negative where the position is in air; nothing if no border is closer than `reach`.
+// Returns the distance along `outwards` from a position to the nearest border between tissue and air, in lattice steps;
+// negative if the position is in air. Returns nothing if no border is closer than `reach`.
 std::optional<double> distance_to_skin(const VoxelLookup& voxel_at, const glm::dvec3& place, const glm::dvec3& outwards,
                                        double reach) {
   const double step = 0.5 * voxel_at.shortest_voxel();
@@ -241,10 +240,11 @@ std::optional<double> distance_to_skin(const VoxelLookup& voxel_at, const glm::d
   return std::nullopt;
 }
 
-// Returns the shift of a node that moves it by `distance` along `normal`, for a node that may move only where its box
-// is wide. A node whose box is narrow along the normal moves less far.
+// Returns the shift of a node by which it moves `distance` along `normal`. Along axes in which the node's box has no
+// width, the node does not move; if the normal is nearly along such axes, it moves less far.
 glm::dvec3 shift_in_box(const SurfaceNet::Node& node, const glm::dvec3& normal, double distance) {
-  constexpr double kSteepest = 0.3;  // least component of the normal along which a node moves the whole distance
+  // If the movable part of the normal is shorter, the node moves less than the distance.
+  constexpr double kSteepest = 0.3;
   glm::dvec3 along = normal;
   for (int i = 0; i < 3; ++i)
     if (node.low[i] == node.high[i]) along[i] = 0;
@@ -256,9 +256,9 @@ glm::dvec3 shift_in_box(const SurfaceNet::Node& node, const glm::dvec3& normal, 
 
 void SurfaceNet::shift_to_skin(const VoxelLookup& voxel_at) {
   constexpr int kRounds = 6;
-  constexpr double kReach = 0.5;  // of a cell's size: a border further away belongs to another part of the body
+  constexpr double kReach = 0.5;  // share of a cell's size; a border further away belongs to another part of the body
   struct Fit {
-    glm::dvec3 normal{0};  // sum of the triangles' normals, each as long as twice the triangle's area
+    glm::dvec3 normal{0};  // sum of the triangles' normals; the length of each is twice the triangle's area
     double gap = 0, weight = 0;
   };
   std::vector<Fit> fits;
@@ -315,8 +315,8 @@ void SurfaceNet::place(const Pushes& pushes) {
   }
 }
 
-// Returns where the surface crosses the face between two cells: on the line between the two cells' vertices, or at the
-// face's own node if the cells differ in size. Returns nothing if the surface does not cross the face.
+// Returns the point where the surface crosses the face between two cells: on the line between the two cells' vertices
+// or, if the cells differ in size, at the face's own node. Returns nothing if the surface does not cross the face.
 std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cell& other, const glm::ivec3& corner,
                                                      int axis) const {
   if (cell.size != other.size) {
@@ -330,8 +330,8 @@ std::optional<glm::dvec3> SurfaceNet::middle_of_face(const Cell& cell, const Cel
 }
 
 // Returns the region at a position on a face. The borders between regions run across the face from its middle to the
-// points on its edges. So the region is that of the face's rim where the ray from the middle through the position meets
-// it.
+// points on its edges. So the region is the one at the point where the ray from the middle through the position meets
+// the face's edge.
 std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dvec3& place, const glm::ivec3& corner,
                                          int axis, int size) const {
   const glm::dvec3 along = place - middle;
@@ -344,11 +344,11 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
   }
   glm::ivec3 from = corner;
   if (along[rim_axis] > 0) from[rim_axis] += size;
-  const int w = 3 - axis - rim_axis;  // the axis along that side of the rim
+  const int w = 3 - axis - rim_axis;  // axis along that side of the face's rim
   const double at = reach < 1e300 ? middle[w] + along[w] * reach : middle[w];
   const int length = size > 1
                          ? lattice_.edge_length(from, w)
-                         : 1;  // length of the rim's side, or of its first half where the neighbouring cell is smaller
+                         : 1;  // length of the rim's side, or of its first half if the neighbouring cell is smaller
   if (length < size && at >= from[w] + length) from[w] += length;
   const int node = edge_node_[w][lattice_.index(from)];
   if (node < 0 || at < nodes_[node].place[w]) return lattice_.at(from);

@@ -5,14 +5,14 @@
 //
 // A cell with samples of two regions gets one vertex strictly inside it. For every lattice edge between two regions, a
 // fan of triangles around a point of the edge joins the vertices of the cells around it. Inside a cell all triangles
-// meet at its vertex and form cones, so none can cross another wherever the vertices lie. Where cells of two sizes
-// meet, the fan also passes a point of the face between them, so that the surface has no crack.
+// meet at the cell's vertex and form cones, so they cannot cross each other, whatever the positions of the vertices.
+// Between cells of two sizes, the fan also includes a point of the face between them, so that the surface has no crack.
 //
-// Around every lattice edge, each two neighbouring cells give one tet: it joins the edge's two ends to the vertices of
+// Around every lattice edge, every two neighbouring cells give one tet: it joins the edge's two ends to the vertices of
 // these cells. The vertex of a cell with only one region is its centre. Away from the surface these tets are those of
-// the body-centred cubic lattice [as in Labelle & Shewchuk, Isosurface stuffing, SIGGRAPH 2007]. Where the surface
-// crosses the edge, the tet is split in two at the crossing point. Every tet is positively oriented wherever the
-// vertices lie in their cells, so this cannot fail.
+// the body-centred cubic lattice [as in Labelle & Shewchuk, Isosurface stuffing, SIGGRAPH 2007]. If the surface crosses
+// the edge, the tet is split in two at the crossing point. Every tet is positively oriented for all positions of the
+// vertices in their cells, so this cannot fail.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ class VoxelLookup {
   // Splits the line of `length` that begins at `from` along `axis` into `count` equal intervals, and writes the region
   // at the centre of each.
   void along(const glm::dvec3& from, int axis, int length, int count, std::uint16_t* regions) const;
-  // Returns whether the voxel around a position is air.
+  // Returns true if the voxel around a position is air.
   bool is_air(const glm::dvec3& place) const {
     const glm::ivec3 v(glm::floor((place - offset_) / scale_ + 0.5));
     return !voxels_.grid.contains(v) || voxels_.tissue.index_of(v) < 0;
@@ -44,14 +44,14 @@ class VoxelLookup {
   glm::dvec3 offset_, scale_;
 };
 
-// How many times each point of the net was pushed outwards. `cell` has one entry for the point in each cell;
+// Number of times that each point of the net was pushed outwards. `cell` has one entry for the point in each cell;
 // `edge[axis]` has one for the point on the lattice edge that begins at each sample.
 struct Pushes {
   std::vector<std::uint8_t> cell, edge[3];
   explicit Pushes(std::size_t samples);
 };
 
-// The surface net. Coordinates are counted in steps of the lattice.
+// The surface net. Coordinates are in steps of the lattice.
 class SurfaceNet {
  public:
   using Cell = SampleLattice::Cell;
@@ -62,15 +62,15 @@ class SurfaceNet {
     glm::ivec3 from;
     int axis, length, node;
     std::uint16_t first, second;
-    float border;  // position along the edge, in [0, 1], where region `first` ends
+    float border;  // position along the edge, [0, 1], of the border between `first` and `second`
     int cell[4];   // nodes of the cells around the edge, counter-clockwise seen from its end; large cells occur twice
     int face[4];   // node of the face between cells i and i + 1; -1: both have the same size
   };
 
-  // Numbers the nodes and fits them to the voxels: points on lattice edges lie at the border between the edge's
-  // regions, points of cells and faces in the middle of the edge points around them. Then all points at air move along
-  // the surface's normal until, around each of them, as much tissue lies outside the surface as air lies inside. So a
-  // coarse surface has the volume of the voxels, although its corners lie outside a convex body.
+  // Numbers the nodes and fits them to the voxels: points on lattice edges are at the border between the edge's
+  // regions, points of cells and faces in the middle of the edge points around them. Then all points next to air move
+  // along the surface's normal until, around each of them, as much tissue is outside the surface as air is inside. So a
+  // coarse surface has the volume of the voxels, although its corners are outside a convex body.
   SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at);
   // Moves each point from its fitted position outwards by its number of pushes.
   void place(const Pushes& pushes);
@@ -83,16 +83,17 @@ class SurfaceNet {
 
   // Returns the region at a position.
   std::uint16_t region_at(const glm::dvec3& place) const;
-  // Returns whether a position is in air, which takes less time than region_at.
+  // Returns true if a position is in air; faster than region_at().
   bool is_air(const glm::dvec3& place) const {
     const Holds holds = holds_[lattice_.index(smallest_at(place))];
     return holds == Holds::both ? region_at(place) == RegionSurface::kAir : holds == Holds::air;
   }
-  // Returns whether there is air in the cell that contains a given smallest cell.
+  // Returns true if there is air in the cell that contains a given smallest cell.
   //   smallest  index of the smallest cell's lowest corner
   bool is_near_air(std::int64_t smallest) const { return holds_[smallest] != Holds::tissue; }
 
-  // Calls triangle(a, b, c, edge) for each triangle around each lattice edge. Its front faces the edge's far end.
+  // Calls triangle(a, b, c, edge) for each triangle around each lattice edge. The triangle's front faces the edge's far
+  // end.
   template <class Triangle>
   void for_each_triangle(const Triangle& triangle) const {
     for (const Edge& edge : edges_)

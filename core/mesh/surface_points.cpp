@@ -48,8 +48,8 @@ Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double
 
 namespace {
 
-// A run of adjacent cells along x that are all filled or all empty. Following `piece` from run to run ends at the first
-// run of the connected component (union-find).
+// A run of adjacent cells along x that are all filled or all empty. `piece` is the index of another run of the same
+// connected component; following it repeatedly leads to the component's first run (union-find).
 struct Run {
   int begin = 0, end = 0;
   bool filled = false;
@@ -97,7 +97,7 @@ void close_body(Occupancy& body) {
   }
 
   std::vector<std::int64_t> cells(runs.size(), 0);
-  std::vector<std::uint8_t> open(runs.size(), 0);  // whether each component reaches the grid's border
+  std::vector<std::uint8_t> open(runs.size(), 0);  // 1 for each component that reaches the grid's border
   for (std::int64_t row = 0; row < rows; ++row) {
     const std::int64_t y = row % size.y, z = row / size.y;
     const bool edge = y == 0 || y + 1 == size.y || z == 0 || z + 1 == size.z;

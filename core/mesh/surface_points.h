@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Samples the surface of selected tissue in a label volume as points with outward normals, and finds the nearest of
 // such points. The volume is first reduced to cells of about equal size, each with the share that the tissue fills.
-// Points lie between cell centres where that share passes one half, so that they do not depend on the voxels' shape.
-// Where the border of the grid cuts tissue off there is no surface.
+// Points are between cell centres where this share is one half, so that they do not depend on the voxels' shape. There
+// is no surface where the border of the grid cuts tissue off.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,7 @@ struct Occupancy {
 };
 
 // Reduces a volume to larger cells, each with the share of its volume that tissue fills.
-//   labels   one byte per label, not 0 for labels that count as tissue
+//   labels   one byte per label: not 0 if the label counts as tissue
 //   spacing  size of a cell along each axis, mm; rounded to a whole number of voxels, at least one
 Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double spacing);
 
@@ -30,8 +30,8 @@ Occupancy occupancy_of(const LabelVolume& volume, const LabelSet& labels, double
 // of the largest component.
 void close_body(Occupancy& body);
 
-// Returns the same body in larger cells of about `spacing` mm, each a whole number of cells of `fine`. Where the last
-// cells extend beyond the grid of `fine`, they count as empty there.
+// Returns the same body in larger cells of about `spacing` mm, each a whole number of cells of `fine`. The part of the
+// last cells that extends beyond the grid of `fine` counts as empty.
 Occupancy coarsened(const Occupancy& fine, double spacing);
 
 struct SurfacePoint {
@@ -43,11 +43,12 @@ std::vector<SurfacePoint> surface_points(const Occupancy& occupancy);
 // Keeps the first point in each cube of a grid with cubes of `step` mm, and returns these points.
 std::vector<SurfacePoint> thinned(const std::vector<SurfacePoint>& points, double step);
 
-// Finds nearest points by a k-d tree. Of points at the same distance, it returns the one with the smaller index.
+// Finds nearest points by a k-d tree. Of several points at the same distance, the one with the smallest index is
+// returned.
 class PointTree {
  public:
   explicit PointTree(const std::vector<SurfacePoint>& points);
-  // Returns the index of the nearest point that is closer than `reach` mm and whose normal lies within 60 degrees of
+  // Returns the index of the nearest point that is closer than `reach` mm and whose normal is within 60 degrees of
   // `normal` (any normal if `normal` is zero); -1: none.
   int nearest(const glm::dvec3& place, const glm::dvec3& normal, double reach) const;
 

@@ -15,8 +15,9 @@
 namespace limber {
 
 namespace {
-constexpr double kLeastExtent = 0.001, kMostExtent = 1e6;  // mm
-constexpr int kLeastSides = 32;                            // of a circle: its polygon lacks 0.6 % of the area
+constexpr double kLeastExtent = 0.001, kMostExtent = 1e6;  // limits on the sizes of a shape, mm
+// Sides of a circle's polygon; with 32 its area is 0.6 % too small.
+constexpr int kLeastSides = 32;
 
 void check_extent(const char* what, double extent) {
   if (!(extent >= kLeastExtent && extent <= kMostExtent))
@@ -24,8 +25,9 @@ void check_extent(const char* what, double extent) {
                 "take a value from 0.001 mm to 1 000 000 mm");
 }
 
-// Returns the side of the squares that are halved into triangles: their diagonals are the longest edges.
-//   triangles  returns the number of triangles for a side
+// Returns the side of the squares that are split into two triangles. The diagonals of the squares are the longest
+// edges.
+//   triangles  returns the number of triangles for a given side
 double side_for(double extent, const std::function<std::int64_t(double)>& triangles) {
   double side = std::min(extent / 10, kLongestShapeEdge) / std::numbers::sqrt2;
   while (triangles(side) > static_cast<std::int64_t>(kMostShapeTriangles)) side *= 1.02;
@@ -33,17 +35,18 @@ double side_for(double extent, const std::function<std::int64_t(double)>& triang
 }
 
 std::int64_t parts(double extent, double side) {
-  // A quotient that rounding has put above a whole number is that number.
+  // Subtracts 1e-9 so that a quotient that is a whole number is not rounded up because of a rounding error.
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(extent / side - 1e-9)));
 }
 
-// ---- Box and plane: faces of a lattice of count.x by count.y by count.z cells.
+// ---- Box and plane: faces of a lattice of count.x by count.y by count.z cells
 
 class LatticeFaces {
  public:
   LatticeFaces(const glm::dvec3& size, const glm::i64vec3& count) : size_(size), count_(count) {}
 
-  // Adds the face of the lattice that is across `axis`, at its end (outside: + axis) or its start (outside: - axis).
+  // Adds the face of the lattice perpendicular to `axis`: at its end (outside towards + axis) or at its start (towards
+  // - axis).
   void add_face(int axis, bool at_end) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     for (std::int64_t i = 0; i < count_[u]; ++i)
@@ -67,7 +70,7 @@ class LatticeFaces {
   int vertex(const glm::i64vec3& at) {
     const std::int64_t key = (at.x * (count_.y + 1) + at.y) * (count_.z + 1) + at.z;
     const auto [found, is_new] = vertices_.try_emplace(key, static_cast<int>(mesh_.V.size()));
-    // (at + at - count) / count is exactly opposite at opposite sides.
+    // (at + at - count) / count has exactly opposite values at opposite sides.
     if (is_new) mesh_.V.push_back(size_ * 0.5 * glm::dvec3(at + at - count_) / glm::dvec3(count_));
     return found->second;
   }
@@ -78,19 +81,20 @@ class LatticeFaces {
   std::unordered_map<std::int64_t, int> vertices_;
 };
 
-// ---- Cylinder: circles, each joined to the next one.
+// ---- Cylinder: circles, each joined to the next one
 
 struct Circle {
   double radius, z;
   int sides;  // number of vertices; 1 for the middle of an end
 };
 
-// Joins circle a to circle b, which are those of vertices [a, a + na) and [b, b + nb). Looking along a circle, towards
-// growing numbers, and with b above a, the side to the right is outside.
+// Joins circle a, with the vertices [a, a + na), to circle b, with the vertices [b, b + nb). Seen along a circle in the
+// direction of ascending numbers, and with b above a, the outside is on the right.
 void join_circles(int a, int na, int b, int nb, std::vector<glm::ivec3>& F) {
   const int steps_a = na > 1 ? na : 0, steps_b = nb > 1 ? nb : 0;
   for (int i = 0, j = 0; i < steps_a || j < steps_b;) {
-    // Steps along the circle from which the new edge between the two is shorter, as their angles say.
+    // Steps along the circle for which the new edge between the two circles is shorter, judged by the angles of its
+    // ends.
     const std::int64_t if_a = std::abs(std::int64_t{i + 1} * nb - std::int64_t{j} * na),
                        if_b = std::abs(std::int64_t{i} * nb - std::int64_t{j + 1} * na);
     const bool along_a = i < steps_a && (j == steps_b || if_a <= if_b);
@@ -101,10 +105,10 @@ void join_circles(int a, int na, int b, int nb, std::vector<glm::ivec3>& F) {
 
 std::vector<Circle> circles_of(double radius, double length, CylinderEnds ends, double side) {
   const auto sides_of = [&](double r) { return 2 * std::numbers::pi * r / side; };
-  // A multiple of four, so that the polygon reaches the circle along both axes.
+  // The number of sides is a multiple of four, so that the polygon reaches the circle along both axes.
   const int sides = std::max(kLeastSides, static_cast<int>((parts(2 * std::numbers::pi * radius, side) + 3) / 4 * 4));
   const std::int64_t rows = parts(length, side), rings = parts(radius, side);
-  std::vector<Circle> end;  // from the middle outwards, without the rim
+  std::vector<Circle> end;  // circles of an end from the middle outwards, without the rim
   if (ends == CylinderEnds::Closed) {
     end.push_back({0, 0, 1});
     for (std::int64_t k = 1; k < rings; ++k) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes surfaces of simple shapes, for obstacles. Each is centred at the origin, in mm, with triangles that are
-// counter-clockwise seen from outside. The triangles are small enough for contact at their vertices: an edge is no
-// longer than a tenth of the shape's largest extent and than 20 mm, unless this took more than 200 000 triangles; then
-// the edges are longer. Every function throws Error for an extent outside [0.001 mm, 1 km].
+// Makes surfaces of simple shapes, for obstacles. Each shape is centred at the origin, in mm, with triangles that are
+// counter-clockwise seen from outside. The triangles are small enough for contact at their vertices: an edge is at most
+// a tenth of the shape's largest extent and at most 20 mm long, unless this would need more than 200 000 triangles;
+// then the edges are longer. Every function throws Error for an extent outside [0.001 mm, 1 km].
 #pragma once
 
 #include "core/mesh/surface.h"
@@ -11,14 +11,14 @@ namespace limber {
 
 enum class CylinderEnds { Closed, Open };
 
-constexpr double kLongestShapeEdge = 20;  // mm
+constexpr double kLongestShapeEdge = 20;  // longest edge of a triangle, mm
 constexpr std::size_t kMostShapeTriangles = 200'000;
 
 // Returns a closed box with these extents along x, y and z.
 TriangleMesh box_surface(const glm::dvec3& size);
 
-// Returns a cylinder along z, whose vertices are on the true cylinder. With open ends it is a tube without thickness,
-// as a cuff, whose outside is away from the axis.
+// Returns a cylinder along z whose vertices are on the exact cylinder. With open ends it is a tube without thickness,
+// like a cuff; its outside faces away from the axis.
 TriangleMesh cylinder_surface(double radius, double length, CylinderEnds ends = CylinderEnds::Closed);
 
 // Returns a rectangle in the plane z = 0, with its outside towards +z.

@@ -17,11 +17,10 @@ struct Face {
   int tet, face;
 };
 
-// The faces of all tets, grouped by their smallest node and sorted within each group, so that equal faces follow each
-// other.
+// The faces of all tets, grouped by their smallest node and sorted within each group, so that equal faces are adjacent.
 struct FaceTable {
   std::vector<Face> faces;
-  std::vector<int> first;  // #V + 1: where the group of each smallest node begins in `faces`
+  std::vector<int> first;  // #V + 1: index in `faces` of the first face of each smallest node's group
 };
 
 FaceTable table_of(const Eigen::MatrixX4i& T) {

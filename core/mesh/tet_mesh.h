@@ -21,8 +21,8 @@ struct TetMesh {
   static int bone_of(std::uint16_t region) { return int(region) - 1; }  // -1: soft tissue
 };
 
-// The corners of a tet's faces. Face i lies opposite to corner i; its corners are counter-clockwise seen from outside
-// the tet.
+// The corners of a tet's faces. Face i is opposite to corner i; its corners are counter-clockwise seen from outside the
+// tet.
 inline constexpr int kTetFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 // Returns, for each tet and face, the index of the tet on the other side of the face, #T by 4. -1: the face is on the

@@ -37,8 +37,8 @@ std::string name_of_problem(int code) {
   }
 }
 
-// Copies points and triangles into TetGen's own structure. Its destructor deletes as many facets as numberoffacets
-// says, so that count grows with each facet, in case memory runs out halfway.
+// Copies points and triangles into TetGen's own structure. The structure's destructor deletes as many facets as
+// numberoffacets says, so numberoffacets is increased facet by facet, in case memory runs out halfway.
 void fill(tetgenio& in, const Polyhedra& input) {
   in.pointlist = new REAL[input.points.size()];
   in.numberofpoints = static_cast<int>(input.points.size() / 3);
@@ -131,15 +131,14 @@ Row sorted(Row row) {
   return row;
 }
 
-// Returns whether two triangles with the same corners have the same orientation: b then is a, rotated by zero, one or
-// two corners.
+// Returns true if two triangles with the same corners have the same orientation: b is a with its corners rotated.
 bool same_way(const Row& a, const Row& b) {
   const auto start = std::find(b.begin(), b.end(), a[0]) - b.begin();
   return b[(start + 1) % 3] == a[1];
 }
 
-// Finds the region of every tet from the triangles around it. Returns why that failed (for example: a triangle is
-// missing, or two triangles disagree), or an empty string.
+// Finds the region of every tet from the triangles around it. Returns an empty string, or why it failed (for example: a
+// triangle is missing, or two triangles disagree).
 std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& triangles,
                          const std::vector<std::array<std::uint16_t, 2>>& sides, std::vector<std::uint16_t>& region) {
   std::unordered_map<Row, int, RowHash> triangle_of;

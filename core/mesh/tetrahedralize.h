@@ -3,8 +3,8 @@
 // 2015]. No other file calls TetGen.
 //
 // On surfaces that TetGen cannot handle, it ends the process, crashes or never returns. It therefore runs in a child
-// process with limits, and any failure there is returned as a reason. Its mesh is used only after a check: the
-// surface's nodes and triangles are all present, unmoved and uncut, and every tet lies in one region.
+// process with limits, and any failure there is returned as a message. TetGen's mesh is used only after a check: the
+// surface's nodes and triangles are all present, unmoved and uncut, and every tet is in one region.
 #pragma once
 
 #include <array>
@@ -27,21 +27,21 @@ struct RegionSurface {
 
   Eigen::MatrixX3d V;  // #V positions, world, mm
   Eigen::MatrixX3i F;  // #F triangles
-  // #F by 2 regions (as in TetMesh, or kAir): the one in front of each triangle, where its corners are
-  // counter-clockwise, and the one behind.
+  // #F by 2 regions (as in TetMesh, or kAir): the region in front of each triangle (from where its corners are
+  // counter-clockwise), and the region behind it.
   std::vector<std::array<std::uint16_t, 2>> sides;
 };
 
 struct TetrahedralizeLimits {
-  double seconds = 30;                   // limit on processor time; the limit by the clock is four times as long
-  double seconds_per_triangle = 0.0005;  // added to `seconds` for each triangle; TetGen needs a tenth of this
+  double seconds = 30;                   // limit on CPU time; the limit on elapsed time is four times as long
+  double seconds_per_triangle = 0.0005;  // added to `seconds` for each triangle; TetGen needs about a tenth of this
   std::size_t memory_bytes = std::size_t{4} << 30;
   std::function<void()> at_start = {};  // called in the child before TetGen; lets tests crash and hang the child
 };
 
 struct Tetrahedralized {
   std::optional<TetMesh> mesh;
-  std::string failure;  // tells the user why there is no mesh; empty if there is one
+  std::string failure;  // message for the user: why there is no mesh; empty if there is one
 };
 
 // Fills the regions inside the surface with tets. Adds nodes so that, as far as the surface allows, the radius of each

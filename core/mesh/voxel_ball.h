@@ -6,7 +6,7 @@
 
 namespace limber {
 
-// Returns whether passes(voxel) is true for any voxel of the grid at most `radius` voxels away from `centre`.
+// Returns true if passes(voxel) is true for at least one voxel of the grid at most `radius` voxels away from `centre`.
 template <class Passes>
 bool any_voxel_near(const glm::ivec3& centre, const Grid& grid, int radius, const Passes& passes) {
   glm::ivec3 off;

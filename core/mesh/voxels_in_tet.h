@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Walks over the voxels whose centres lie in a tet, row by row. A centre on a face counts as inside, even where
-// rounding puts it slightly (1e-7 voxel) outside.
+// Visits the voxels whose centres are in a tet, row by row. A centre on a face counts as inside, even if rounding puts
+// it slightly (1e-7 voxel) outside.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace limber {
 
 inline constexpr double kHair = 1e-7;  // tolerance at a tet's faces, voxels
 
-// Calls body(first, last) with the first and last voxel of each row along x that lie inside the tet and the grid.
+// Calls body(first, last) with the first and last voxel of each row along x that are inside the tet and the grid.
 //   corner                   corners of a positively oriented tet, voxel coordinates
 //   first_slice, last_slice  range of z
 template <class Body>
