@@ -81,7 +81,7 @@ struct FitStage {
   bool stretches = true;            // true: the fit may also stretch bones
   // Weight of the bone surface; the skin has the rest, [0, 1]. Without a bone surface the skin has all weight.
   double bone_share = 0.5;
-  int stride = 1;  // n: only every n-th point of a surface is used
+  int stride = 1;  // only every stride-th point of a surface is used
   // Selects the points to fit: atlas points of the bones that have a 1 in `points` (empty: of all bones), and surface
   // points within `reach` mm of `around` (reach 0: all surface points).
   std::vector<std::uint8_t> points;

@@ -57,7 +57,7 @@ std::vector<AtlasPoint> points_on(const Box& box, double step, const Distance& d
             double d = distance(p);
             if (std::abs(d) > 0.5 * step) continue;
             glm::dvec3 g = gradient(p);
-            constexpr double kOn = 0.05;  // distance from the surface within which a point counts as on it, mm
+            constexpr double kOn = 0.05;  // a point within this distance of the surface counts as on it, mm
             for (int k = 0; k < 3 && std::abs(d) > kOn; ++k) {
               for (int step = 0; step < 2; ++step) {
                 p -= g * (d / std::max(glm::dot(g, g), 0.25));

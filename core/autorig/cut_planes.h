@@ -13,7 +13,7 @@
 namespace limber {
 
 struct TissueCut {
-  glm::dvec3 normal{0};  // unit vector out of the tissue, world
+  glm::dvec3 normal{0};  // unit normal of the cut, pointing out of the tissue, world
   double offset = 0;     // dot(normal, p) for every point p on the cut, mm
 };
 

@@ -23,16 +23,16 @@ struct FitJoint {
   // Range of flexion angles in which the joint must be free of collisions.
   double minimum_degrees = 0, maximum_degrees = 90;
   double reach_mm = 120;            // bone farther than this from the joint is ignored, as no axis could separate it
-  double most_moved_mm = 30;        // upper limit on the shift of the axis
-  double most_turned_degrees = 20;  // upper limit on the tilt of the axis
+  double most_moved_mm = 30;        // upper limit on the shift of the axis, mm
+  double most_turned_degrees = 20;  // upper limit on the tilt of the axis, degrees
 };
 
 struct FittedJoint {
   // The fitted rig: the bone's head is moved and, if its parent's tail coincided with it, this tail too. The bone's
   // joint limits are a hinge about the fitted axis.
   Armature armature;
-  double moved_mm = 0;        // shift of the bone's head, perpendicular to the axis
-  double turned_degrees = 0;  // tilt of the axis
+  double moved_mm = 0;        // shift of the bone's head perpendicular to the axis, mm
+  double turned_degrees = 0;  // tilt of the axis, degrees
   // Number of voxels that bones of both sides fill, at the worst angle of the range, before and after the fit.
   std::int64_t overlap_before = 0, overlap_after = 0;
   // Rest positions of the voxels of both sides that collide at some angle, before and after the fit.

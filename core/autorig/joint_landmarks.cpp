@@ -16,7 +16,7 @@ namespace {
 // --- landmarks at the narrowest cross-sections of limbs
 
 struct Section {
-  double area = 0;  // mm^2; 0: no tissue
+  double area = 0;  // area of the section, mm2; 0: no tissue
   glm::dvec3 centre{0};
   double depth = 0;  // extent of the section along `forward`, mm: four times the standard deviation
   // true: the section reaches the edge of the examined square, because the limb touches other tissue.

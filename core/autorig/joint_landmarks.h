@@ -21,7 +21,7 @@ namespace limber {
 
 struct JointLandmark {
   int bone = 0;         // index of the mannequin's bone whose head the landmark locates
-  glm::dvec3 place{0};  // world, mm
+  glm::dvec3 place{0};  // position of the landmark, world, mm
   double bend = 0;      // bend of the limb at the joint, radians
 };
 

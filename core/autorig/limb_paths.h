@@ -12,7 +12,7 @@
 namespace limber {
 
 struct LimbPath {
-  std::vector<glm::dvec3> points;  // world, mm; from the end of the limb inwards, evenly spaced
+  std::vector<glm::dvec3> points;  // evenly spaced points from the end of the limb inwards, world, mm
   double step = 0;                 // distance between successive points, mm
   double prominence = 0;           // prominence of the path's end, mm
   double length = 0;               // length of the path through the tissue, mm

@@ -15,7 +15,7 @@ namespace limber {
 
 struct NamedJoint {
   int bone = 0;         // index of the mannequin's bone whose head is the joint
-  glm::dvec3 place{0};  // world, mm
+  glm::dvec3 place{0};  // position of the joint, world, mm
   double error = 0;     // estimated error, mm
 };
 

@@ -27,7 +27,8 @@ struct BoneReach {
   // Factor on the distance from which the chest's bones give heat to their flesh inside the missing rib cage.
   static constexpr float kHeldInCage = 0.7f;
 
-  float reach = std::numeric_limits<float>::infinity();  // mm; infinite: the distance is not corrected
+  // Distance beyond which `share` applies, mm; infinite: no correction.
+  float reach = std::numeric_limits<float>::infinity();
   float share = 1;
   float cage_width = 0;  // half the width of the rib cage, mm
   Cage cage = Cage::None;

@@ -27,7 +27,7 @@ struct BrickWindow {
   static constexpr int kTo[6] = {-1, 1, -10, 10, -100, 100};
 
   std::array<std::int32_t, 1000> place;    // index in the list of tissue voxels; -1: air
-  std::array<float, 1000> soft;            // conductivity; 0 for all voxels that are not soft
+  std::array<float, 1000> soft;            // conductivity of each soft voxel; 0 for other voxels
   std::array<std::uint64_t, 8> soft_bits;  // the brick's soft voxels, one word per z slice: bit x + 8 y
   std::array<int, 6> beside;               // index of the neighbouring brick in each direction; -1: none
   const Seams* seams = nullptr;            // null: no seam is near this brick

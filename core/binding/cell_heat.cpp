@@ -203,7 +203,7 @@ class BrickCells {
 struct BlockTemperatures {
   std::vector<int> bones;
   std::vector<std::int32_t> cell;
-  ZeroedVector<float> value;  // #cells x #bones
+  ZeroedVector<float> value;  // temperatures, #cells x #bones
 };
 
 BlockTemperatures solve_block(const BoneBlock& block, BrickCells& chosen, const Scout& scout, const Sources& sources,

@@ -63,7 +63,7 @@ class CellFront {
  private:
   struct Reached {
     std::int32_t cell;
-    float length;  // mm
+    float length;  // length of the path, mm
   };
   struct Step {
     std::int32_t to;

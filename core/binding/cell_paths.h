@@ -15,10 +15,10 @@
 namespace limber {
 
 struct CellPath {
-  glm::vec3 corner{0};         // in voxels
+  glm::vec3 corner{0};         // last corner of the path, voxel coordinates
   float to_corner = 0;         // length of the path up to the corner, mm
   float length = 0;            // length of the path up to the cell's centre, mm
-  std::uint16_t bone = kSoft;  // kSoft: no path from a bone reaches the cell
+  std::uint16_t bone = kSoft;  // bone at which the path begins; kSoft: no path reaches the cell
 
   // Returns the length of the path when it ends at a voxel of the cell instead of at the cell's centre, mm.
   float to(const glm::vec3& voxel, const glm::vec3& spacing) const {

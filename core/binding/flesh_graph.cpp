@@ -25,7 +25,7 @@ float conductivity(TissueKind kind) {
     case TissueKind::Nail: return 0.50f;
     case TissueKind::Brain: return 1.10f;
     case TissueKind::Blood: return 1.06f;
-    default: return 1.0f;  // muscle, tendon, cartilage, nerve, vessel, organs: 0.46 to 0.52 W/m/K
+    default: return 1.0f;  // muscle, tendon, cartilage, nerve, vessel, organs have 0.46 to 0.52 W/m/K
   }
 }
 

@@ -65,7 +65,7 @@ ZeroedVector<std::uint16_t> fixed_bone(const LabelVolume& volume, const TissueVo
 // has the bone kSoft and an infinite distance.
 struct NearestBone {
   ZeroedVector<std::uint16_t> bone;
-  ZeroedVector<float> distance;  // mm, between voxel centres
+  ZeroedVector<float> distance;  // distance between voxel centres, mm
 };
 NearestBone nearest_bone(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                          const ZeroedVector<std::uint16_t>& held_by);

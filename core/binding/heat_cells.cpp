@@ -200,7 +200,8 @@ class CellMaker {
       const std::int32_t cell = cells_.cell(brick, number);
       for (int direction = 0; direction < 6; ++direction) {
         const int there = here + BrickWindow::kTo[direction], axis = direction >> 1;
-        if (block_of_[there] == block_of_[here] && window.soft[there] > 0) continue;  // inside the cell, or a seam
+        // The face is inside the cell, or a seam cuts it.
+        if (block_of_[there] == block_of_[here] && window.soft[there] > 0) continue;
         const std::int32_t beyond = window.place[there];
         if (beyond < 0 || window.is_cut(v, direction)) continue;
         const float conducted = law_.conductance(axis, window.soft[here], window.soft[there]);

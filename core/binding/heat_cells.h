@@ -34,7 +34,7 @@ struct HeatCells {
   glm::i16vec3 shift{0};                // a block has 2^shift voxels along each axis; shift is 0 to 3
   CellGraph graph;                      // positions are in blocks; the diagonal also contains the losses to bones
   std::vector<glm::vec3> centre;        // mean of the positions of each cell's voxels, in voxels
-  std::vector<HeldSide> sides;          // sorted by cell
+  std::vector<HeldSide> sides;          // sides of all cells that touch bones, sorted by cell
   std::vector<std::int32_t> side_from;  // #cells + 1: index of each cell's first entry in `sides`
   // #bricks + 1: index of the first red and of the first black cell of each brick.
   std::vector<std::array<std::int32_t, 2>> first;

@@ -25,9 +25,10 @@ struct HeatDiffusion {
 };
 
 struct WeightsReport {
-  double residual = 0;                // largest relative residual of any bone's solve
-  int iterations = 0;                 // largest number of iterations of any bone's solve
-  std::vector<std::string> warnings;  // "no bone reaches 213 voxels of label 3 near (..): given to Forearm"
+  double residual = 0;  // largest relative residual of any bone's solve
+  int iterations = 0;   // largest number of iterations of any bone's solve
+  // Sentences such as "no bone reaches 213 voxels of label 3 near (..): given to Forearm".
+  std::vector<std::string> warnings;
 };
 
 }  // namespace limber

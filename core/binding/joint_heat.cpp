@@ -16,7 +16,7 @@ constexpr float kNegligible = 3e-4f;
 
 // The bones that hold voxels in or near a brick: none, one or several.
 struct NearBones {
-  std::uint16_t lowest = kSoft, highest = 0;  // lowest > highest: none
+  std::uint16_t lowest = kSoft, highest = 0;  // lowest and highest index of the bones; lowest > highest: no bone
   void add(const NearBones& other) {
     lowest = std::min(lowest, other.lowest);
     highest = std::max(highest, other.highest);

@@ -18,7 +18,7 @@ struct HeatBody {
   const TissueVoxels& tissue;
   const TissueTable& tissues;
   const Armature& armature;
-  const ZeroedVector<std::uint16_t>& held_by;  // from fixed_bone()
+  const ZeroedVector<std::uint16_t>& held_by;  // bone that holds each tissue voxel, from fixed_bone()
 };
 
 // Temperatures that are known before the solve. `brick` and `place` are indices of a brick and of a soft voxel in it;

@@ -39,7 +39,7 @@ struct BoneParts {
     bool is_substitute;  // true: the rig has no bone that matches the label's name
     std::int64_t voxel_count;
   };
-  std::vector<Identity> identities;  // sorted by label, then bone
+  std::vector<Identity> identities;  // all pairs of a label and a rig bone, sorted by label, then bone
 
   // Pairs of bones that touch so broadly that the cut between them is uncertain.
   std::vector<BroadCut> broad_cuts;

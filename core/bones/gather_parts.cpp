@@ -70,7 +70,7 @@ struct PieceSum {
 
 void gather_parts(const BoneGraph& graph, const Hugging& hugging, const ZeroedVector<int>& bone, BoneParts& result) {
   const BonePieces pieces(graph, bone);
-  std::map<std::int32_t, PieceSum> sums;  // of each piece, by its root
+  std::map<std::int32_t, PieceSum> sums;  // sums of each piece; key: the piece's root
   std::mutex adding;
   parallel_for(graph.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
     std::map<std::int32_t, PieceSum> some;

@@ -31,7 +31,7 @@ constexpr int kSlices = 60, kPoints = 120;  // slices across each rig bone, and 
 
 struct Lengths {
   double in_tissue = 0;
-  std::map<Label, double> with;  // for each label, length of the rig bones that have it beside them, mm
+  std::map<Label, double> with;  // for each label, length of the rig bones that have the label beside them, mm
   // For each label: length of the rig bones, weighted by the label's share of the tissue beside the bones or around
   // them, mm.
   std::map<Label, double> beside, around;

@@ -381,7 +381,7 @@ class Cut {
     for (std::int32_t i = 0; i < std::ssize(side); ++i)
       for (int k = 0; k < 26; ++k)
         if (const std::int32_t m = neighbour_[i][k]; m >= 0 && side[m] != side[i])
-          area += scene_.area[k] / 2;  // half, because each pair of voxels is visited from both of them
+          area += scene_.area[k] / 2;  // half of the area, because each pair of voxels is visited from both voxels
     return area;
   }
   void part(const std::vector<std::uint8_t>& side) {

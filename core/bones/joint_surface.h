@@ -34,7 +34,7 @@ std::optional<JointShape> shape_of_joint(const std::optional<JointRole>& role);
 struct JointSurface {
   // Position of the joint (world, mm), and the unit vector of the joint's axis, from the parent bone towards the child.
   glm::dvec3 joint, axis;
-  glm::dvec3 hinge;  // unit vector at right angles to the axis
+  glm::dvec3 hinge;  // unit vector along the hinge, perpendicular to the axis
   double radius;     // radius of the bones at the joint, mm
   JointShape shape;
   // Returns the distance of a point from the surface along the joint's axis, mm; positive on the child's side.

@@ -27,7 +27,7 @@ struct JointBones {
 };
 
 struct LeastShift {
-  glm::dvec3 shift{0};  // mm; exactly zero where the bones do not overlap
+  glm::dvec3 shift{0};  // the shift, mm; exactly zero if the bones do not overlap
   bool free = true;     // true: after the shift, no overlap exceeds half a voxel by more than a twentieth of a voxel
   double depth_before = 0;  // how far the deepest overlap exceeds half a voxel without the shift, mm
   double depth_after = 0;   // how far the deepest overlap exceeds half a voxel with the shift, mm

@@ -18,7 +18,8 @@ struct CutGraph {
   std::vector<std::array<std::int32_t, Edges>> neighbour;
   // Capacity of each edge, in the direction towards the neighbour.
   std::vector<std::array<std::int32_t, Edges>> capacity;
-  std::vector<std::int32_t> terminal;  // per node; positive: capacity from the source, negative: capacity to the sink
+  // For each node; positive: capacity from the source, negative: capacity to the sink.
+  std::vector<std::int32_t> terminal;
 };
 
 // Returns 1 for every node on the source's side of a minimum cut, else 0. Nodes that the source cannot reach after the

@@ -18,7 +18,7 @@ namespace limber {
 
 struct PointToCarry {
   glm::dvec3 rest;    // position at rest, voxel coordinates
-  glm::dvec3 anchor;  // voxel coordinates; equal to `rest` for a point without its own anchor
+  glm::dvec3 anchor;  // anchor, voxel coordinates; equal to `rest` for a point without its own anchor
 };
 
 class CarriedPoints {

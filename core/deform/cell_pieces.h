@@ -37,10 +37,12 @@ struct CellPiece {
 
   glm::ivec3 cell;                      // the cell contains the voxels from cell * step to cell * step + step - 1
   std::array<std::uint64_t, 8> voxels;  // the piece's voxels: voxel (x, y, z) of the cell is bit x + 8 y of word z
-  std::uint64_t places = 0;             // bits for the 4^3 subcells that contain tissue of the piece, x fastest
-  std::array<float, 8> away;            // squared distance of each corner from the piece's nearest voxel, mm2
-  std::vector<Share> shares;            // grouped by bone, then ascending by corner
-  std::vector<Stiff> stiff;             // tissue that follows one bone with full weight, ascending by bone
+  // One bit for each of the 4^3 subcells, x fastest: 1 if it has tissue of the piece.
+  std::uint64_t places = 0;
+  std::array<float, 8> away;  // squared distance of each corner from the piece's nearest voxel, mm2
+  // Bone weights that the piece gives to the corners, grouped by bone, then ascending by corner.
+  std::vector<Share> shares;
+  std::vector<Stiff> stiff;                        // tissue that follows one bone with full weight, ascending by bone
   std::shared_ptr<const CellCuts> cuts = nullptr;  // faces that a seam cuts; null: none
 };
 

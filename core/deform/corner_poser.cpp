@@ -43,7 +43,7 @@ bool all_within(const FourNumbers& numbers, double limit) {
 // Rounds to the nearest whole number, as std::lrint does. Doubles near kLarge have no fractional bits, so adding kLarge
 // rounds.
 FourIntegers rounded(const FourNumbers& numbers) {
-  constexpr double kLarge = 6755399441055744.0;  // 1.5 * 2^52
+  constexpr double kLarge = 6755399441055744.0;  // 1.5 * 2^52: doubles of this size have no fractional bits
   return __builtin_convertvector((numbers + kLarge) - kLarge, FourIntegers);
 }
 

@@ -50,7 +50,7 @@ class CornerPoser {
   AffineTransform world_from_voxel_;
   glm::dmat3 voxel_from_world_;
   std::vector<SkinTransform> bones_;
-  std::vector<AffineTransform> shift_;  // for each bone: rest point -> posed - rest, in voxels
+  std::vector<AffineTransform> shift_;  // for each bone, the affine map rest point -> (posed - rest), in voxels
   Blend blend_;
   BlendRule::Four four_points_;
   OutputLattice output_;

@@ -25,7 +25,7 @@ class CornerWeights {
 
   // The influences of four corners.
   struct Four {
-    std::span<const FourWeights> influences;  // ascending by bone
+    std::span<const FourWeights> influences;  // weights of all four corners, ascending by bone
     FourIntegers bones;                       // number of bones that each corner follows
   };
   // Returns the influences of four corners at once. Lane n of i, j and k is the position of corner n.

@@ -129,7 +129,7 @@ void pass_along_x(const TissueVoxels& tissue, double spacing, Value* squared) {
 template <class Value>
 void pass_across(const TissueVoxels& tissue, int axis, double spacing, Value* squared) {
   const int along = axis == 1 ? kBrick : kBrick * kBrick,
-            across = axis == 1 ? kBrick * kBrick : kBrick;  // strides within a brick
+            across = axis == 1 ? kBrick * kBrick : kBrick;  // strides within a brick: along the axis, and across it
   constexpr std::size_t kRowBytes = kBrick * sizeof(Value);
   for_each_column(tissue, axis, [&](const std::vector<int>& column) {
     Lines<Value> lines(column.size(), spacing);

@@ -98,7 +98,7 @@ class RigidBrick {
         const Steps steps = within(glm::dvec3(-slack_), glm::dvec3(TissueVoxels::kBrick + slack_), row, row + step);
         for (int i = steps.first, last = std::min(steps.last, range.high.x - range.low.x); i <= last; ++i) {
           const glm::ivec3 voxel(range.low.x + i, y, z);
-          const glm::dvec3 place = row + double(i) * step;  // in cells, relative to the brick's lowest corner
+          const glm::dvec3 place = row + double(i) * step;  // position in cells, relative to the brick's lowest corner
           if (std::min({place.x, place.y, place.z}) < -slack_) continue;
           // The conversion rounds positive numbers down; std::floor would be a function call.
           const glm::ivec3 least = glm::ivec3(place + (1 - slack_)) - 1, most(place + slack_);

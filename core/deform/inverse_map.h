@@ -107,8 +107,10 @@ class RigidBones {
   const PosedLattice* lattice_;
   const SkinWeights* weights_;
   const LabelSet* is_bone_;
-  std::vector<AffineTransform> rest_shift_;   // for each bone: posed point -> rest - posed, in rest voxels
-  std::vector<AffineTransform> posed_shift_;  // for each bone: rest point -> posed - rest, in rest voxels
+  // For each bone, the affine map posed point -> (rest - posed), in rest voxels.
+  std::vector<AffineTransform> rest_shift_;
+  // For each bone, the affine map rest point -> (posed - rest), in rest voxels.
+  std::vector<AffineTransform> posed_shift_;
   std::vector<Piece> pieces_;
 };
 

@@ -7,7 +7,7 @@
 namespace limber {
 
 constexpr int kFixedOne = 65536;  // units of fixed point per output voxel
-using FixedPoint = glm::ivec3;    // in units of 1/65536 output voxel
+using FixedPoint = glm::ivec3;    // coordinates in units of 1/65536 output voxel
 
 // Upper limit on the coordinates of posed points, in output voxels from the base. Fixed point allows 32 768.
 constexpr double kFurthestPosed = 32000;

@@ -37,8 +37,8 @@ class PosedBones {
   glm::dvec3 spacing_;
   TissueVoxels bone_tissue_;
   std::optional<TissueDepth> depth_;              // depth below the surface of bone tissue, at rest
-  std::vector<AffineTransform> rest_from_posed_;  // for each bone: posed point -> rest point
-  std::vector<glm::dmat3> turn_;                  // for each bone: direction at rest -> posed direction
+  std::vector<AffineTransform> rest_from_posed_;  // for each bone, the affine map posed point -> rest point
+  std::vector<glm::dmat3> turn_;                  // for each bone, the rotation direction at rest -> posed direction
   double bin_ = 0;
   glm::dvec3 first_{0};
   glm::ivec3 bins_{0};

@@ -232,7 +232,7 @@ std::vector<CellPart> parts_of(const PreviewLattice& lattice, const PiecesByCell
                                const std::vector<Influences>& influences, std::int32_t index) {
   const glm::ivec3 cell = lattice.cells[index];
   std::vector<CellPart> parts;
-  std::vector<std::uint64_t> tissue;  // bits for the subcells that contain each side's tissue
+  std::vector<std::uint64_t> tissue;  // for each side, one bit per subcell: 1 if it contains the side's tissue
   if (may_part(lattice, influences, cell)) {
     const Sides sides(lattice, pieces, cell);
     const std::vector<int> found = sides.sides();

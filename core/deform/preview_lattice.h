@@ -64,7 +64,7 @@ struct PreviewLattice {
   std::vector<std::int64_t> offsets;    // #vertices + 1: index of the first influence of each vertex
   std::vector<BoneWeight> influences;   // weights of each vertex: sum 1, ascending by bone
   std::vector<std::uint8_t> has_sides;  // 1 for each cell that has parts that are sides
-  std::vector<CellPart> parts;          // in the order of their cells
+  std::vector<CellPart> parts;          // parts of all cells, in the order of the cells
   std::vector<float> depth;             // by place(vertex): depth below air, mm; in air minus the distance from tissue
 
   // Returns the index of a vertex in arrays that have one value for every corner of the box of cells.

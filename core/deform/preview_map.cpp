@@ -393,7 +393,7 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
   for (const Tissue& each : tissues.tissues)
     if (each.label != 0) priority_[each.label] = each.priority;
 
-  std::vector<int> only(lattice_.places(), -1);  // the bone that a vertex follows, -1: several
+  std::vector<int> only(lattice_.places(), -1);  // for each vertex, the one bone that it follows; -1: several
   for (size_t i = 0; i < lattice_.vertices.size(); ++i)
     if (lattice_.offsets[i + 1] - lattice_.offsets[i] == 1)
       only[lattice_.place(lattice_.vertices[i])] = lattice_.influences[lattice_.offsets[i]].bone;
@@ -742,7 +742,8 @@ void LivePreview::mark_stale(const glm::ivec3& low) {
 LivePreview::Made& LivePreview::spare() {
   Made& made = made_[made_[0].map.use_count() > made_[1].map.use_count()];
   const bool is_free = made.map && made.map.use_count() == 1;
-  std::atomic_thread_fence(std::memory_order_acquire);  // former owners' last reads come before this thread's writes
+  // Orders the former owners' last reads before this thread's writes.
+  std::atomic_thread_fence(std::memory_order_acquire);
   if (is_free && made.map->first == first_ && made.map->size == size_) return made;
   const Span span = span_of(lattice_);
   if (!is_free) made.map = std::make_shared<PreviewMap>();

@@ -163,7 +163,7 @@ class LivePreview {
   std::vector<std::int32_t> part_offsets_;
 
   AffineTransform world_from_cell_;
-  glm::dmat3 cell_from_world_{1};  // for vectors, not for points
+  glm::dmat3 cell_from_world_{1};  // transforms vectors, not points
 
   // The state of the last pose that was computed.
   std::vector<RigidTransform> posed_from_rest_;

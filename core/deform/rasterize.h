@@ -95,7 +95,8 @@ class TetFaces {
 // changes by the constant `step` from voxel to voxel. Integer division gives the interval's ends.
 template <class Whole>
 void clip_row(Whole side_at_first, Whole step, Whole& first, Whole& last) {
-  auto floor_div = [](Whole a, Whole b) { return a / b - (a % b < 0 ? 1 : 0); };  // requires b > 0
+  // Returns floor(a / b); requires b > 0.
+  auto floor_div = [](Whole a, Whole b) { return a / b - (a % b < 0 ? 1 : 0); };
   if (step == 0) {
     if (side_at_first <= 0) last = first - 1;
   } else if (step > 0) {
@@ -125,7 +126,7 @@ void visit_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& range, 
       Whole first = range.low.x, last = range.high.x;
       for (int f = 0; f < 4 && first <= last; ++f)
         clip_row<Whole>(faces.side(f, {int(first), y, z}), faces.step_x(f), first, last);
-      if (first > last) continue;  // then `first` may be too large for an int, if a face is nearly parallel to the row
+      if (first > last) continue;  // if a face is nearly parallel to the row, `first` may then be too large for an int
       for (int x = int(first); x <= int(last); ++x) visit(glm::ivec3(x, y, z), orientation);
     }
 }
@@ -149,7 +150,7 @@ void rasterize_tet(const std::array<FixedPoint, 4>& posed, const VoxelRange& cli
 
 // The claim of a cell on a voxel whose centre its posed image covers.
 struct CellClaim {
-  glm::ivec3 voxel;       // output voxel
+  glm::ivec3 voxel;       // the output voxel that is claimed
   glm::dvec3 rest;        // rest point that the pose moves to the voxel's centre
   double posed_per_rest;  // local ratio of posed to rest volume, in voxels; negative in inverted cells
 };
@@ -166,8 +167,10 @@ using Lanes = int __attribute__((vector_size(16)));
 inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
   constexpr Lanes kThree{-1, -1, -1, 0};
   std::array<Lanes, 2> two;
-  std::memcpy(&two[0], points, sizeof(Lanes));                                                     // loads x y z x
-  std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));  // loads z x y z
+  // Loads x, y, z of the first point and x of the second.
+  std::memcpy(&two[0], points, sizeof(Lanes));
+  // Loads z of the first point and x, y, z of the second.
+  std::memcpy(&two[1], reinterpret_cast<const char*>(points + 2) - sizeof(Lanes), sizeof(Lanes));
   two[1] = __builtin_shufflevector(two[1], two[1], 1, 2, 3, 0);
   return {two[0] & kThree, two[1] & kThree};
 }

@@ -57,7 +57,7 @@ Label label_inside(const LabelVolume& volume, const LabelSet& shown, const Affin
 SkinnedSurface skinned_surface(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                                const LabelSet& labels, std::int64_t vertices) {
   LabelSet shown = labels;
-  shown[0] = 0;  // air never counts as visible
+  shown[0] = 0;  // label 0 is air, which is never visible
   // The finest cells are single voxels unless these are too many. Coarser cells are made from the finest ones.
   const auto finest_of = [](const Grid& grid) { return std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z}); };
   const double edge = std::ceil(std::cbrt(double(volume.grid.voxel_count()) / kMostCells));

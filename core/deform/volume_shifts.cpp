@@ -98,7 +98,7 @@ double longest_of(const glm::dmat3& F) {
 // The cells around each node, and the node's index among the eight nodes of each of these cells.
 struct CellsOfNode {
   std::vector<std::int64_t> begin;
-  std::vector<std::int32_t> place;  // 8 * cell + index of the node in the cell
+  std::vector<std::int32_t> place;  // entries of all nodes: 8 * cell + index of the node in the cell
 
   explicit CellsOfNode(const FleshCells& cells) : begin(cells.rest.size() + 1), place(8 * cells.nodes.size()) {
     for (const Nodes& nodes : cells.nodes)

@@ -131,7 +131,7 @@ class ContactForm {
   NodePositions known_from_, known_to_;
   std::vector<Watched> known_;
   NodePositions watched_from_, watched_to_;  // start and end of the motion of build_broad_phase()
-  double watched_limit_ = 0;                 // the limit given to build_broad_phase()
+  double watched_limit_ = 0;                 // the argument `limit` of the last build_broad_phase()
   std::vector<Watched> watched_;             // pairs of known_ that may touch during build_broad_phase()'s motion
   std::vector<char> blocked_;                // 1 for each pair of watched_ that mark_blocking_pairs() marked
   std::vector<Touch> touching_;

@@ -96,7 +96,7 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
 
 // Bounding boxes are stored in single precision, so that one SIMD instruction compares four numbers. All comparisons
 // include a tolerance for rounding.
-using Lanes = Eigen::Array4f;             // x, y, z and 0
+using Lanes = Eigen::Array4f;             // SIMD register with x, y, z and 0
 constexpr double kRounding = 4 * 1.2e-7;  // upper limit on the rounding error, as a share of the largest coordinate
 
 // The bounds of a set of moving points: of their positions (low, high) and of their steps (slowest, fastest), per axis.

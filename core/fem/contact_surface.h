@@ -33,7 +33,7 @@ struct ContactPair {
 struct NearestPoints {
   double distance;
   Eigen::Vector4d weight;
-  Eigen::Vector3d direction;  // n; zero where the two parts touch
+  Eigen::Vector3d direction;  // the direction n; zero if the two parts touch
 };
 NearestPoints nearest_points(const ContactPair& pair, const NodePositions& x);
 
@@ -79,15 +79,15 @@ class ContactSurface {
  private:
   struct Face {
     std::array<int, 3> node;
-    std::uint8_t own_nodes, own_edges;  // bit k: 1 if this face tests its corner k, its edge from corner k to k + 1
+    std::uint8_t own_nodes, own_edges;  // bit k: 1 if this face tests its corner k; its edge from corner k to k + 1
   };
   struct Branch {
-    std::int32_t begin, end;  // range of faces
+    std::int32_t begin, end;  // range of the faces below this node of the tree
     std::int32_t right;       // index of the right child (the left child is the next branch); 0: a leaf
   };
   void grow(std::vector<int>& order, const std::vector<Eigen::Vector3d>& centre, int begin, int end);
 
-  std::vector<Face> faces_;  // in the order of the tree's leaves
+  std::vector<Face> faces_;  // all faces, in the order of the tree's leaves
   std::vector<Branch> tree_;
   NodePositions rest_;
   std::vector<int> rigid_;

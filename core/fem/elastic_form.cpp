@@ -255,13 +255,13 @@ class ElasticForm::PatchSum {
   }
 
  private:
-  using Block = std::array<double, 9>;  // 3x3, column by column
+  using Block = std::array<double, 9>;  // a 3x3 matrix, column by column
   const ElasticForm& form_;
   const PatchStiffness& stiffness_;
   std::span<double> matrix_;
   std::int64_t patch_ = 0;
   bool is_stiff_ = false;
-  std::vector<Block> block_;            // lower triangle of the patch's node pairs, row by row
+  std::vector<Block> block_;            // blocks of the patch's node pairs (lower triangle, row by row)
   std::vector<Eigen::Vector3d> slope_;  // one per node of the patch: the vector G of PatchStiffness
 };
 

@@ -96,10 +96,10 @@ class FemEnergy {
 
   // Returns the smallest distance of touching parts at the last newton_step(), in thicknesses of the barrier.
   double tightest() const { return contact_.tightest(); }
-  double min_ratio(const NodePositions& x) const;                   // smallest det F of flesh
+  double min_ratio(const NodePositions& x) const;                   // returns the smallest det F of all tets of flesh
   const Eigen::MatrixX4i& volume_tets() const { return bounded_; }  // flesh and the tets of add_inversion_guard()
 
-  Cholesky& matrix();  // the Hessian of the last newton_step()
+  Cholesky& matrix();  // returns the Hessian of the last newton_step()
   int factorizations() const { return factorizations_; }
   int analyses() const { return analyses_; }  // number of analyses of the sparsity pattern, which contact changes
   FemSeconds& seconds() { return seconds_; }

@@ -12,8 +12,8 @@
 namespace limber {
 
 struct TetMaterial {
-  double shear_modulus = 1;    // mu, kPa, above 0
-  double poisson_ratio = 0.4;  // [0, 0.5)
+  double shear_modulus = 1;    // shear modulus mu, kPa, above 0
+  double poisson_ratio = 0.4;  // Poisson ratio, [0, 0.5)
   double filled = 1;           // share of the tet that is tissue, above 0; weight of the tet in its patch's mean of J
 };
 

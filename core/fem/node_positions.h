@@ -7,6 +7,6 @@
 
 namespace limber {
 
-using NodePositions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // #V by 3; row by row
+using NodePositions = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  // #V by 3, stored row by row
 
 }  // namespace limber

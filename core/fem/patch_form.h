@@ -18,7 +18,7 @@ namespace limber {
 
 // An order of the tets in which the tets of each patch are adjacent.
 struct PatchOrder {
-  std::vector<std::int64_t> tet;       // #T: tet indices in this order
+  std::vector<std::int64_t> tet;       // #T: indices of the tets, patch by patch
   std::vector<std::int64_t> first{0};  // #patches + 1: index in `tet` of the first tet of each patch
 };
 

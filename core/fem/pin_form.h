@@ -16,8 +16,8 @@ namespace limber {
 
 struct PinForm {
   std::vector<int> node;
-  NodePositions stiffness;  // one row per entry of `node`, kPa mm
-  NodePositions target;     // one row per entry of `node`, mm
+  NodePositions stiffness;  // spring stiffness along each axis, one row per entry of `node`, kPa mm
+  NodePositions target;     // target positions, one row per entry of `node`, mm
 
   double value(const NodePositions& x) const;
   void add_gradient(const NodePositions& x, NodePositions& gradient) const;

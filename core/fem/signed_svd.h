@@ -14,10 +14,10 @@ namespace limber {
 // negative if det F is negative.
 struct Principal {
   Eigen::Matrix3d U, V;
-  Eigen::Vector3d sigma;  // in descending order
+  Eigen::Vector3d sigma;  // singular values, in descending order
 };
 
-enum class MatrixLanes { Widest, Two };  // both give the same result, bit for bit
+enum class MatrixLanes { Widest, Two };  // number of SIMD lanes; both give the same result, bit for bit
 
 // Decomposes each F into the result with the same index.
 void signed_svd(std::span<const Eigen::Matrix3d> F, std::span<Principal> result,

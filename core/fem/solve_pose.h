@@ -30,14 +30,14 @@ struct FemModel {
   std::vector<int> held_by;           // #V: the rig bone that holds the node, -1: free
   struct Waiting {
     int node, bone;
-    double until;  // position on the path, [0, 1]
+    double until;  // path position, [0, 1], after which the node is free
   };
   // Nodes that move rigidly with a bone up to the path position `until`, because nothing can press on them before.
   // After it they are free.
   std::vector<Waiting> waiting;
   // #V lists of bone weights that sum to 1. They give the initial guess of a step; the result does not depend on them.
   std::vector<std::vector<BoneWeight>> influences;
-  std::vector<std::string> bone_names;  // for messages; a bone without a name is called "bone 3"
+  std::vector<std::string> bone_names;  // names for messages; a bone without a name is called "bone 3"
   std::vector<double> mass;             // #V: mass of each node in kg, for gravity; empty: none
   RigidObjects objects;                 // rigid objects that press on the skin, if contact is on
 };
@@ -50,7 +50,7 @@ struct SolveSettings {
   double step_degrees = 22.5;  // largest rotation of any joint in one step
   double contact_mm = 1.4;  // parts of the skin nearer than this are pushed apart, if they were further apart at rest
   double object_mm = 0.5;   // skin nearer than this to an object is pushed away
-  Eigen::RowVector3d gravity = Eigen::RowVector3d::Zero();  // m/s2
+  Eigen::RowVector3d gravity = Eigen::RowVector3d::Zero();  // acceleration of gravity, m/s2
   bool has_weight_at_start = false;                         // false: gravity grows from zero along the path
   double step_tolerance_mm = 4;        // a step ends when Newton moves no node further than this (half a tet's edge)
   double tolerance_mm = 0.3;           // the last solve, at the final pose, ends when no node moves further than this

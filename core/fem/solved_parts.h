@@ -13,7 +13,7 @@ namespace limber {
 // flesh, because that node may yield.
 struct SolvedParts {
   Eigen::MatrixX4i elastic, rigid;
-  std::vector<TetMaterial> material;  // one entry for each elastic tet
+  std::vector<TetMaterial> material;  // material of each elastic tet
   std::vector<char> is_flesh;         // 1 for each elastic tet whose nodes are not all held by one bone
   std::vector<int> pinned, carried;   // nodes that bones hold: those of elastic tets; those of rigid tets only
   std::vector<double> pin_stiffness;

@@ -34,8 +34,8 @@ double energy_density(const TetEnergy& energy, const Eigen::Matrix3d& F, double 
 // V^T, with F = U diag(sigma) V^T.
 struct NegativeCurvature {
   struct Direction {
-    double value;          // above 0
-    Eigen::Matrix3d mode;  // unit matrix, in the principal axes of F
+    double value;          // minus the negative eigenvalue, so above 0
+    Eigen::Matrix3d mode;  // the direction as a matrix with unit norm, in the principal axes of F
   };
   int count = 0;
   Direction direction[9];

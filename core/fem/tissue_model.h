@@ -45,7 +45,7 @@ struct TissueModel {
   };
   FemModel fem;
   std::vector<std::int32_t> first;  // #T + 1: index in `parts` of the first entry of each tet
-  std::vector<Part> parts;          // the volume that each label fills in each tet
+  std::vector<Part> parts;          // entries of all tets: a label and the volume that it fills, mm3
   std::vector<std::uint8_t> joint;  // #T: 1 for tets between two bones, which form a joint
 };
 

@@ -42,6 +42,7 @@ struct LabelSurfaceSettings {
 LabelSurfaces label_surfaces(const LabelVolume& volume, const LabelSurfaceSettings& settings = {},
                              Progress& progress = no_progress());
 
-double enclosed_volume(const LabelSurfaces& all, const LabelSurface& surface);  // mm3
+// Returns the volume inside the surface, mm3.
+double enclosed_volume(const LabelSurfaces& all, const LabelSurface& surface);
 
 }  // namespace limber

@@ -26,7 +26,7 @@ inline constexpr int kNearVoxels = 2;
 struct VoxelRegions {
   const Grid& grid;
   const TissueVoxels& tissue;
-  const std::vector<std::uint16_t>& region;  // one per tissue voxel, brick order
+  const std::vector<std::uint16_t>& region;  // region of each tissue voxel, in brick order
 };
 
 struct LatticeNetSettings {
@@ -39,7 +39,7 @@ struct LatticeNetSettings {
 
 struct LatticeNet {
   RegionSurface surface;
-  TetMesh mesh;  // tets inside the surface; its first nodes are those of the surface
+  TetMesh mesh;  // tets inside the surface; the first nodes are those of the surface
   // The corners of the box (in lattice axes, mm) in which each node of the surface may move without making triangles
   // cross. world_from_lattice rotates and translates; it does not scale.
   Eigen::MatrixX3d low, high;

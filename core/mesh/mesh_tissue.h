@@ -28,7 +28,7 @@ struct MeshSettings {
 };
 
 struct TissueMesh {
-  TetMesh mesh;                     // no tets for a body without voxels
+  TetMesh mesh;                     // the mesh; it has no tets if the body has no voxels
   Mesher mesher = Mesher::lattice;  // the mesher that made the mesh
   std::string warning;              // message for the user: why the requested mesher was not used; empty if it was used
   double spacing_mm = 0;            // the spacing in use, which may be larger than requested

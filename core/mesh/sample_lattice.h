@@ -16,7 +16,7 @@ namespace limber {
 struct SampleLattice {
   struct Cell {
     glm::ivec3 corner;
-    int size;  // edge in steps, a power of two; `corner` is a multiple of it
+    int size;  // edge of the cell in steps, a power of two; `corner` is a multiple of it
     bool operator==(const Cell&) const = default;
   };
 
@@ -26,7 +26,7 @@ struct SampleLattice {
   int usual = 1;                        // size in steps of cells whose samples are spacing_mm apart
   std::vector<std::uint8_t> cell_size;  // size in steps of the cell around each smallest cell, by its lowest corner
   std::vector<std::uint16_t> label;     // #samples: the sample's region; kAir also for positions without a sample
-  AffineTransform world_from_lattice;   // in mm; rotates and translates only
+  AffineTransform world_from_lattice;   // lattice coordinates are in mm; it only rotates and translates
   AffineTransform fine_from_voxel;
 
   std::int64_t index(const glm::ivec3& p) const {

@@ -21,8 +21,9 @@
 namespace limber {
 
 constexpr std::size_t kMostSurfaceTriangles = 2'000'000;
-constexpr std::uint64_t kMostSurfaceBytes = std::uint64_t{1} << 30;  // 1 GiB; ASCII STL needs about half
-constexpr double kFarthestSurfacePoint = 1e6;                        // 1 km: limit on each coordinate, mm
+// Upper limit on the size of a file, bytes; kMostSurfaceTriangles in ASCII STL take about half of it.
+constexpr std::uint64_t kMostSurfaceBytes = std::uint64_t{1} << 30;
+constexpr double kFarthestSurfacePoint = 1e6;  // 1 km: limit on each coordinate, mm
 constexpr const char* kSurfaceFileEndings = ".stl, .obj, .ply, .glb or .gltf";
 
 // Throws Error if the file cannot be read, is damaged, has no triangle with an area, has more than

@@ -26,8 +26,8 @@ class SurfaceSoup {
 
   [[noreturn]] void refuse(const std::string& what, const std::string& what_to_do) const;
 
-  void add_point(const glm::dvec3& p);            // in mm; throws Error for a point that is not finite or too far away
-  void add_triangle(const glm::ivec3& f);         // indices of points, which may be added later
+  void add_point(const glm::dvec3& p);            // adds a point, mm; throws Error if it is not finite or too far away
+  void add_triangle(const glm::ivec3& f);         // adds a triangle of point indices; the points may be added later
   void add_polygon(std::span<const int> f);       // splits a polygon with three or more corners into a fan of triangles
   void check_triangles(std::size_t count) const;  // throws Error if `count` triangles are too many
 

@@ -34,7 +34,7 @@ double border_along(const VoxelLookup& voxel_at, const glm::dvec3& from, int axi
     return double(best) / steps;
   }
   for (int k = 0; k < steps; ++k) wrong += seen[k] == first;
-  for (int k = 0; k <= steps; ++k) {  // region `first` ends before sample k
+  for (int k = 0; k <= steps; ++k) {  // tests the border before sample k
     if (wrong < least_wrong) least_wrong = wrong, best = k;
     if (k < steps) wrong += (seen[k] == second) - (seen[k] == first);
   }

@@ -85,7 +85,7 @@ class LatticeFaces {
 
 struct Circle {
   double radius, z;
-  int sides;  // number of vertices; 1 for the middle of an end
+  int sides;  // number of vertices; 1 for the centre of an end
 };
 
 // Joins circle a, with the vertices [a, a + na), to circle b, with the vertices [b, b + nb). Seen along a circle in the

@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 struct Face {
-  int middle, high;  // the face's middle and largest node
+  int middle, high;  // the face's middle and largest node index
   int tet, face;
 };
 

@@ -34,7 +34,7 @@ std::vector<std::array<int, 4>> neighbours_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::array<int, 4>>& neighbours);
 
-double signed_volume(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);      // mm3
-double smallest_dihedral(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);  // radians
+double signed_volume(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);      // returns mm3
+double smallest_dihedral(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);  // returns radians
 
 }  // namespace limber

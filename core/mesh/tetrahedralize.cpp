@@ -17,7 +17,7 @@ namespace {
 using Row = std::array<int, 3>;
 
 struct Polyhedra {
-  std::vector<double> points;  // x, y, z of each point
+  std::vector<double> points;  // coordinates x, y, z of each point, one after the other
   std::vector<Row> triangles;
 };
 

@@ -17,7 +17,7 @@ namespace limber {
 namespace {
 
 struct AirRun {
-  int begin, end;  // x of the run's first voxel, and of the voxel after its last
+  int begin, end;  // range [begin, end) of the run's voxels along x
 };
 
 // Finds the runs of air voxels along x that have tissue at both ends, and joins runs that share a voxel face. Air
@@ -56,8 +56,9 @@ class AirRuns {
 
  private:
   struct Row {
-    std::int64_t first;            // index in runs_ of the row's first air run
-    int tissue_begin, tissue_end;  // x range [begin, end) of the row's tissue; (grid size, 0): none
+    std::int64_t first;  // index in runs_ of the row's first air run
+    // Range [begin, end) of the row's tissue along x; (grid size, 0): the row has no tissue.
+    int tissue_begin, tissue_end;
   };
 
   std::int64_t row(int y, int z) const { return y + std::int64_t{size_.y} * z; }

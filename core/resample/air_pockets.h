@@ -33,9 +33,9 @@ std::vector<glm::ivec3> fill_grown_pockets(LabelEdit posed, const LabelView& res
 // so it is the rest point of a neighbouring tissue voxel.
 struct Origin {
   std::int64_t beside;  // index of the neighbouring posed voxel that the rest point is taken from
-  glm::dvec3 rest;      // voxel coordinates
+  glm::dvec3 rest;      // the rest point, voxel coordinates
 };
-using Origins = std::map<std::int64_t, Origin>;  // by index of the filled voxel in the posed volume
+using Origins = std::map<std::int64_t, Origin>;  // key: index of the filled voxel in the posed volume
 // Returns, for each voxel that was filled with tissue, its rest point and the neighbour that it is taken from.
 //   was_air     filled voxels, each one beside original tissue or beside an earlier voxel of the list
 //   rest_point  called for voxels of original tissue only

@@ -33,7 +33,7 @@ using Counts = std::map<Label, std::int64_t>;
 struct Contested {
   std::int64_t at;  // index in the posed volume
   std::array<Label, kAsked> label;
-  std::array<float, kAsked> membership;  // membership of each tissue of `label`, descending
+  std::array<float, kAsked> membership;  // membership of each tissue in `label`, in descending order
   int count;                             // number of tissues in `label`; 0: the voxel keeps its tissue
 };
 

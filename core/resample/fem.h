@@ -28,7 +28,7 @@ struct TissueModel;
 enum class FemQuality { Draft, Normal, Fine };
 
 struct Fem {
-  bool contact = false;                     // true: skin is pushed apart instead of passing through skin
+  bool contact = false;                     // true: contact stops skin from passing through skin
   FemQuality quality = FemQuality::Normal;  // number of tets across the thinnest bent limb: 8, 12, or 24 at joints
   std::optional<double> spacing_mm;         // edge length of the tets; none: the quality decides
   // Length in mm that scales how far around a bent joint tissue is meshed, and how far from other bones a bone belongs
@@ -36,7 +36,7 @@ struct Fem {
   std::optional<double> reach_mm;
   Mesher mesher = Mesher::lattice;
   bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
-  std::vector<FemObject> objects;  // rigid objects that press on the posed body; they need contact
+  std::vector<FemObject> objects;  // rigid objects that press on the posed body; `contact` must be true
   glm::dvec3 gravity{0};           // acceleration of gravity, m/s2, in the world
   std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
   std::function<void(const SolveStep&)> on_step;    // called after every iteration
@@ -45,11 +45,12 @@ struct Fem {
 // Size and quality of the tet mesh, at rest and posed.
 struct MeshReport {
   std::int64_t tets = 0, nodes = 0;
-  std::int64_t inverted = 0;                       // inverted tets (det F <= 0), summed over the ends of all steps
+  // Number of inverted tets (det F <= 0), summed over the ends of all steps.
+  std::int64_t inverted = 0;
   double min_det_f = 1;                            // smallest det F (volume ratio posed / rest) of all soft tets
-  std::int64_t joint_tets = 0;                     // soft tets between two bones; min_det_f leaves them out
+  std::int64_t joint_tets = 0;                     // number of soft tets between two bones; min_det_f leaves them out
   double share_below_fifth = 0;                    // share of the soft tets with det F below 0.2, [0, 1]
-  std::optional<std::int64_t> self_intersections;  // pairs of crossing triangles of the posed border
+  std::optional<std::int64_t> self_intersections;  // number of pairs of crossing triangles of the posed surface
   // Number of surface nodes that are nearer to another part of the posed surface than 1.5 times the contact distance.
   // They are counted even if contact is off.
   std::int64_t contact_nodes = 0;
@@ -79,7 +80,7 @@ struct SolveReport {
   // are written at their exact positions.
   double bone_drift_mm = 0;
   SolveParameters parameters;
-  std::optional<FemError> error;  // none: not estimated
+  std::optional<FemError> error;  // estimated error of the shape; none: not estimated
 };
 
 }  // namespace limber

@@ -18,8 +18,8 @@ namespace limber {
 constexpr double kStandardGravity = 9.80665;  // acceleration of gravity, m/s2
 
 struct FemObject {
-  std::string name;      // for messages and the report
-  TriangleMesh surface;  // at its target position, world, mm
+  std::string name;      // name of the object in messages and the report
+  TriangleMesh surface;  // surface of the object at its target position, world, mm
   // World direction from which the object comes; its length does not matter. None: of the six directions along the
   // world axes, the one with the shortest way.
   std::optional<glm::dvec3> from;
@@ -45,7 +45,7 @@ struct ObjectReport {
 
 // A node of the skin that an object presses on.
 struct PressedNode {
-  glm::dvec3 position;  // in the pose, world, mm
+  glm::dvec3 position;  // posed position of the node, world, mm
   double kpa, area_mm2;
   int object;
 };
@@ -85,7 +85,8 @@ class FemObjects {
  private:
   struct Way {
     std::vector<glm::dvec3> of_vertex;  // motion of each vertex per mm that the object moves away
-    double clear_mm = 0;                // distance at which the object does not touch the body
+    // Distance from the target position at which the object does not touch the body, mm.
+    double clear_mm = 0;
   };
   std::vector<Way> ways_to(const FemObject& object) const;
   NodePositions positions(const std::vector<double>& away) const;

@@ -351,7 +351,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   measure(solved, spacing_, settings.contact_mm, *shape);
   std::erase_if(shape->mesh.stretch, [&](const auto& tissue) {
     return is_bone_[tissue.first] != 0;
-  });  // bone voxels move rigidly, even inside tets that stretch
+  });  // bone tissue has no stretch: its voxels move rigidly, even inside tets that stretch
   if (fem_.estimates_error)
     shape->solve.error = ends && !solved.converged ? FemError{.unknown = "the solve did not come to the pose"}
                                                    : error_of(*shape, progress);

@@ -22,8 +22,8 @@ namespace limber {
 struct TissueModel;
 
 struct FemMesh {
-  TetMesh tets;                       // at rest
-  std::vector<TetMaterial> material;  // #T
+  TetMesh tets;                       // the mesh at rest
+  std::vector<TetMaterial> material;  // #T: material of each tet
   std::vector<std::uint8_t> joint;    // #T: 1 for a tet between two bones, else 0
 
   bool is_soft(std::int64_t tet) const { return tets.region[tet] == TetMesh::kSoft && !joint[tet]; }
@@ -31,8 +31,8 @@ struct FemMesh {
 
 struct FemStep {
   double reached = 0;                   // share of the way from rest to the pose, [0, 1]
-  int iteration = 0;                    // iterations so far
-  double residual_mm = 0;               // longest motion of a node in this iteration's Newton step
+  int iteration = 0;                    // number of iterations so far
+  double residual_mm = 0;               // longest motion of a node in this iteration's Newton step, mm
   std::vector<RigidTransform> motions;  // posed-from-rest motion of each bone of the weights
   Eigen::MatrixX3d V;                   // #V node positions, world, mm
 };

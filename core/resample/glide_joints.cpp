@@ -78,7 +78,7 @@ double angle_of(const glm::dquat& turn) {
 struct Joint {
   int bone, against;                 // the rig bone that may be shifted; its nearest ancestor with bone tissue
   std::vector<RigidTransform> path;  // motion of `bone` relative to `against` after each step; the last: in the pose
-  double most_mm;                    // upper limit on the length of the shift
+  double most_mm;                    // upper limit on the length of the shift, mm
   int below = 0;                     // number of bent joints above this one in the rig's hierarchy
 };
 
@@ -146,7 +146,7 @@ Box taken_into(const Box& box, const BoneTissue& bone, const std::vector<AffineT
       from.add(before * glm::dvec3((corner & 1 ? box.high : box.low).x, (corner & 2 ? box.high : box.low).y,
                                    (corner & 4 ? box.high : box.low).z));
   }
-  from = from.grown(glm::length(spacing) / 100);  // for rounding errors
+  from = from.grown(glm::length(spacing) / 100);  // a margin for rounding errors
   Box around;
   for (const glm::ivec3& v : bone.voxels) {
     const glm::dvec3 place = glm::dvec3(v) * spacing;

@@ -39,7 +39,7 @@ struct GlideSettings {
 struct GlidedJoint {
   std::string bone, against;  // the rig bone that is shifted; the rig bone that it would overlap
   glm::dvec3 shift{0};        // shift of the bone along the world axes, mm
-  double most_mm = 0;         // upper limit on the length of the shift
+  double most_mm = 0;         // upper limit on the length of the shift, mm
   bool free = true;           // true: with the shift the bones overlap by half a voxel at most
   double depth_before = 0;    // how far the deepest overlap exceeds half a voxel without the shift, mm
   double depth_after = 0;     // how far the deepest overlap exceeds half a voxel with the shift, mm

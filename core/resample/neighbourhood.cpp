@@ -109,7 +109,7 @@ std::optional<glm::ivec3> nearest_voxel(const LabelView& volume, Label label, co
   const glm::ivec3 centre(glm::floor(point + 0.5));
   const glm::dvec3 spacing = volume.grid.spacing;
   const double least = std::min({spacing.x, spacing.y, spacing.z});
-  double nearest = INFINITY;  // squared distance, mm^2
+  double nearest = INFINITY;  // squared distance to the nearest voxel found so far, mm2
   glm::ivec3 found(0);
   // Shell n holds the voxels n steps from the central voxel. Each of them is at least n - 0.5 voxels away from `point`.
   for (int shell = 0; shell <= kReach && least * (shell - 0.5) < std::sqrt(nearest); ++shell)

@@ -183,7 +183,7 @@ class Organs {
   // Connected components: their sizes are kept up to date, but their voxel runs are those of the initial volume.
   Components parts_;
   std::unordered_map<std::int64_t, int> part_of_changed_;  // current component of each changed voxel, by voxel index
-  std::vector<std::int64_t> has_;                          // number of voxels, by label
+  std::vector<std::int64_t> has_;                          // number of voxels of each tissue, by label
   std::vector<Box> box_;                                   // box around all voxels of each tissue, by label
 };
 

@@ -36,7 +36,7 @@ constexpr std::int64_t kJudged = 5000;
 // What write() finds in one tile of the posed volume: its counts, and the voxels that may need repair.
 struct TileCounts {
   VoxelRange range;
-  RowSet row_used, row_has_bone;  // one entry per row (along x) of the range
+  RowSet row_used, row_has_bone;  // for each row (along x) of the range: 1 if it has tissue; 1 if it has bone
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
@@ -102,7 +102,7 @@ class PosedVoxels {
   }
 
   void run(Progress& progress) {
-    int low = 0;  // z of the layer of tiles that is added
+    int low = 0;  // lowest z of the layer of tiles that is added
     for_each_tile<TileCounts>(
         progress, "resample", [&](const VoxelRange& range, TileCounts& counts) { run_tile(range, counts); },
         [&](const TileCounts& tile) {
@@ -239,7 +239,7 @@ class PosedVoxels {
   }
 
   void forget_corners_below(int z) const {
-    const bool fills_again = settings_.mass_exact || (mends_ && has_tets_);  // see soft_borders()
+    const bool fills_again = settings_.mass_exact || (mends_ && has_tets_);  // soft_borders() needs the corners
     if (!fills_again) lattice_.forget_corners_below(z);
   }
 
@@ -379,7 +379,7 @@ class PosedVoxels {
     }
     const Label own = volume_.voxels[map.cell[i]];
     Label label = settings_.nearest ? own : sampler_.tissue(rest);
-    if (label == 0) label = own;  // the rest point lies on the outer border of the tissue
+    if (label == 0) label = own;  // then the rest point is on the outer border of the tissue
     if (!labels_.bone[label]) return label;
     Label soft = settings_.nearest ? Label{0} : sampler_.tissue(rest, labels_.soft);
     if (soft == 0) soft = sampler_.prevailing(rest, labels_.soft, kReach);

@@ -33,7 +33,7 @@ struct LabelSets {
 
 // The input of write_voxels(): a body and its deformation.
 struct PosedBody {
-  const LabelVolume& volume;  // at rest
+  const LabelVolume& volume;  // the body's labels at rest
   const TissueTable& tissues;
   const LabelSets& labels;
   const PosedLattice& lattice;

@@ -386,7 +386,7 @@ class Mending {
   // True: posed_ and tissue_ are the same volume of tissue labels. False: the labels in posed_ are rig bones.
   const bool in_tissue_;
   const RestPoint& rest_point_;
-  Components of_posed_;  // the voxel runs are those before any change, the sizes are kept up to date
+  Components of_posed_;  // its voxel runs are those before any change; its sizes are kept up to date
   const Components& of_rest_;
   std::map<int, std::vector<Stretch>> stretches_;  // voxel runs of the current label, by component
   std::vector<int> joined_;  // index of the component that each component was joined to, or its own index

@@ -59,22 +59,24 @@ struct MassExactReport {
 // by compare().
 struct DeformReport {
   std::int64_t tissue_voxels = 0;
-  std::int64_t dropped_voxels = 0;       // tissue voxels whose posed position is outside the output grid
-  std::int64_t new_hole_voxels = 0;      // posed voxels inside a posed tissue cell that have no label
-  std::int64_t overlap_voxels = 0;       // posed voxels in which posed cells overlap that are not neighbours at rest
-  std::int64_t bone_overlap_voxels = 0;  // posed voxels in which bone tissue of two rig bones overlaps
+  std::int64_t dropped_voxels = 0;   // number of tissue voxels whose posed position is outside the output grid
+  std::int64_t new_hole_voxels = 0;  // number of posed voxels inside a posed tissue cell that have no label
+  // Number of voxels in which posed cells overlap that are not neighbours at rest.
+  std::int64_t overlap_voxels = 0;
+  std::int64_t bone_overlap_voxels = 0;  // number of posed voxels in which bone tissue of two rig bones overlaps
   // Number of voxels that were moved to another tissue to repair skin, connected components (preserve_connectivity.h)
   // and volumes.
   std::int64_t mended_voxels = 0;
-  std::int64_t new_skin_voxels = 0;    // voxels that became skin because the pose exposed flesh or bone to air
-  std::int64_t filled_air_voxels = 0;  // air voxels filled in hollows that the pose closed or made larger
+  // Number of voxels that became skin because the pose exposed flesh or bone to air.
+  std::int64_t new_skin_voxels = 0;
+  std::int64_t filled_air_voxels = 0;  // number of air voxels filled in hollows that the pose closed or made larger
   // Number of voxels that each label lost to another tissue where tissues overlap; 65536 values, by label.
   std::vector<std::int64_t> overlap_by_label;
   struct BoneResidual {
     std::string name;
     // Largest distance between a posed bone voxel and the position to which the bone's motion moves its rest point, mm.
     double rigid_residual_mm = 0;
-    std::int64_t voxels = 0;  // posed voxels of bone tissue of this rig bone
+    std::int64_t voxels = 0;  // number of posed voxels of bone tissue of this rig bone
   };
   std::vector<BoneResidual> bones;              // rig bones with posed bone tissue
   std::optional<SettledFlesh::Report> settled;  // only with mixed blending; none: the pose bends nothing
@@ -93,8 +95,9 @@ struct Posed {
   LabelVolume volume;
   DeformReport report;
   ZeroedVector<glm::vec3> displacement;  // posed - rest, mm, on the output grid; zero in air
-  TiledVectors tiled_displacement;       // the same, in less memory
-  ZeroedVector<float> jacobian;          // on the output grid; zero in air
+  TiledVectors tiled_displacement;       // the same vectors as in `displacement`, stored in tiles in less memory
+  // Det of the Jacobian of the map from rest to pose, on the output grid; zero in air.
+  ZeroedVector<float> jacobian;
   // Overlap in each voxel of the output grid: 0: none, 1: tissue overlaps, 2: bone tissue of two bones overlaps.
   ZeroedVector<Label> overlap;
   GreyVolume grey;

@@ -55,7 +55,8 @@ class RestPoints {
   std::int64_t room_;
   std::atomic<std::int64_t> used_ = 0;
   std::unique_ptr<glm::vec3[]> points_;
-  std::vector<std::vector<Row>> tiles_;             // rows of each tile, y fastest; empty: the tile is not stored
+  // Rows of each tile, y fastest; an empty list: the tile is not stored.
+  std::vector<std::vector<Row>> tiles_;
   std::unordered_map<std::int64_t, Block> blocks_;  // blocks with requested points, by the index of their lowest voxel
 };
 

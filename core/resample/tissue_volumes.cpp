@@ -27,7 +27,7 @@ const std::array<glm::ivec3, 6> kFaces{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1
 
 // The possible moves (changes of a voxel's label) from one tissue to another one.
 struct Border {
-  std::vector<BorderMove> moves;    // sorted by rising cost
+  std::vector<BorderMove> moves;    // possible moves, in ascending order of cost
   size_t next = 0;                  // index of the next move to try
   std::vector<BorderMove> refused;  // moves that are not possible now, but may be after other moves
 };
@@ -280,7 +280,7 @@ class Exchange {
   Components parts_;
   std::unordered_map<std::int64_t, int> part_of_changed_;  // current component of each changed voxel, by voxel index
   std::map<Label, std::int64_t> missing_;  // voxels that each tissue lacks; the entry of air (0) balances the sum
-  std::map<std::pair<Label, Label>, Border> borders_;  // by (tissue that loses a voxel, tissue that gains it)
+  std::map<std::pair<Label, Label>, Border> borders_;  // key: (tissue that loses a voxel, tissue that gains it)
   std::int64_t changed_ = 0;
 };
 
