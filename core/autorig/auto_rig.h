@@ -5,12 +5,10 @@
 //      the orientation of the body;
 //   2  the skin gives pose and proportions (core/autorig/articulated_fit.h);
 //   3  if labels name bones, joints are placed where two bones meet (core/autorig/named_joints.h), and the body's limbs
-//   are
-//      moved onto them;
+//      are moved onto them;
 //   4  if the tissue table says which labels are bone, the bones' surfaces give the joints. If the volume has rods
-//   instead
-//      of anatomical bones, the rods' axes are used. Without a table, the label along the long bones is used as bone
-//      (core/bones/guess_bone_labels.h);
+//      instead of anatomical bones, the rods' axes are used. Without a table, the label along the long bones is used as
+//      bone (core/bones/guess_bone_labels.h);
 //   5  where the skin differs from that of the known body, landmarks of the volume's own shape correct the joints
 //      (core/autorig/joint_landmarks.h).
 // If the body is cut off (core/autorig/cut_planes.h), only the part in the volume is fitted. The joints beyond the cut

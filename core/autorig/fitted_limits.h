@@ -10,9 +10,8 @@ namespace limber {
 
 // Returns the fitted rig with limits that allow the same anatomical angles as those of `rig`, and always the rest pose.
 //   hinge  The range is shifted by the difference between the angles at rest. If a hinge bends one way only and rests
-//   bent
-//          against its axis, its axis is reversed. If an elbow or knee rests bent across its axis, its axis becomes
-//          perpendicular to its bones.
+//          bent against its axis, its axis is reversed. If an elbow or knee rests bent across its axis, its axis
+//          becomes perpendicular to its bones.
 //   ball   The cone (limit of the swing away from rest) is changed so that the bone still reaches the same smallest and
 //          largest angles to the anatomical position. The twist limits stay, since twist has no anatomical zero.
 // Joints whose anatomical position cannot be determined from their bones keep their limits.

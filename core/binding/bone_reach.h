@@ -20,7 +20,7 @@ namespace limber {
 // as further away in this comparison, and the distance of the flesh that follows the chest's bones is then shortened as
 // if ribs were near it.
 struct BoneReach {
-  // The region to which a bone belongs in a body whose chest has no ribs; None: another region.
+  // In a body whose chest has no ribs: whether the bone belongs to the chest or to an arm; None: to neither.
   enum class Cage : std::uint8_t { None, Chest, Arm };
   // Factor on distances inside the missing rib cage, since ribs would be nearer to the flesh than the spine is.
   static constexpr float kInCage = 0.4f;

@@ -65,10 +65,8 @@ class TissueFront {
   // Spreads the front until no path gets shorter. is_shorter and take are called from several threads, for different
   // voxels.
   //   is_shorter  a function (source, to, way) that returns true if a path of length `way` (mm) to voxel `to` is better
-  //   than
-  //               the best known path to `to`. It returns false for a path of equal length. If it returns false, it
-  //               must
-  //               also return false for any longer path.
+  //               than the best known path to `to`. It returns false for a path of equal length. If it returns false,
+  //               it must also return false for any longer path.
   //   take        a function (source, to, way) that stores such a path; the front spreads further from there
   //   reached     #tissue voxels: the array that is_shorter reads. It is only prefetched into the cache.
   template <class IsShorter, class Take>
@@ -167,7 +165,7 @@ class TissueFront {
         const bool is_own = &beyond == &domain;
         // The length of the straight path is a lower limit: a path that must bend is longer.
         float way = before + straight_on[direction];
-        // A path never goes back to its own corner. For a voxel in another domain, nothing else can be tested here.
+        // A path never goes back to its own corner. For a voxel in another domain, only this can be tested here.
         if (is_own ? !is_shorter(here.source, std::int64_t{there}, way) : straight_on[direction] == 0) continue;
         const bool near_seam = seams && is_near_seam[brick];
         if (near_seam && seams->is_cut_towards(voxel, direction)) continue;

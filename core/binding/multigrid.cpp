@@ -45,7 +45,7 @@ std::vector<std::uint64_t> blocks_of(const CellGraph& graph, const glm::i16vec3&
 
 // Calls body(cell) for each cell of the connected set of cells that contains `seed` within one block.
 //   is_open  returns true if the search may enter a cell; body must make is_open return false for the cells that it
-//   gets
+//            gets
 template <class IsOpen, class Body>
 void search_block(const CellGraph& graph, const std::vector<std::uint64_t>& block, std::int32_t seed,
                   std::vector<std::int32_t>& open, const IsOpen& is_open, const Body& body) {
@@ -99,8 +99,8 @@ std::vector<std::int32_t> aggregate(const CellGraph& fine, CellGraph& coarse, Lo
   for (std::int32_t i = 0; i < fine.size(); ++i)
     if (parent[i] == i) seeds.push_back(i);
 
-  // Cells of colour 0 come first. Otherwise they stay in the order of their first cells, which keeps neighbours close
-  // in memory.
+  // Coarse cells of colour 0 come first. Within a colour, coarse cells have the order of their first fine cells, which
+  // keeps neighbours close in memory.
   std::vector<std::int32_t> number(fine.size());
   for (int colour = 0; colour < 2; ++colour) {
     for (const std::int32_t seed : seeds)

@@ -23,7 +23,8 @@ FittingBoneMap fitting_bone_map(const BoneMap& map, const TissueTable& tissues, 
 std::string to_json(const BoneMap& map);
 void write_bone_map(const BoneMap& map, const Path& path);
 
-// A row of the shown bone map: a label of bone tissue, or one side of a label, and the rig bones that it follows.
+// A row of the bone map as it is shown to the user: a label of bone tissue, or one side of a label, and the rig bones
+// that it follows.
 struct MappedLabel {
   Label label = 0;
   // Left or Right if the label's sides follow different rig bones. None: the row is for the whole label.

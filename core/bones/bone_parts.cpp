@@ -172,8 +172,7 @@ class Pieces {
   //     follows a bone of the pieces that it touches: the nearest one if these bones form a chain, or their common
   //     ancestor.
   //   - The same holds for a piece that is three times as far and does not touch the own piece of its nearest bone,
-  //   unless
-  //     it is about as large as that piece and touches the bone's parent (a toe beside a toe).
+  //     unless it is about as large as that piece and touches the bone's parent (a toe beside a toe).
   //   - A piece that is nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());

@@ -55,7 +55,7 @@ class LabelWalls {
     std::vector<std::int64_t> faces(kinds.size()), bone_faces(kinds.size());
     std::mutex adding;
     parallel_for(std::ssize(tissue.bricks()), kBricks, [&](std::int64_t begin, std::int64_t end) {
-      // By plain label: number of faces; number of those that touch bone.
+      // For each label of plain bone: number of its voxels' faces; number of those that touch bone.
       std::map<Label, std::array<std::int64_t, 2>> some;
       tissue.for_each(begin, end, [&](std::int64_t, const glm::ivec3& v) {
         const Label label = volume.at(v);

@@ -85,8 +85,7 @@ class Assigning {
 
   // Lists the voxels of every set by their index in the graph.
   //   counts  in: for each block of voxels, the number of voxels in each set; out: the index in the set at which the
-  //   block
-  //           begins
+  //           block begins
   void list_voxels(std::vector<std::vector<std::int64_t>>& counts) {
     for (std::size_t k = 0; k < sets_.size(); ++k) {
       std::int64_t total = 0;

@@ -11,8 +11,7 @@ class Claims {
  public:
   //   priority  by label: where cells overlap, the one whose tissue has the higher priority wins
   //   depth     depth of rest points below the body's surface: in a fold, where several cells cover a voxel, the
-  //   deepest
-  //             cell wins. nullptr: the pose makes no fold
+  //             deepest cell wins. nullptr: the pose makes no fold
   Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
       : map_(map),
         volume_(volume),

@@ -25,8 +25,7 @@ class TissueDepth {
   // Keeps a reference to `tissue`, which must outlive this object.
   //   spacing     size of a voxel, mm
   //   most_steps  for cubic voxels: if a squared depth, in squared voxel edges, exceeds this limit, all depths are
-  //   computed
-  //               as floats instead of integers; at most 65 534
+  //               computed as floats instead of integers; at most 65 534
   TissueDepth(const TissueVoxels& tissue, const glm::dvec3& spacing, int most_steps = 65534);
 
   static constexpr int kBrickVoxels = 512;

@@ -9,10 +9,8 @@
 //    stiff  the tissue in a cell that follows one bone with full weight, if the cell's corners also follow other bones
 //    side   the tissue in a cell on one side of a gap, such as hand and thigh or two fingers. The sides are connected
 //           only far from the cell and can move apart, so each follows its own bones, and the cell itself is not posed.
-//           A
-//           cell with only one side has this part too if the cell's vertices also follow tissue across a gap. [the
-//           virtual
-//           nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology]
+//           A cell with only one side has this part too if the cell's vertices also follow tissue across a gap. [the
+//           virtual nodes of Molino, Bao & Fedkiw 2004, A virtual node algorithm for changing mesh topology]
 //
 // Coordinates. Cell c covers the voxels c * step to c * step + step - 1. In *cell coordinates* its centre is the
 // integer c and its lowest corner, vertex c, is at c - 1/2, in the same way as for the voxels of lattice.h.

@@ -179,8 +179,7 @@ inline std::array<Lanes, 2> lanes_of_two(const FixedPoint* points) {
 class PosedCell {
  public:
   //   lowest      the corner with the smallest x, y and z at rest. In its array, the next corner along x, y and z is 1,
-  //   `row`
-  //               and `slice` elements further. The array must outlive the cell
+  //               `row` and `slice` elements further. The array must outlive the cell
   //   rest_voxel  the voxel whose centre is the centre of the cube at rest
   PosedCell(const FixedPoint* lowest, int row, int slice, const glm::ivec3& rest_voxel)
       : lowest_(lowest),

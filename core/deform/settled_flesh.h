@@ -52,7 +52,7 @@ class SettledFlesh {
   // Returns the shift of one corner of a voxel near a seam.
   //   lowest  the lowest of the eight voxels around the corner
   //   around  one bit for each of the eight voxels, x fastest, bit 0 for the lowest: 1 if the voxel's cell contributes;
-  //   not 0
+  //           not 0
   glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const;
 
  private:

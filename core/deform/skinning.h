@@ -9,11 +9,9 @@
 //                     apart.) [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual
 //                     quaternion blending]
 //    mixed            blends linearly and by dual quaternions, and mixes the results: kQuaternionShare of the second,
-//    the
-//                     rest of the first. Linear blending thins bent and twisted joints, dual quaternions make them
-//                     bulge,
-//                     and most of both errors cancels. Whole bodies that sit or raise their arms keep their volume best
-//                     with it (figures in assets/docs/guide/blending.md).
+//                     the rest of the first. Linear blending thins bent and twisted joints, dual quaternions make them
+//                     bulge, and most of both errors cancels. Whole bodies that sit or raise their arms keep their
+//                     volume best with it (figures in assets/docs/guide/blending.md).
 // Dual quaternions contain no scale. The motion of a bone that stretches is split into a stretch along its own rest
 // axes and a rigid motion; the stretches are blended linearly and applied first.
 #pragma once

@@ -57,8 +57,7 @@ class ContactForm {
   // Marks the pairs whose two parts would come too near to each other in the whole `step`.
   //   x        the positions given to build_broad_phase()
   //   changed  #nodes: 1 for nodes whose step has changed since the last call; only pairs with such a node are tested
-  //   again.
-  //            Empty: all pairs are tested, and `step` must be the step given to build_broad_phase()
+  //            again. Empty: all pairs are tested, and `step` must be the step given to build_broad_phase()
   void mark_blocking_pairs(const NodePositions& x, const NodePositions& step, const std::vector<char>& changed);
   // Calls visit(nodes) for each pair that mark_blocking_pairs() has marked.
   template <class Visit>

@@ -60,8 +60,7 @@ class ElasticForm {
   ElasticForm() = default;
   //   T      #T tets with positive volume at `rest`, in an order that keeps neighbours close
   //   first  #patches + 1: index of the first tet of each patch (PatchOrder). A patch has at least one tet and fewer
-  //   than 256
-  //          nodes. Empty: every tet is a patch
+  //          than 256 nodes. Empty: every tet is a patch
   ElasticForm(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetEnergy>& energy,
               std::vector<std::int64_t> first = {});
 

@@ -70,11 +70,9 @@ class FemEnergy {
   // Computes the Newton step at x. Returns false if the Hessian is not positive definite.
   //   slope    out: decrease of the energy along the step, to first order (above 0)
   //   towards  #nodes: the step of nodes that can move without force, such as those of a flap that hangs by two nodes.
-  //   Null:
-  //            these nodes do not move
+  //            Null: these nodes do not move
   //   damping  addition to the diagonal entries of each node in the Hessian, as a share of the smallest of the three.
-  //   It
-  //            shortens steps in directions in which hardly any force acts
+  //            It shortens steps in directions in which hardly any force acts
   bool newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,
                    const NodePositions* towards = nullptr, double damping = 0);
   enum class Obstacle { None, Flesh, Guarded, Contact };

@@ -36,8 +36,7 @@ struct NewtonResult {
 
 // Minimises the energy, starting at x.
 //   x             in: positions without inverted tets, for which build_broad_phase() was called; out: the positions
-//   with
-//                 the lowest energy found
+//                 with the lowest energy found
 //   on_iteration  on_iteration(iteration, residual) is called after each iteration
 //   throws Cancelled
 NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings& settings,

@@ -35,8 +35,7 @@ class PatchForm {
   PatchForm() = default;
   //   first         #patches + 1: index of the first tet of each patch in `tets`
   //   bulk, filled  for each tet of `tets`: patch_bulk() and TetMaterial::filled. The bulk of a patch is the mean over
-  //   its
-  //                 tets, weighted by their volumes of tissue
+  //                 its tets, weighted by their volumes of tissue
   PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk,
             std::vector<double> filled);
 

@@ -57,8 +57,7 @@ LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissu
 // Builds the model of the meshed tissue.
 //   weights  each voxel of bone tissue must follow one bone with weight 1
 //   mesh     mesh of the regions that regions_to_mesh() returns. Its tets of bone b have the region 1 + b, its tets of
-//   soft
-//            tissue the region 0
+//            soft tissue the region 0
 TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                          const SkinWeights& weights, const DeformingRegion& moving, TetMesh mesh,
                          const TissueModelSettings& settings = {});

@@ -62,7 +62,7 @@ bool meets_on_plane(const P3& p, const P3& q, const Triangle& t) {
   return false;
 }
 
-// --- Tests in space.
+// --- Tests of segments and triangles in space.
 
 // Returns true if the segment from p to q and the triangle have a common point, including the triangle's border and the
 // segment's ends.
@@ -131,7 +131,7 @@ class Cells {
       for (int i = 0; i < 3; ++i)
         low_[i] = std::min(low_[i], box.low[i]), size += (box.high[i] - box.low[i]) / (3.0 * double(boxes.size()));
     side_ = std::max(2 * size, 1e-9);
-    // Doubles the cell size while a few large triangles would fill too many cells.
+    // Doubles the cell size while triangles would fill too many cells on average, because some are very large.
     constexpr double kMostEntries = 20;  // upper limit on the mean number of cells per triangle
     while (entries_needed() > kMostEntries * double(boxes.size())) side_ *= 2;
     for (std::size_t t = 0; t < boxes.size(); ++t) {

@@ -60,7 +60,7 @@ class PlyReader {
   }
 
  private:
-  // ---- The header.
+  // ---- Reads the header of the file.
 
   void read_header() {
     std::string_view header = rest_.substr(0, kLongestHeader);
@@ -126,7 +126,7 @@ class PlyReader {
     return *type;
   }
 
-  // ---- The rows.
+  // ---- Reads the rows of the elements.
 
   void read_element(const PlyElement& element) {
     if (element.properties.empty()) return;  // rows without properties take no bytes, whatever their number

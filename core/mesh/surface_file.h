@@ -32,8 +32,7 @@ TriangleMesh read_surface(const Path& path);
 
 // Parses the bytes of a file.
 //   path  path of the file: gives the format by its extension, the name for error messages, and the folder in which
-//   files
-//         that a .gltf names are searched
+//         files that a .gltf names are searched
 TriangleMesh parse_surface(const std::string& bytes, const Path& path);
 
 }  // namespace limber

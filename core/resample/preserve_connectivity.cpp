@@ -98,7 +98,7 @@ class Mending {
   }
 
   // Joins a component to another component of its tissue by a bridge of voxels. Returns false if no bridge is possible.
-  //   along_trace  as for shortest_bridge()
+  //   along_trace  true: allows a longer bridge if all its voxels come from positions inside or beside the tissue
   bool bridge_from(Label label, int part, bool along_trace) {
     for (int attempt = 0; attempt < kAttempts; ++attempt) {
       const std::optional<Bridge> bridge = shortest_bridge(label, part, along_trace);
