@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the benches of the editor's frames open: the paper's arm where LIMBER_SHARED names it, else the procedural one,
-// with geodesic weights.
+// Makes the document that the benchmarks of the editor's frames open: the arm of the Bender project from the folder
+// that the environment variable LIMBER_SHARED names, else the procedural arm, with geodesic weights.
 #pragma once
 
 #include <cstdio>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the benchmarks share. Each row runs five times and reports the median of CPU time (user + system); counters:
-//   peer      the same figure of the program it is measured against, on a comparable 2-core machine
-//   ahead     how many times better Limber is than that peer
-//   goal      how many times better it means to be
+// What the benchmarks share. Each row runs five times and reports the median of CPU time (user + system), and counters:
+//   peer      the same quantity for the program that Limber is compared with, on a comparable 2-core machine
+//   ahead     how many times better Limber is than that program
+//   goal      how many times better Limber should be
 //   peak_mb   largest memory of the process, for rows that run a whole process
 #pragma once
 
@@ -12,16 +12,16 @@
 
 namespace limber::bench {
 
-// Applies to every row: five repetitions, median only, time as told by the row itself or CPU time of one thread.
+// Gives a row five repetitions, of which the median is reported, and milliseconds as the unit.
 inline void five_times(benchmark::internal::Benchmark* row) {
   row->Repetitions(5)->ReportAggregatesOnly(true)->Unit(benchmark::kMillisecond);
 }
 
-// A whole process of `limber` as one iteration: CPU time and peak memory as the operating system counts them.
-// Fails the row when the program fails.
+// Runs a whole process of `limber` as one iteration. CPU time and peak memory are those that the operating system
+// counts for it. Fails the row when the program fails.
 double run_whole_process(benchmark::State& state, const std::vector<std::string>& arguments);
 
-// rate, higher is better / seconds, lower is better
+// Compares with another program by a rate (higher is better) or by seconds (lower is better).
 inline void against_peer_rate(benchmark::State& state, double items_per_iteration, double peer_rate, double goal) {
   state.counters["rate"] = benchmark::Counter(items_per_iteration, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["ahead"] =

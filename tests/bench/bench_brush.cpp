@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One dab of a weight brush on the paper's arm (or the procedural one) and on a body of 43 Mvoxel (or the procedural
-// one at 4 mm): which voxels it reaches, and a whole dab, in which it also changes their weights. Dabs run along the
-// bones, through the middle of limbs and trunk, where the ball holds most tissue. And a whole stroke of 200 dabs up and
-// down a leg: what it takes while it is painted (stroke_mb), of that without the bricks that become the document's
-// (own_mb), what the history keeps for its undo (undo_mb), and how long the undo takes.
+// Times one dab of a weight brush on the arm of the Bender project (or the procedural one) and on a body of 43 million
+// voxels (or the procedural body at 4 mm): first only the search for the voxels that it reaches, then the whole dab,
+// which also changes their weights. Dabs run along the bones, through the middle of limbs and trunk, where the ball
+// holds most tissue. Also measures a stroke of 200 dabs up and down a leg: its memory while it is painted (stroke_mb),
+// that memory without the bricks that the document takes over (own_mb), the memory that the history keeps for undo
+// (undo_mb), and the time of the undo.
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -96,9 +97,9 @@ void brush_reach(benchmark::State& state, const Body& (*of)(), BrushDistance dis
   state.counters["goal_ms"] = goal_ms;
 }
 
-// Strokes of 40 dabs along one bone after the other, painting that bone; bone tissue stays as it is.
-//   seen  the weights are looked at after every dab, which paints what the dab covered; else once, at the end of the
-//   stroke
+// Paints a stroke of 40 dabs along each bone, with that bone's weight; the weights of bone tissue do not change.
+//   seen  true: the changed bricks are asked for after every dab, which computes their weights; false: only at the
+//         end of the stroke
 void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, BrushDistance distance, double voxels,
                double goal_ms, BrushDepth depth, bool seen) {
   const Body& body = of();
@@ -108,7 +109,7 @@ void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, Bru
   settings.brush.distance = distance;
   settings.brush.strength = 0.5;
   settings.filter.depth = depth;
-  settings.filter.depth_mm = 25;  // as the editor's brushes begin
+  settings.filter.depth_mm = 25;  // the editor's default
   std::optional<Stroke> stroke;
   std::size_t next = 0;
   std::int64_t memory = 0;
@@ -130,7 +131,7 @@ void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, Bru
 
 void brush_stroke(benchmark::State& state, const Body& (*of)(), double voxels) {
   const Body& body = of();
-  // A leg, from the first thigh on.
+  // Takes the bones of one leg, from the first thigh to its end.
   std::vector<int> limb;
   for (int b = 0; b < std::ssize(body.armature.bones); ++b) {
     const bool begins = limb.empty() && body.armature.bones[b].name.find("high") != std::string::npos &&
@@ -151,7 +152,7 @@ void brush_stroke(benchmark::State& state, const Body& (*of)(), double voxels) {
         const Bone& bone = body.armature.bones[limb[round % 2 ? limb.size() - 1 - i : i]];
         for (int k = 0; k <= 20 && stroke.dab_count() < 200; ++k) {
           stroke.to(glm::mix(bone.head, bone.tail, (round % 2 ? 20 - k : k) / 20.0));
-          (void)stroke.weights();  // as the editor shows them, frame by frame
+          (void)stroke.weights();  // the editor reads the weights in every frame
         }
       }
     std::int64_t handed_on = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tets to voxels, and labels through the map. Peers: VTK's probe filter, 3.4 million grid voxels a second for 296 628
-// tets in a 2 mm grid of 6.46 million voxels, 0.61 million of them inside; ITK's warp filter with nearest neighbour,
-// 92 million voxels a second on the arm's grid.
+// Rasterizes tets into voxels, and resamples labels through the map. VTK's probe filter takes 3.4 million grid voxels a
+// second, for 296 628 tets in a 2 mm grid of 6.46 million voxels, 0.61 million of them inside. ITK's warp filter with
+// nearest neighbour takes 92 million voxels a second on the arm's grid.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -23,7 +23,7 @@ struct Tet {
   std::array<glm::dvec3, 4> rest;
 };
 
-// A block, bent along its length.
+// Bends a block along z.
 glm::dvec3 bent(const glm::dvec3& p) {
   const double angle = p.z / 200;
   return {30 + p.x * std::cos(angle) + 10 * std::sin(angle), 40 + p.y + 4 * std::sin(p.z / 20),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One million points with 1.78 influences each. Peer: Blender 3.4's armature modifier, points only, 13.5 (linear) and
-// 10.2 (dual quaternion) million points a second on one core.
+// Skins one million points with 1.78 influences each. Blender 3.4's armature modifier, on points only, does 13.5
+// (linear) and 10.2 (dual quaternion) million points a second on one core.
 #include <glm/gtc/quaternion.hpp>
 
 #include "core/deform/skinning.h"

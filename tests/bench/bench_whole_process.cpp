@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whole processes: weights and resampling of the paper's 2 mm arm, and how the cost grows with the number of tissue
-// voxels. Peer: Bender's ComputeArmatureWeight (17 CPU s, 213 MB) and PoseLabelmap (8.4 CPU s, 1244 MB) on the same
-// arm. Where the real volumes are absent the rows run on the procedural arm.
+// Runs whole processes: weights and resampling of the arm of the Bender project at 2 mm, and how the cost grows with
+// the number of tissue voxels. Bender's ComputeArmatureWeight takes 17 CPU s and 213 MB on the same arm, its
+// PoseLabelmap 8.4 CPU s and 1244 MB. Without these files the rows run on the procedural arm.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

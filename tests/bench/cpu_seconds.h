@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// CPU time, user and system, of this process and of those it has started and seen end; s.
+// Returns the CPU time (user and system) of this process and of its child processes that have ended, in seconds.
 #pragma once
 
 #include <sys/resource.h>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // editor_opening VOLUME...
-// How long the editor takes to show a volume that it is started with: the real editor, in a window of 1280x720 that is
-// a picture in memory, five times for each volume, each in a process of its own. Prints as JSON the medians of
+// Measures how long the editor takes to show a volume that it is started with. The real editor runs in an offscreen
+// window of 1280x720, five times for each volume, each time in a new process. Prints the medians as JSON:
 //   window_cpu_seconds         CPU seconds (user and system, all threads) before the first frame: libraries, fonts,
-//   shaders first_picture_cpu_seconds  from the first frame, which is the window, to the first frame that shows the
-//   volume first_picture_seconds      the same divided by two: how long it takes on two cores that are otherwise idle
+//                              shaders
+//   first_picture_cpu_seconds  from the first frame, which shows the empty window, to the first that shows the volume
+//   first_picture_seconds      the same divided by two: the time on two cores that are otherwise idle
 //   longest_frame_cpu_seconds  CPU seconds of the interface's own thread in its longest frame until then
 //   complete_cpu_seconds       from the first frame until the picture is at full resolution
 //   frames_with_progress       how many frames in between showed the job's progress
@@ -38,7 +39,7 @@ double seconds(clockid_t clock) {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-// Whether the last frame's picture holds the volume.
+// Returns true if the last frame's picture holds the volume.
 bool shows_volume(const Editor& editor) { return editor.document().volume && editor.views->body.picture->scale() > 0; }
 
 constexpr int kRuns = 5;
@@ -63,7 +64,7 @@ Figures open_once(const Path& volume) {
     const double before = seconds(CLOCK_THREAD_CPUTIME_ID);
     editor.frame(seconds(CLOCK_MONOTONIC) - begin);
     host->picture();
-    editor.views->renderer.finish();  // a frame has ended when its picture is there
+    editor.views->renderer.finish();  // the frame counts as ended when its picture is drawn
     if (first_picture == 0) {
       longest = std::max(longest, seconds(CLOCK_THREAD_CPUTIME_ID) - before);
       if (shows_volume(editor)) first_picture = seconds(CLOCK_PROCESS_CPUTIME_ID) - window;
@@ -75,7 +76,7 @@ Figures open_once(const Path& volume) {
   return {window, first_picture, first_picture / 2, longest, seconds(CLOCK_PROCESS_CPUTIME_ID) - window, progress};
 }
 
-// In a process that has done nothing yet.
+// Opens the volume in a new process, so that no cache is warm.
 Figures open_in_new_process(const Path& volume) {
   int ends[2];
   if (::pipe(ends) != 0) throw Error("no pipe", volume.string(), "close some programs");

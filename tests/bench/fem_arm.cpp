@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What finite elements cost on a real arm, beside one factorization of the same matrix and a resampling by dual
-// quaternions. Called as
-//   limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free|:same]...]     free: without contact     same: without, on the
-//   mesh with contact,
-// which is larger: what the pose brings together is pressed, and so in it
-// CPU seconds of one thread, of this process and of TetGen's; what other work on the machine does to them is told by
-// the factorization.
+// Measures what finite elements cost on a real arm, beside one factorization of the same matrix and a resampling by
+// dual quaternions. Called as
+//   limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free|:same]...]
+//     free: without contact, on its own mesh
+//     same: without contact, on the mesh made for contact; that mesh is larger, since it holds all that the pose brings
+//           together
+// Prints CPU seconds of one thread, of this process and of TetGen's. The seconds of the factorization show how much
+// other work on the machine slows the figures down.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -38,7 +39,7 @@ Row row_of(const std::string& word) {
   return row;
 }
 
-// The contact mesh's model; nothing of it is solved.
+// Makes the model with the mesh for contact, without solving it.
 TissueModel model_with_contact(const test::BentArm& arm, double spacing) {
   struct Enough {};
   TissueModel model;
@@ -52,9 +53,9 @@ TissueModel model_with_contact(const test::BentArm& arm, double spacing) {
   return model;
 }
 
-// What one row has cost; an iteration is told in factorizations of its matrix, and in factorizations that order the
-// matrix first.
-//   mesh  CPU seconds, where it was meshed for it
+// The cost of one row. An iteration is printed as a multiple of one factorization, and of one factorization with its
+// ordering.
+//   mesh  CPU seconds of meshing; 0 where the mesh was made before
 struct Cost {
   long long tets, crossings;
   double mesh, solve, min_det_f;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A Newton iteration beside GetFEM's with MUMPS, on a real arm's mesh, where python3-getfem is installed. Called as
+// Compares a Newton iteration with that of GetFEM with MUMPS on a real arm's mesh, where python3-getfem is installed.
+// Called as
 //   limber_fem_getfem VOLUME RIG [SPACING_MM [DEGREES]]
-// Both take the exact Newton step of flesh and springs, without contact, from the shape at an angle towards 7.5 degrees
-// on, and find the same. CPU seconds of one thread.
+// Both compute the exact Newton step of flesh and springs, without contact, from the shape at an angle towards a pose
+// that is 7.5 degrees further, and find the same step. Prints CPU seconds of one thread.
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,7 +14,7 @@
 namespace {
 using namespace limber;
 
-// What of the mesh deforms, as solve_pose takes it: not the tets deep in a bone.
+// Returns the part of the mesh that deforms, as solve_pose takes it: without the tets deep in a bone.
 test::Flesh flesh_of(const FemModel& model, const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& target) {
   const TetMesh& mesh = model.mesh;
   const auto holder = [&](Eigen::Index t) {

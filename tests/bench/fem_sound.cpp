@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whether what finite elements make of a real arm is sound: at every iteration of the way and at its end, by the mesh
-// and by voxels, beside a baseline as Bender's (one Poisson ratio of 0.3, linear tets, no contact). Called as
+// Checks that a finite element solution on a real arm is sound, at every iteration and at its end, by the mesh and by
+// voxels, beside a baseline like Bender's (one Poisson ratio of 0.3, linear tets, no contact). Called as
 //   limber_fem_sound VOLUME RIG [SPACING_MM [DEGREES...]]
-// Crossings are found by CGAL as well, where it was there to build with.
+// Crossings are also found by CGAL, if it was installed at build time.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,7 +20,7 @@
 namespace {
 using namespace limber;
 
-constexpr std::int64_t kLarge = 5000;  // voxels of a tissue that is told of
+constexpr std::int64_t kLarge = 5000;  // voxels; smaller tissues are not reported
 
 long long crossings_by_cgal([[maybe_unused]] const Eigen::MatrixX3d& V, [[maybe_unused]] const Eigen::MatrixX3i& F) {
 #ifdef LIMBER_CGAL
@@ -39,7 +39,7 @@ double least(const std::vector<double>& ratios, const TissueModel& model, long l
   return smallest;
 }
 
-// What the path was like, at every iteration.
+// Counts inverted tets and crossings over all iterations, and keeps the smallest volume ratio.
 struct Path {
   TissueModel model;
   Eigen::MatrixX3i border;
@@ -53,7 +53,7 @@ struct Path {
 };
 
 struct Losses {
-  double worst = 0, sum = 0;  // percent: of any tissue, of all
+  double worst = 0, sum = 0;  // volume change in %: the largest of one tissue, and the mean by volume
 };
 
 Losses losses(const test::BentArm& arm, const std::map<Label, double>& change, const VolumeMetrics& voxels) {
@@ -70,8 +70,8 @@ Losses losses(const test::BentArm& arm, const std::map<Label, double>& change, c
   return result;
 }
 
-// The same mesh in the same steps with Young's modulus kept, a Poisson ratio of 0.3, which leaves no patches, and no
-// contact.
+// Solves the same mesh in the same steps as Bender would: with the same Young's modulus, a Poisson ratio of 0.3, which
+// needs no patches, and no contact.
 SolvedPose as_bender(const test::BentArm& arm, FemModel model) {
   for (TetMaterial& each : model.material) each = {each.shear_modulus * (1 + each.poisson_ratio) / 1.3, 0.3};
   return solve_pose(

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // live_frames
-// How long the frames of the editor take while an arm at 2 mm follows the pose live: the arm of the paper if
-// LIMBER_SHARED names the folder that has it, else the procedural one. The real editor, in a window of 1600x900 that is
-// a picture in memory, draws at most 60 frames a second while its elbow is turned by the mouse, while it is left to
-// rest and the picture is refined tile by tile, and while a clip is scrubbed on the ruler. Prints as JSON for each of
-// the three: the number of frames, the frames a second that the window showed, and in milliseconds of CPU of the
-// interface's own thread what a frame takes: the median, the 95th percentile and the longest.
+// Measures how long the editor's frames take while an arm at 2 mm follows the pose live: the arm of the paper if
+// LIMBER_SHARED names the folder that contains it, else the procedural one. The real editor runs in an offscreen window
+// of 1600x900 and draws at most 60 frames a second: the mouse turns the elbow, then the picture is refined tile by tile
+// at rest, then a clip is scrubbed on the ruler. For each of the three, prints as JSON the number of frames, the frames
+// a second that the window showed, and the median, the 95th percentile and the maximum of a frame's CPU time on the
+// interface's own thread, in milliseconds.
 #include <algorithm>
 #include <chrono>
 #include <cmath>

@@ -23,7 +23,7 @@ void against_peer_seconds(benchmark::State& state, double seconds, double peer_s
 }
 
 namespace {
-// Of the five repetitions' aggregates only the median is worth reading.
+// Reports only the median of the five repetitions.
 class MedianReporter : public benchmark::JSONReporter {
  public:
   void ReportRuns(const std::vector<Run>& runs) override {
@@ -38,7 +38,7 @@ class MedianReporter : public benchmark::JSONReporter {
 }  // namespace limber::bench
 
 int main(int argc, char** argv) {
-  // Kernels are measured per core.
+  // Measures kernels on one core.
   const limber::ThreadCount one_thread(1);
   std::vector<std::string> words(argv, argv + argc);
   std::vector<char*> arguments;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Meshes of real bodies: how much of them is covered, how good the tets are, and where the time goes. Called as
+// Meshes real bodies and prints how much of them is covered, how good the tets are, and which step takes how long.
+// Called as
 //   limber_mesh_bodies DATA_FOLDER [SPACING_MM [BODY...]]
-// Bodies that are not in the folder are left out, and said to be. CPU seconds of one thread.
+// Bodies that are not in the folder are left out, with a message. Times are CPU seconds of one thread.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -27,7 +28,7 @@ using namespace limber;
 using bench::cpu_seconds;
 
 struct Case {
-  const char *name, *volume, *rig, *table;  // without a rig each label of bone is a region
+  const char *name, *volume, *rig, *table;  // without a rig, each label of bone is a region
 };
 constexpr Case kCases[] = {
     {"arm", "bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", nullptr},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Meshing beside CGAL's Mesh_3 [Jamin, Alliez, Yvinec, Boissonnat, CGALmesh: a generic framework for Delaunay mesh
-// generation, ACM TOMS 2015] on the same regions: CPU time per tet of both, and how good their tets are. One thread.
+// Compares meshing with CGAL's Mesh_3 [Jamin, Alliez, Yvinec, Boissonnat, CGALmesh: a generic framework for Delaunay
+// mesh generation, ACM TOMS 2015] on the same regions, on one thread: CPU time per tet, and the quality of the tets.
 //   limber_mesh_cgal [VOLUME RIG [SPACING_MM]]     without a volume: the procedural arm
 #include <cstdio>
 #include <cstdlib>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // preview_updates
-// What it costs until a new pose can be drawn (vertices, cells, the map on the card, the hull that rays start from) on
-// the procedural arm and body, and what a picture of it costs beside one of the volume at rest, as JSON. CPU seconds of
-// the whole process, medians; on two cores an update takes half of them.
+// Measures what it costs until a new pose can be drawn (vertices, cells, the map on the graphics card, the hull from
+// which rays start) on the procedural arm and body, and what a picture of it costs beside one of the volume at rest.
+// Prints medians as JSON, in CPU seconds of the whole process; on two cores an update takes half of them.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
   View3D view(renderer);
   Scene scene = rest;
   const auto picture = [&](const Scene& what, const glm::ivec2& size, int scale = 1) {
-    camera.distance *= 1.0001;  // so that it is drawn again
+    camera.distance *= 1.0001;  // a changed camera makes the view draw again
     const double begin = cpu_seconds();
     view.draw(what, camera, size, 0, scale);
     renderer.finish();
@@ -66,7 +66,7 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
     const double begin = cpu_seconds();
     scene.pose = preview.update(motions, blend);
     map.push_back(cpu_seconds() - begin);
-    const double first = picture(scene, small);  // uploads; the second does not
+    const double first = picture(scene, small);  // includes the upload; the second picture does not
     card.push_back(first - picture(scene, small));
     if (i % 5) continue;
     posed.push_back(picture(scene, large));
@@ -88,7 +88,7 @@ Pose turned(const Armature& rig, const std::string& bone, double degrees) {
   return pose;
 }
 
-// Every bone a little.
+// Turns every bone a little.
 Pose new_pose(const Armature& rig, int i) {
   Pose pose = rest_pose(rig);
   for (size_t bone = 0; bone < pose.rotation.size(); ++bone)

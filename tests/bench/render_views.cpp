@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // render_views VOLUME [OUT-PNG-PREFIX | --turning]
-// Draws the volume from far and close, at two sizes, solid and in X-ray, turning the camera before each picture, and
-// prints as JSON what each picture cost (CPU seconds of the whole process, median of five) with the cameras used, so
-// that another program can be measured on the same ones. Then how fast it turns at 1280x720: at fixed resolutions
-// (frames a second of two cores, from CPU seconds, whatever else runs), and when the resolution is its own choice.
-// --turning: that alone.
+// Draws the volume from far and close, at two sizes, solid and in X-ray, and turns the camera before each picture.
+// Prints as JSON what each picture cost (CPU seconds of the whole process, median of five) and the cameras, so that
+// another program can be measured with the same ones. Then prints how fast the volume turns at 1280x720: at fixed
+// resolutions (frames a second of two cores, computed from CPU seconds, so other work on the machine does not count),
+// and when the view chooses its resolution. With --turning only the second part runs.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -69,7 +69,7 @@ void measure_view(Renderer& renderer, Scene scene, const char* distance, const C
                   const std::string& png) {
   View3D view(renderer);
   const bool xray = scene.display == Display::XRay;
-  scene.transparent_background = true;  // the alpha is the silhouette
+  scene.transparent_background = true;  // so that alpha is the silhouette
   Camera camera = first;
   view.draw(scene, camera, size, 0, 1);
   renderer.finish();
@@ -103,7 +103,7 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
     const double begin = wall_seconds(), cpu_begin = cpu_seconds();
     view.draw(scene, camera, size, begin);
     renderer.finish();
-    if (i < 20) continue;  // the resolution has settled by then
+    if (i < 20) continue;  // the view has chosen its resolution by then
     wall.push_back(wall_seconds() - begin);
     cpu.push_back(cpu_seconds() - cpu_begin);
   }
@@ -111,7 +111,7 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
               view.scale(), 1 / median(wall), median(cpu));
 }
 
-// At every `scale`-th pixel each way.
+// Draws only every `scale`-th pixel in x and in y.
 void measure_turning_at(Renderer& renderer, const Scene& scene, const Camera& first, int scale) {
   View3D view(renderer);
   Camera camera = first;

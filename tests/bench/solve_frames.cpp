@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // solve_frames
-// What a solve by finite elements leaves of the editor's frames, and how long a cancel takes: the real editor in a
-// window of 1280x720 that is a picture in memory, on the paper's arm where LIMBER_SHARED names it, else on the
-// procedural one, its elbow bent by 90 degrees. The mouse turns the view while the body follows the pose by blending:
-// without a solve, while one with contact is at work in a worker that yields, and without one again; then in the
-// Resample workspace while the tissue is seen to settle, and there while the result of blending is seen and nothing is
-// solved. Frames are drawn 60 a second or as fast as they can. Prints as JSON for each the frames and, in milliseconds,
-// the median, the 95th percentile and the worst of a whole frame (with the window painted and OpenGL done); then of
-// solves that are cancelled in each of their stages the milliseconds from the wish to the end of the worker.
+// Measures how long the editor's frames take while finite elements are solved, and how long a cancel takes. The real
+// editor runs in an offscreen window of 1280x720, on the arm of the Bender project where LIMBER_SHARED names it, else
+// on the procedural one, its elbow bent by 90 degrees. The mouse turns the view while the body follows the pose by
+// blending: without a solve, while a worker process of low priority solves with contact, and without one again; then in
+// the Resample workspace while it shows the steps of the solve, and there while it shows the result of blending and
+// nothing is solved. Frames are drawn 60 a second or as fast as they can. For each case, prints as JSON the number of
+// frames and the median, the 95th percentile and the maximum of a whole frame (with the window painted and OpenGL
+// done), in milliseconds. Then cancels solves in each of their stages, and prints the milliseconds from the request to
+// the end of the worker.
 //
-//   solve_frames [SECONDS]    of frames for each, 10 without; 0: only what is cancelled
+//   solve_frames [SECONDS]    seconds of frames for each case, 10 by default; 0: only the cancels
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -63,7 +64,7 @@ class ArmSolved {
     editor_.resampling.method = "dqs";
     if (length_ > 0) player_.play("key Ctrl+4\nkey Ctrl+Return\nwait-job\nwait-idle");
     editor_.resampling.method = "fem";
-    editor_.resampling.quality = "fine";  // that it lasts
+    editor_.resampling.quality = "fine";  // makes the solve last long enough
     editor_.resampling.contact = true;
     editor_.resampling.bones_apart = true;
   }
@@ -119,7 +120,7 @@ class ArmSolved {
     wait_for(
         [&] { return !editor_.fem->solves.empty() && editor_.fem->solves.begin()->second.feed->seen().mesh.posed; });
   }
-  // ms until the worker has ended.
+  // Returns the milliseconds until the worker has ended.
   double cancel() {
     const double asked = seconds();
     if (editor_.fem->solves.empty())

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // stroke_frames
-// How long the frames of the editor take while weights are painted: the real editor in a window of 640x480 that is a
-// picture in memory, on the paper's arm where LIMBER_SHARED names it, else on the procedural one. The mouse draws a
-// stroke of 200 dabs along the middle of the body and back, as fast as makes 60 dabs a second; then the frames go on
-// for a second, in which what the stroke left behind is done. Frames are drawn 60 a second or as fast as they can;
-// events that came meanwhile wait. At rest and on the posed body, with a radius of 16 and of 32 voxels, then undone.
-// Prints as JSON for each the dabs, the frames of the stroke and after it, and in milliseconds the worst and the 95th
-// percentile of a whole frame (with the window painted and OpenGL done) and of what the interface's own thread computed
-// in it; `over` counts frames longer than 1/30 s.
+// Measures how long the editor's frames take while weights are painted. The real editor runs in an offscreen window of
+// 640x480, on the arm of the Bender project where LIMBER_SHARED names it, else on the procedural one. The mouse draws a
+// stroke of 200 dabs along the middle of the body and back, at 60 dabs a second. Frames go on for one more second, in
+// which the work that follows a stroke is done. Frames are drawn 60 a second or as fast as they can; events that arrive
+// during a frame wait for the next one. Strokes are measured at rest and on the posed body, with a radius of 16 and of
+// 32 voxels, and undone after each. Prints as JSON for each the dabs, the frames of the stroke and after it, and in
+// milliseconds the maximum and the 95th percentile of a whole frame (with the window painted and OpenGL done) and of
+// the CPU time of the interface's own thread in it; `over` counts frames longer than 1/30 s.
 //
-//   stroke_frames [LOG]    the parts of every frame as frame_timing.h tells them, into files LOG.NAME.txt
+//   stroke_frames [LOG]    writes the parts of every frame (see frame_timing.h) into files LOG.NAME.txt
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -57,7 +57,7 @@ class ArmPainted {
     editor_.name = "arm";
     frame_all(editor_, false);
     player_.play("key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-job\nwait-idle");
-    // A bone in the middle of the body, so that its weight ends within the stroke.
+    // Paints a bone in the middle of the body, so that the stroke crosses the border of its weight.
     const Armature& armature = *editor_.document().armature;
     for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
       if (armature.bones[static_cast<std::size_t>(bone)].name.find("orearm") != std::string::npos || bone == 0)
@@ -66,7 +66,7 @@ class ArmPainted {
     rest();
   }
 
-  // Bends the active bone's joint on trial.
+  // Bends the active bone's joint as a test pose.
   void bend(double degrees) {
     set_bend(editor_, degrees);
     rest();
@@ -87,7 +87,7 @@ class ArmPainted {
 
     const auto place = brush_place(editor_, view, path.front());
     const double step = painting.spacing * painting.radius /
-                        ViewProjection(editor_, view).millimetres_per_pixel(place->seen);  // pixels a dab
+                        ViewProjection(editor_, view).millimetres_per_pixel(place->seen);  // pixels per dab
     const std::size_t before = static_cast<std::size_t>(editor_.history.position());
     frame(ButtonChanged{MouseButton::Left, true});
     const double begin = seconds();
@@ -95,7 +95,8 @@ class ArmPainted {
     for (double due = begin; (dabs = dabs_of_stroke(editor_)) < kDabs; due += kFrame) {
       std::this_thread::sleep_for(std::chrono::duration<double>(due + kFrame - seconds()));
       due = std::max(due, seconds() - kFrame);
-      // Where the mouse is by now; what came in between the editor sees as one way.
+      // The mouse moves to its position at this time. The editor sees all motion since the last frame as one straight
+      // move.
       frame(PointerMoved{at(path, step * 60 * (seconds() - begin))});
     }
     const double took = seconds() - begin;
@@ -114,7 +115,8 @@ class ArmPainted {
   }
 
  private:
-  // Left to right or top to bottom, whichever is longer: the middles of what is seen of the body, every few pixels.
+  // Returns the middles of the visible body, every few pixels, from left to right or from top to bottom, whichever is
+  // longer.
   std::vector<glm::vec2> middle_of_body(const ViewPlace& view) {
     std::vector<glm::vec2> best;
     for (const int along : {0, 1}) {
@@ -133,7 +135,7 @@ class ArmPainted {
     return best;
   }
 
-  // So many pixels from the beginning, to and fro.
+  // Returns the point that lies `way` pixels along the path, which is run to and fro.
   static glm::vec2 at(const std::vector<glm::vec2>& path, double way) {
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) length += glm::distance(path[i - 1], path[i]);

@@ -16,7 +16,7 @@ double ramp(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// How far a place moves.
+// Returns by how much the build moves a position, mm.
 glm::dvec3 shift_of(const glm::dvec3& p, const Build& build, const StandingLandmarks& at) {
   const double wide = std::min(ramp(at.hip - 320, at.hip - 30, p.z), 1 - ramp(at.hip + 120, at.hip + 330, p.z));
   const double arm = p.z < at.shoulder ? ramp(at.arm_from, at.arm_to, std::abs(p.x)) : 0;
@@ -75,7 +75,7 @@ FitBody relabelled(const FitBody& body, const std::map<std::string, TissueKind>&
 FitBody rebuilt(const FitBody& body, const Build& build, const StandingLandmarks& at) {
   FitBody result = body;
   const Grid& from = body.volume.grid;
-  constexpr double kRoom = 70;  // mm on all sides
+  constexpr double kRoom = 70;  // mm of free room on all sides
   const glm::dvec3 room = glm::ceil(kRoom / from.spacing);
   Grid grid = from;
   grid.size += 2 * glm::ivec3(room);
@@ -100,7 +100,7 @@ FitBody mirrored(const FitBody& body) {
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) result.volume.at({x, y, z}) = body.volume.at({size.x - 1 - x, y, z});
-  // The voxel that was last along x is the first one now; grids here lie along the axes.
+  // Mirroring moves the origin to the voxel that was last along x. The grids here lie along the world axes.
   grid.origin = world_from_voxel(grid) * glm::dvec3(size.x - 1, 0, 0) * across;
   for (Tissue& tissue : result.tissues.tissues) tissue.name = other_side(tissue.name);
   for (Bone& bone : result.truth.bones) bone.head *= across, bone.tail *= across, bone.name = other_side(bone.name);
@@ -195,7 +195,7 @@ FitBody with_regional_labels(const FitBody& body) {
 }
 
 FitBody animal(const std::string& name, const Armature& rig, const std::vector<double>& radii, double voxel) {
-  constexpr double kBoneRadius = 0.28, kGap = 0.05;  // shares of the flesh's radius and of the bone's length
+  constexpr double kBoneRadius = 0.28, kGap = 0.05;  // shares: of the flesh's radius, of the bone's length
   constexpr Label kFlesh = 1, kBone = 2;
   glm::dvec3 low(1e9), high(-1e9);
   for (size_t b = 0; b < radii.size(); ++b)

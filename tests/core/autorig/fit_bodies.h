@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies whose joints are known, to measure automatic rigging by: real ones carried along smooth maps, cut, mirrored,
-// made coarse or robbed of their labels, and animals built of capsules.
+// Bodies whose joints are known, to measure automatic rigging by: real bodies that are deformed smoothly, cropped,
+// mirrored, made coarser or stripped of labels, and animals built of capsules.
 #pragma once
 
 #include <functional>
@@ -19,12 +19,12 @@ struct FitBody {
   Armature truth;
 };
 
-// Another build of the same standing body: shares by which it differs.
+// How another build of the same standing body differs: shares (0.1 is 10 %), and the size as a factor.
 struct Build {
   double wider_pelvis = 0, shorter_limbs = 0, larger_head = 0, size = 1;
 };
 
-// Where the body's landmarks lie that a build changes, mm. The defaults are those of the BodyParts3D man.
+// Where the landmarks lie that a build moves, mm. The defaults are those of the BodyParts3D man.
 struct StandingLandmarks {
   double hip = 820, shoulder = 1322, neck = 1470, arm_from = 165, arm_to = 215, widest = 190;
   glm::dvec3 head{0, -86, 1490};
@@ -32,29 +32,29 @@ struct StandingLandmarks {
 
 FitBody rebuilt(const FitBody& body, const Build& build, const StandingLandmarks& at = {});
 
-// Left and right exchanged, in the volume and in all names.
+// Exchanges left and right, in the volume and in all names.
 FitBody mirrored(const FitBody& body);
 
-// The same voxels, turned, scaled and shifted in the world.
+// Turns, scales and shifts the body in the world without changing its voxels.
 FitBody moved(const FitBody& body, const glm::dmat3& turn, double scale, const glm::dvec3& shift);
 
-// Only what `keep` says of places in the world, in the smallest box.
+// Keeps the voxels whose world positions satisfy `keep`, in the smallest box around them.
 FitBody cropped(const FitBody& body, const std::function<bool(const glm::dvec3&)>& keep);
 
-// Every so many-th voxel.
+// Keeps every n-th voxel along each axis.
 FitBody sampled(const FitBody& body, const glm::ivec3& every);
 
-// One label for all tissue, and no table.
+// Gives all tissue one label, without a label table.
 FitBody without_labels(const FitBody& body);
 
-// One label for all bone, one for all else.
+// Gives all bone one label, and all other tissue another.
 FitBody with_one_bone_label(const FitBody& body);
 
-// Bones by region, left and right in one label, as reference phantoms have them.
+// Gives bones one label per region, the same for left and right, as reference phantoms do.
 FitBody with_regional_labels(const FitBody& body);
 
-// Capsules of flesh along the rig, with bones inside that leave gaps at the joints.
-//   radii  mm, per bone, of the flesh
+// Makes capsules of flesh along the rig, with bones inside that leave gaps at the joints.
+//   radii  radius of the flesh around each bone, mm
 FitBody animal(const std::string& name, const Armature& rig, const std::vector<double>& radii, double voxel);
 
 }  // namespace limber::test

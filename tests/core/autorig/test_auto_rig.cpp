@@ -25,7 +25,7 @@ namespace limber {
 
 namespace {
 
-// mm between the joints of two rigs of the same names, or of names that differ only by a leading "Right".
+// Returns the distances in mm between joints of the same name. The truth's name may have "Right" in front.
 std::vector<std::pair<double, std::string>> errors(const Armature& found, const Armature& truth) {
   std::vector<std::pair<double, std::string>> result;
   for (const Bone& bone : found.bones) {
@@ -58,7 +58,7 @@ const Phantom& arm() {
   return phantom;
 }
 
-// The same voxels in other places of the world.
+// A phantom whose grid and joints are turned, scaled and shifted in the world.
 struct Moved {
   LabelVolume volume;
   Armature truth;
@@ -177,7 +177,7 @@ namespace {
 
 double share_in_tissue(const LabelVolume& volume, const Armature& rig) { return check_rig(volume, rig).whole; }
 
-// The main joints of MakeHuman's rig.
+// Returns the errors of the main joints, by their names in MakeHuman's rig, mm.
 std::vector<std::pair<double, std::string>> main_errors(const Armature& found, const Armature& truth) {
   std::vector<std::pair<double, std::string>> result;
   for (const char* part : {"Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot"})
@@ -249,7 +249,8 @@ TEST_CASE("auto-fit: the joints of a real arm lie within 16 mm, its shoulder in 
   }
   CHECK(fitted.joints[0].how == JointFit::How::Ball);
   CHECK(fitted.check.whole > 0.99);
-  // However it rests, its elbow reaches from straight to the template's 145 degrees, in the plane in which it is bent.
+  // However far the elbow is bent at rest, its range is straight to the template's 145 degrees, and its axis is
+  // perpendicular to the bent arm's plane.
   const Armature& rig = fitted.armature;
   const int forearm = *rig.find("Forearm"), upper_arm = rig.bones[forearm].parent;
   const auto along = [&](int b) { return glm::normalize(rig.bones[b].tail - rig.bones[b].head); };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Is the error true that automatic rigging states? On bodies whose joints are known, nine of ten joints must lie within
-// it.
+// Checks the errors that automatic rigging states: on bodies whose joints are known, nine of ten joints must lie within
+// their stated error.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -106,11 +106,12 @@ FitBody named(FitBody body, const std::string& name) {
 
 FitBody built(const char* name, const test::Build& build) { return named(rebuilt(man(), build), name); }
 
-// With LIMBER_FIT_ALL set every body is fitted with every kind of labels, else by turns with some: a fit takes seconds.
+// If LIMBER_FIT_ALL is set, every body is fitted with every kind of labels. Otherwise each body is fitted with two of
+// the four, as a fit takes seconds.
 bool fits_all() { return std::getenv("LIMBER_FIT_ALL") != nullptr; }
 
-// Each body with all its names, with bones by region on coarse slices, with one bone label and with none.
-//   turn  0 or 1: the first and the last of these, or the two between
+// Fits a body with labels of four kinds: all names; bones by region on coarse slices; one bone label; no labels.
+//   turn  0: the first and the last kind; 1: the two between
 void measure_labels(const FitBody& body, size_t turn, Tally& names, Tally& one, Tally& none) {
   if (const char* only = std::getenv("LIMBER_FIT_ONLY"); only && body.name != only) return;
   const Armature adult = rig_template("adult");
@@ -230,7 +231,7 @@ TEST_CASE("fit error: bodies whose bones are rods, and those of another make, li
   const FitBody rods{"rods", file.volume, merge_tissue_tables(file.tissues, nullptr), rig};
   const Phantom phantom = make_body_phantom(6);
   const FitBody procedural{"procedural body", phantom.volume, phantom.tissues, phantom.armature};
-  // It stands with its arms aside.
+  // This phantom stands with its arms held away from the trunk.
   const test::StandingLandmarks at{
       .hip = 915, .shoulder = 1430, .neck = 1500, .arm_from = 215, .arm_to = 330, .widest = 210, .head = {0, 10, 1600}};
   Tally tally;
@@ -248,7 +249,7 @@ TEST_CASE("fit error: bodies whose bones are rods, and those of another make, li
 
 namespace {
 
-// The dog of the templates with other proportions, each leg for itself.
+// How a dog differs from the template: factors for its parts.
 struct AnimalBuild {
   glm::dvec3 stretch{1};
   double longer_legs = 1, longer_neck = 1, longer_tail = 1, fatter = 1;

@@ -17,7 +17,8 @@ using namespace limber;
 
 namespace {
 
-// The rig at rest with one bone, and what hangs from it, turned about that axis: limits stay, their axes turn along.
+// Returns the rig with another rest pose: one bone and its descendants are turned about `axis`. Their limits keep their
+// angles, and the axes of the limits turn along.
 Armature resting_turned(Armature rig, const std::string& name, const glm::dvec3& axis, double degrees) {
   const int top = *rig.find(name);
   const glm::dquat turn = glm::angleAxis(glm::radians(degrees), axis);
@@ -36,7 +37,8 @@ Armature resting_turned(Armature rig, const std::string& name, const glm::dvec3&
 
 const Bone& bone_of(const Armature& rig, const std::string& name) { return rig.bones[*rig.find(name)]; }
 
-// Degrees between a bone and its parent where the bone is turned about its hinge.
+// Returns the angle in degrees between a bone and its parent after the bone is turned by `angle` (radians) about its
+// hinge.
 double bent_to(const Armature& rig, const std::string& name, double angle) {
   const Bone& bone = bone_of(rig, name);
   const Bone& above = rig.bones[bone.parent];
@@ -59,7 +61,7 @@ TEST_CASE("fitted limits: an elbow reaches from straight to the template's end, 
     CHECK(bent_to(fitted, "Forearm", limits.maximum) == doctest::Approx(145).epsilon(1e-3));
     CHECK(bent_to(fitted, "Forearm", limits.minimum) < 0.1);
     CHECK(limit_excess(bone_of(fitted, "Forearm"), {1, 0, 0, 0}) == 0);
-    // Nothing else rests otherwise.
+    // The limits of the other joints do not change.
     CHECK(bone_of(fitted, "IndexMiddle").limits.maximum == doctest::Approx(bone_of(rig, "IndexMiddle").limits.maximum));
     CHECK(bone_of(fitted, "UpperArm").limits == bone_of(rig, "UpperArm").limits);
   }
@@ -80,7 +82,8 @@ TEST_CASE("fitted limits: rest stays allowed beyond the range, and a hinge the w
 TEST_CASE("fitted limits: an elbow bent across the axis that was carried along bends on as it rests") {
   const Armature rig = rig_template("arm");
   Armature fitted = rig;
-  // Bent by 25 degrees, with the axis turned about the upper arm: what a fit takes for the wrong side of the limb.
+  // The elbow is bent by 25 degrees, and its hinge axis is turned about the upper arm, as by a fit to the wrong side of
+  // the limb.
   Bone& forearm = fitted.bones[*fitted.find("Forearm")];
   const glm::dvec3 right = forearm.limits.axis, along = glm::normalize(forearm.tail - forearm.head);
   for (const auto& [degrees, kept] : {std::pair(20.0, true), {80.0, false}, {180.0, false}}) {
@@ -113,7 +116,7 @@ TEST_CASE("fitted limits: a shoulder's cone reaches as far from the hanging arm 
 TEST_CASE("fitted limits: auto-fit of a bent arm leaves every hinge the template's anatomical range" *
           doctest::test_suite("slow")) {
   const Phantom phantom = make_arm_phantom(5);
-  // The template with its elbow straight: the body's is bent by 25 degrees.
+  // The template's elbow is made straight; the body's elbow is bent by 25 degrees.
   const Armature bent = rig_template("arm");
   const glm::dvec3 axis = bone_of(bent, "Forearm").limits.axis;
   const Armature rig = with_fitted_limits(resting_turned(bent, "Forearm", axis, -25), bent);

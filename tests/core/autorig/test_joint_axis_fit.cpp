@@ -17,9 +17,9 @@ using namespace limber;
 namespace {
 constexpr Label kBone = 1;
 
-// Two bars of square section, 10 voxels high, that meet end to end at x = 20 with one voxel between, and a rig that
-// hinges them in the middle of their section: bending drives a corner of one into the other. The hinge belongs to the
-// edge that the bars are bent towards.
+// Two bars of square section, 10 voxels high, that meet end to end at x = 20 with one voxel between them, and a rig
+// whose hinge lies in the middle of their section, so that bending drives a corner of one bar into the other. The right
+// hinge lies at the edge towards which the bars bend.
 struct Bars {
   LabelVolume volume{{.size = {41, 41, 12}, .spacing = {2, 2, 2}, .origin = {-40, -40, -10}},
                      ZeroedVector<Label>(41 * 41 * 12)};
@@ -43,7 +43,8 @@ struct Bars {
     });
   }
 
-  // Fixed bone voxels into which turning bone comes when the joint of `rig` turns by `degrees`: by nearest voxels.
+  // Counts the voxels of the fixed bar that the turning bar enters when the joint of `rig` turns by `degrees`, by
+  // nearest voxels.
   int collisions(const Armature& rig, double degrees) const {
     const RigidTransform turn =
         rotation_about(rig.bones[1].head, glm::angleAxis(degrees * std::numbers::pi / 180, rig.bones[1].limits.axis));
@@ -68,7 +69,8 @@ TEST_CASE("fit joint: bars that bend into each other are hinged at their edge, a
   CHECK(fitted.overlap_before > 100);
   CHECK(fitted.overlap_after == 0);
   CHECK(bars.collisions(bars.armature, 60) > 100);
-  // Each voxel that collides is bone, of either side, and once there; beyond the worst angle no others need collide.
+  // Each colliding voxel is bone of either bar and is listed once. The overlap counts voxels at the worst angle only,
+  // so the list is at least as long.
   int sides[2] = {0, 0};
   for (const glm::ivec3& v : fitted.colliding_before) {
     CHECK(bars.volume.at(v) == kBone);
@@ -81,7 +83,7 @@ TEST_CASE("fit joint: bars that bend into each other are hinged at their edge, a
   CHECK(fitted.colliding_after.empty());
   for (int degrees = 0; degrees <= 60; degrees += 3) CHECK(bars.collisions(fitted.armature, degrees) == 0);
 
-  // The edge lies 11 mm from the middle; turning positively about z bends towards +y.
+  // The edge lies 11 mm from the middle. A positive turn about z bends towards +y.
   const Bone& turning = fitted.armature.bones[1];
   CHECK(fitted.moved_mm < 13);
   CHECK(turning.head.y > 5);
@@ -132,7 +134,7 @@ TEST_CASE("fit joint: fits the joints that a pose turns, for the turns it makes,
   CHECK(fitted.warnings.empty());
   CHECK(fitted.armature.bones[1].head.y < -5);
   CHECK(glm::angle(fitted.pose.rotation[1]) == doctest::Approx(0.8));
-  // The hinge keeps its sense, so that a flex by its sign means the same.
+  // The hinge axis keeps its direction, so that the sign of a flexion keeps its meaning.
   CHECK(fitted.armature.bones[1].limits.axis.z > 0.9);
   CHECK(glm::dot(glm::axis(fitted.pose.rotation[1]), fitted.armature.bones[1].limits.axis) == doctest::Approx(-1));
 }

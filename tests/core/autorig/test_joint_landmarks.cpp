@@ -18,7 +18,8 @@ const BodyAtlas& leg() {
   return atlas;
 }
 
-// Tissue in round cross-sections about a leg's line, `radius` by mm below the hip.
+// Makes tissue in round cross-sections along a leg. `radius` gives their radius by the distance below the hip, both in
+// mm.
 template <class Radius>
 Occupancy round_leg(const Mannequin& m, const Radius& radius) {
   const glm::dvec3 hip = m.joint(require_bone(m.atlas().rig, "Thigh")),
@@ -104,9 +105,9 @@ TEST_CASE("joint landmarks: the hip is the middle of its ball, from half of the 
         for (double turn = 0; turn < 2 * kPi; turn += 0.08 / std::max(0.05, std::sin(polar))) {
           const glm::dvec3 out(std::cos(turn) * std::sin(polar), std::sin(turn) * std::sin(polar), std::cos(polar));
           points.push_back({centre + radius * out, out});
-          points.push_back({centre + (radius + 4) * out, -out});  // its socket
+          points.push_back({centre + (radius + 4) * out, -out});  // points of the socket around the head
         }
-      for (double along = 20; along < 60; along += 2)  // a shaft
+      for (double along = 20; along < 60; along += 2)  // points of a shaft
         for (double turn = 0; turn < 2 * kPi; turn += 0.2) {
           const glm::dvec3 out(std::cos(turn), std::sin(turn), 0);
           points.push_back({centre + glm::dvec3(25, 0, -along) + 14.0 * out, out});

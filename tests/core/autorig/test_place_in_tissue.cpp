@@ -12,7 +12,7 @@ namespace limber::test {
 
 namespace {
 
-// A trunk of 20 x 20 mm from z = 0 to 100 on two legs of 16 x 16 mm down to -100, voxels of 2 mm.
+// Makes a trunk of 20 x 20 mm from z = 0 to 100 on two legs of 16 x 16 mm down to z = -100, in voxels of 2 mm.
 LabelVolume small_figure() {
   LabelVolume volume;
   volume.grid.size = {50, 20, 110};
@@ -32,7 +32,7 @@ LabelVolume small_figure() {
   return volume;
 }
 
-// Its skeleton, by names that say nothing.
+// Makes the figure's skeleton, with names that do not tell which part of the body a bone is.
 Armature figure_rig() {
   Armature rig;
   rig.bones = {{.name = "p", .parent = -1, .head = {0, 0, 0}, .tail = {0, 0, 96}},

@@ -42,7 +42,8 @@ Armature along_arc(double radius, double from_degrees, double to_degrees, int bo
 TEST_CASE(
     "draw inside: bones that leave the tissue come in whole, joints stay shared, and nothing moves more than it must") {
   const LabelVolume volume = bent_tube();
-  const Armature rig = along_arc(45.5, 8, 82, 4);  // joints in air, chords through it
+  // The joints lie in air, and so do the straight bones between them.
+  const Armature rig = along_arc(45.5, 8, 82, 4);
   REQUIRE(check_rig(volume, rig).whole < 0.8);
   const Armature inside = drawn_inside(rig, volume, {}, kFree);
   CHECK(check_rig(volume, inside).whole == 1);

@@ -13,7 +13,7 @@
 using namespace limber;
 
 namespace {
-// A grid of nodes, each element eight corners of a cell.
+// Makes the graph of a grid of nodes in which the eight corners of each cell are connected.
 BlockGraph grid_graph(int n) {
   BlockGraphBuilder builder(n * n * n);
   const auto node = [&](int i, int j, int k) { return i + n * (j + n * k); };
@@ -27,7 +27,7 @@ BlockGraph grid_graph(int n) {
   return builder.build();
 }
 
-// Random symmetric blocks with a diagonal that makes the matrix positive definite, written to both.
+// Fills the sparse and the dense matrix with the same random symmetric blocks; `diagonal` makes them positive definite.
 Eigen::MatrixXd fill(Cholesky& sparse, const BlockGraph& graph, double diagonal) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -133,7 +133,7 @@ TEST_CASE(
   sparse.analyse(base);
   CHECK(ranks() == first);
 
-  // As skin that closes over a grid: nodes of one side meet ones of the other.
+  // Connects nodes of two opposite sides, as contact does when skin closes over a grid.
   BlockGraphBuilder meeting(base.node_count());
   constexpr int kMeet = 6;
   for (int i = 0; i < kMeet; ++i) meeting.add(std::array{i, i + kSize * (kSize - 1)});
@@ -141,7 +141,7 @@ TEST_CASE(
   sparse.analyse(graph);
   const Cholesky own(graph);
   CHECK(sparse.factor_operations() < 1.3 * own.factor_operations());
-  // Of two nodes that were not moved the one stays before the other, but for postorder: most stand where they stood.
+  // Nodes that were not moved keep their order up to postordering, so most ranks hardly change.
   const std::vector<int> mended = ranks();
   int near = 0;
   for (int i = 0; i < base.node_count(); ++i) near += std::abs(mended[i] - first[i]) <= kMeet;

@@ -37,7 +37,7 @@ std::string packed(const std::string& bytes, Deflater::Wrap wrap, std::size_t pi
   return stream;
 }
 
-// By zlib.
+// Compresses by zlib, as the reference.
 std::string packed_elsewhere(const std::string& bytes, int window_bits, int level) {
   z_stream stream{};
   deflateInit2(&stream, level, Z_DEFLATED, window_bits, 8, Z_DEFAULT_STRATEGY);
@@ -130,7 +130,7 @@ TEST_CASE("deflate: a stream that is cut off never ends, and one with another bi
     const std::string stream = packed(bytes, wrap, 1000);
     for (std::size_t size = 0; size < stream.size(); ++size)
       CHECK_FALSE(unpacked(std::string_view(stream).substr(0, size), 100, 512).ended);
-    // All but the gzip header's fields that mean nothing here.
+    // The 10 bytes of the gzip header are skipped: some of its fields have no effect on the data.
     for (std::size_t at = wrap == Deflater::Wrap::Gzip ? 10 : 0; at < stream.size(); ++at)
       for (int bit = 0; bit < 8; ++bit) {
         std::string wrong = stream;

@@ -17,7 +17,7 @@ TEST_CASE("screw: who follows its velocity for one unit of time ends where the t
       CHECK(glm::length(screw.turn - angle * axis) < 1e-6);
       glm::dvec3 p(7, 50, -20);
       const glm::dvec3 there = transform * p;
-      constexpr int kSteps = 1000;  // of Runge and Kutta's method of fourth order
+      constexpr int kSteps = 1000;  // steps of the fourth-order Runge-Kutta method
       for (int k = 0; k < kSteps; ++k) {
         const double h = 1.0 / kSteps;
         const glm::dvec3 a = screw.velocity(p), b = screw.velocity(p + 0.5 * h * a),

@@ -35,7 +35,7 @@ Edges random_edges(int nodes, int count, std::mt19937& random) {
   return edges;
 }
 
-// By rank, what lies below the diagonal once all is eliminated, edge by edge.
+// Returns the nonzeros below the diagonal of each column of the factor, by rank, as symbolic elimination finds them.
 std::vector<std::set<int>> filled(const BlockGraph& graph, const std::vector<int>& rank) {
   std::vector<std::set<int>> below(graph.node_count());
   for (int i = 0; i < graph.node_count(); ++i)
@@ -59,7 +59,8 @@ std::vector<int> rank_of(const std::vector<int>& order) {
   return rank;
 }
 
-// Two square grids of n by n, their separator column of n between them: nodes in the order that eliminates it last.
+// Returns the edges of two n by n grids and the column of n separator nodes between them, numbered so that the
+// separator is eliminated last.
 Edges two_halves(int n) {
   Edges edges;
   const int middle = 2 * n * n;
@@ -116,7 +117,7 @@ TEST_CASE("elimination: what joins two branches goes between them, and fills far
   std::vector<int> rank(nodes);
   std::iota(rank.begin(), rank.end(), 0);
   const std::vector<int> parent = elimination_tree(before, rank);
-  // Two nodes of the first half, eliminated early, meet some of the other.
+  // Connects two nodes of the first half, which are eliminated early, to some of the other half.
   for (const int far : {0, 3, 30}) edges.emplace(5, kSide * kSide + far), edges.emplace(17, kSide * kSide + far + 1);
   const BlockGraph after = graph_of(nodes, edges);
   const std::vector<int> order = mended_order(after, rank, parent, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// JSON from anybody: nested a million deep, or with a key twice, it is refused with one line by every reader.
+// Every reader refuses JSON that is nested too deeply or that holds a key twice, with an error of one line.
 #include "core/base/json_text.h"
 
 #include <doctest/doctest.h>
@@ -29,7 +29,7 @@ TEST_CASE("JSON text: what is nested too deeply or names a key twice has a probl
   CHECK(json_problem(nested(1'000'000, "{\"a\":[", "]}")).find("nested") != std::string::npos);
   CHECK(json_problem(R"({"a": 1, "b": {"a": 2}, "c": [{"a": 3}, {"a": 4}]})").empty());
   CHECK(json_problem(R"({"b": {"a": 2, "\u0061": 3}})") == "the key \"a\" is there twice in one object");
-  CHECK(json_problem("{\"a\": ").empty());  // the parser's to tell
+  CHECK(json_problem("{\"a\": ").empty());  // the parser reports this error
   CHECK(json_problem("").empty());
   CHECK(sound_json(nested(1000)) == "");
   CHECK_THROWS_WITH(checked_json(nested(1000), "rig.json"),

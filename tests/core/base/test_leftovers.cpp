@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The user's state folder for as long as this lives.
+// Sets the user's state folder to a temporary one as long as this object lives.
 struct StateFolder {
   test::TemporaryFolder folder;
   std::string before = std::getenv("XDG_STATE_HOME") ? std::getenv("XDG_STATE_HOME") : "";
@@ -31,7 +31,7 @@ struct StateFolder {
 
 void put(const Path& path, const std::string& bytes) { std::ofstream(path) << bytes; }
 
-// A process that has something unfinished at `path` and waits.
+// Starts a process that registers an unfinished file at `path` and waits.
 pid_t start_owner(const Path& path) {
   int ready[2];
   REQUIRE(::pipe(ready) == 0);

@@ -159,7 +159,7 @@ TEST_CASE("work folder: it appears whole or not at all, one program at a time, a
   }
   CHECK_FALSE(std::filesystem::exists(place));
   CHECK(hidden() == 0);
-  // A program of this machine that was killed leaves its lock's folder and its working folder.
+  // Simulates a killed program on this machine: its lock folder and its working folder are left behind.
   std::filesystem::path left;
   {
     WorkFolder one(place, no_progress());
@@ -188,7 +188,7 @@ TEST_CASE("work folder: where two machines do the same work, the first result st
   const Path place = folder / "cell";
   WorkFolder mine(place, no_progress());
   std::ofstream(mine / "mine") << "x";
-  std::filesystem::create_directory(place);  // as by another machine, whose locks are not seen here
+  std::filesystem::create_directory(place);  // made by another machine, whose locks this one does not see
   std::ofstream(place / "theirs") << "x";
   mine.commit();
   CHECK(mine.made());

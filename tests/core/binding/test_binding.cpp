@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What geodesic, rigid and heat weights have in common, and what sets each apart.
+// Tests what geodesic, rigid and heat weights have in common, and how they differ.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -73,8 +73,8 @@ TEST_CASE("binding: every method covers every voxel, sums to exactly one, and ho
 
 TEST_CASE("binding: no method leaks from finger to finger through the air between them") {
   const Bound bound(two_fingers());
-  // At the tips the way round through the palm is ten times as long as the gap is wide. Across the gap the weights
-  // would be near a half.
+  // At the tips, the path through the palm is ten times as long as the gap is wide. If heat crossed the gap, the
+  // weights would be near a half.
   for (int z = 32; z < 42; ++z)
     for (int y = 1; y < 10; ++y) {
       CHECK(at(bound.heat, bound.tissue, {9, y, z}).of(2) < 0.002);
@@ -97,7 +97,7 @@ TEST_CASE("binding: rigid weights are one bone a voxel, in a bar the one whose v
 
 TEST_CASE("binding: geodesic weights follow the law of their paper") {
   const Bound bound(two_bone_bar());
-  // On a bone's own axis between the two the ways are straight: known by counting voxels.
+  // On the axis between the two bones the paths are straight, so their lengths follow from counting voxels.
   for (int z = 19; z < 25; ++z) {
     const double a = 2 * (z - 18) / 100.0, b = 2 * (25 - z) / 100.0;
     auto strength = [](double d) { return std::pow(1 / (0.5 * d + 0.5 * d * d), 2); };

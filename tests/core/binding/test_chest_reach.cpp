@@ -23,7 +23,7 @@ double away(const Bone& bone, const glm::dvec3& at) { return distance_to_bone(bo
 enum class Ribs { None, Cage };
 enum class Arms { Apart, Beside };
 
-// Half of the trunk's width, mm.
+// Returns half of the trunk's width, mm.
 double half_width(Arms arms) { return arms == Arms::Apart ? 150 : 190; }
 
 // A trunk of elliptic section, 300 or 380 mm x 200 mm, and two arms that hang away from it, or beside it so that they
@@ -101,7 +101,7 @@ TEST_CASE("chest: without ribs the arms count as further away, and the chest hol
     for (const float way : {5.0f, 40.0f, 100.0f, 200.0f, 400.0f}) {
       CHECK((found[b](way) > usual[b](way)) == is_arm);
       if (!is_arm) CHECK(found[b](way) == usual[b](way));
-      // What holds the arm's own flesh does not change.
+      // The distance up to which the arm holds its own flesh does not change.
       const float held = found[b].held_from(found[b](way));
       if (is_chest) CHECK(held < usual[b](way));
       else CHECK(held == doctest::Approx(usual[b](way)));
@@ -172,5 +172,5 @@ TEST_CASE("chest: no seam is cut through the flank of a body without ribs") {
     for (int direction = 0; direction < 6; ++direction) cut += seams.is_cut_towards(v, direction);
   });
   CHECK(cut == 0);
-  CHECK(seams.size() > 0);  // the arms are parted from the trunk beside it
+  CHECK(seams.size() > 0);  // seams separate the arms from the trunk beside them
 }

@@ -86,7 +86,7 @@ TEST_CASE("heat: 1, 2 and 4 threads give the same weights") {
 }
 
 TEST_CASE("heat: nothing flows through air, and an island in the air is named") {
-  // A second bar of muscle one voxel beside the first, joined to nothing.
+  // Adds a second bar of muscle one voxel beside the first, with no connection to it.
   SmallBody body = two_bone_bar(6, 24, 4);
   const glm::ivec3 size = body.volume.grid.size;
   LabelVolume wide = body.volume;

@@ -20,8 +20,8 @@ namespace {
 constexpr Label kFat = 3;
 constexpr int kBones = 3;
 
-// A box of muscle and fat with holes of air, grains of three bones and seams, all at random: thin necks, cells that are
-// alone in their block, blocks of several pieces.
+// A random box of muscle and fat with holes of air, grains of three bones and seams. It has thin necks, cells that are
+// alone in their block, and blocks of several pieces.
 struct RandomBody {
   LabelVolume volume;
   TissueTable tissues;
@@ -61,8 +61,8 @@ struct RandomBody {
   }
 };
 
-// Temperatures when `bone` is at 1, the others and what lies at `cold_from` or above at 0, by place; by elimination,
-// from what flesh_graph.h says.
+// Returns the temperature of each tissue voxel when `bone` is at 1, and the other bones and all voxels with z >=
+// `cold_from` are at 0. Solves the system that flesh_graph.h describes by a direct method.
 std::vector<double> exact_temperatures(const RandomBody& body, int bone, int cold_from = 1 << 20) {
   const glm::dvec3 s = body.volume.grid.spacing;
   const glm::dvec3 face = glm::dvec3(s.y * s.z / s.x, s.x * s.z / s.y, s.x * s.y / s.z);
@@ -101,7 +101,7 @@ std::vector<double> exact_temperatures(const RandomBody& body, int bone, int col
   return {x.data(), x.data() + x.size()};
 }
 
-// By bone and place.
+// Returns the temperatures by bone and tissue voxel.
 std::vector<std::vector<float>> solved_temperatures(const RandomBody& body, double residual,
                                                     int* iterations = nullptr) {
   const HeatGraph soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
@@ -172,7 +172,7 @@ TEST_CASE("heat system: 1, 2 and 4 threads give the same bits" * doctest::test_s
 }
 
 TEST_CASE("heat system: bricks that are left out count as cold") {
-  // Half of the bricks alone.
+  // Solves for the lower half of the bricks only.
   const RandomBody body({16, 16, 32}, glm::dvec3(1), 5);
   const HeatGraph soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
   std::vector<std::int32_t> lower;

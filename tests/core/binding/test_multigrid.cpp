@@ -11,7 +11,7 @@
 using namespace limber;
 
 namespace {
-// A box of cells with some left out, held at its faces.
+// Makes a box of cells of which some are left out at random. Its outer faces are held at 0.
 CellGraph box_graph(const glm::ivec3& size, const glm::dvec3& spacing, double share_left_out, unsigned key) {
   std::mt19937 random(key);
   std::vector<int> number(size.x * size.y * size.z, -1);
@@ -39,7 +39,7 @@ CellGraph box_graph(const glm::ivec3& size, const glm::dvec3& spacing, double sh
       glm::ivec3 q(p);
       q[axis] += direction & 1 ? 1 : -1;
       diagonal += g;
-      if (q[axis] < 0 || q[axis] >= size[axis]) continue;  // held
+      if (q[axis] < 0 || q[axis] >= size[axis]) continue;  // outside the box, where the value is held
       if (number[at(q)] < 0) {
         diagonal -= 0.9f * g;
         continue;

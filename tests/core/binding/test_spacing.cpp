@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The weights of one arm on a fine and on a coarse grid.
+// Compares the weights of one arm on a fine and on a coarse grid.
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +29,7 @@ struct Weighted {
   }
 };
 
-// How far it is along `axis` from where the mean weight of `bone` over slices of 8 mm is 0.1 to where it is 0.9.
+// Returns the distance along `axis`, mm, over which the mean weight of `bone` in slices of 8 mm rises from 0.1 to 0.9.
 double width_across(const Weighted& body, const TissueTable& tissues, const glm::dvec3& joint, const glm::dvec3& axis,
                     int bone) {
   constexpr int kHalf = 30;  // slices every 4 mm
@@ -75,7 +75,7 @@ TEST_CASE("spacing: an arm at 2, 3 and 4 mm gets the same weights, and its elbow
     const AffineTransform to_coarse = voxel_from_world(coarse.volume.grid);
     const double width = width_across(coarse, tissues, joint, axis, forearm);
 
-    // By bone, over the voxels that both have: the mean over all bones, and the two bones of the elbow.
+    // Differences over the voxels that both grids have: the mean over all bones, and for the two bones of the elbow.
     double difference = 0, at_elbow = 0;
     std::int64_t voxels = 0;
     fine.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {

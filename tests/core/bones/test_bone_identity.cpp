@@ -24,8 +24,8 @@ Tissue named_tissue(Label label, const char* name, TissueKind kind) {
   return tissue;
 }
 
-// A pelvis and two legs of a walker: pelvis 40 voxels wide, a thigh under each end. Hip bones reach down beside the
-// thighs' heads, so that nearness alone gives them to the thighs.
+// A pelvis, 40 voxels wide, with a thigh under each end. The hip bones reach down beside the heads of the thighs, so
+// that distance alone would assign them to the thighs.
 constexpr Label kHip = 3, kFemora = 4, kMarrow = 5;
 SmallBody hips(bool one_label_each_side = false) {
   SmallBody body;
@@ -52,7 +52,7 @@ SmallBody hips(bool one_label_each_side = false) {
   return body;
 }
 
-// Voxels by label and rig bone.
+// Counts voxels by label and rig bone.
 std::map<std::pair<Label, std::string>, std::int64_t> counts_of(const SmallBody& body, const BoneMap& map = {}) {
   const TissueVoxels tissue(body.volume);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature, no_progress(), map);
@@ -103,7 +103,7 @@ TEST_CASE("bone identity: what a map says of nothing that is there is refused wi
   CHECK_THROWS_AS(counts_of(body, {{"Pelvis, cortical", "Tail"}}), Error);
   CHECK_THROWS_AS(counts_of(body, {{"Ribs", "Pelvis"}}), Error);
   CHECK_THROWS_AS(counts_of(body, {{"muscle", "Pelvis"}}), Error);
-  // Marrow has no name that would say its right side.
+  // The name of the marrow tells no side, so an entry for one side needs one for the other.
   CHECK_THROWS_AS(counts_of(body, {{"marrow@left", "LeftThigh"}}), Error);
   CHECK(counts_of(body, {{"marrow@left", "LeftThigh"}, {"marrow@right", "Pelvis"}}).contains({kMarrow, "Pelvis"}));
 }
@@ -120,14 +120,14 @@ TEST_CASE("bone identity: each label's table says how it was found") {
 
 TEST_CASE("bone identity: a bone that the rig lacks follows the next one towards the trunk, and a lost one is told") {
   SmallBody body = hips();
-  body.tissues.find(kHip)->name = "tibia_left";  // no shank in this rig
+  body.tissues.find(kHip)->name = "tibia_left";  // a tibia, on a rig without a shank
   CHECK(counts_of(body).at({kHip, "LeftThigh"}) == voxels_of(body, kHip));
   body.armature.bones = {bone_between("LeftThigh", -1, {45.5, 7.5, 54}, {45.5, 7.5, 6})};
   body.tissues.find(kHip)->name = "skull";
   const TissueVoxels tissue(body.volume);
   const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.armature);
   const auto lines = unsure_bones(parts, body.tissues, body.armature);
-  // The right femur has no thigh in this rig either.
+  // The right femur is unsure too: this rig has no right thigh.
   REQUIRE(lines.size() == 2);
   CHECK(lines[0].find("skull") != std::string::npos);
   CHECK(lines[1].find("Femora") != std::string::npos);
@@ -137,7 +137,7 @@ TEST_CASE("bone identity: a rib on a rig with two thoraces follows the one it is
   SmallBody body;
   body.volume.grid.size = {40, 12, 60};
   body.volume.voxels.assign(body.volume.grid.voxel_count(), kMuscle);
-  // From the upper thorax down and away, so that most of it lies nearer to the lower one.
+  // The rib runs from the upper thorax down and outwards, so that most of it lies nearer to the lower thorax.
   for (int x = 8; x < 38; ++x)
     for (int z = 0; z < 3; ++z)
       for (int y = 4; y < 8; ++y) body.volume.at({x, y, std::max(2, 34 - (x - 8)) + z}) = kBone;

@@ -25,7 +25,7 @@ Tissue named_tissue(Label label, const char* name, TissueKind kind, double value
   return tissue;
 }
 
-// A pelvis over two thighs, and a small bone that no name of the rig means.
+// A pelvis over two thighs, and a small bone whose name belongs to no rig bone.
 SmallBody legs() {
   SmallBody body;
   body.volume.grid.size = {56, 16, 72};
@@ -88,7 +88,7 @@ TEST_CASE("bone map: entries of a row change it alone, by the label's value, and
   CHECK(rows[1].bones == std::vector<int>{1});
   CHECK(rows[2].bones == std::vector<int>{0});
   CHECK(rows[2].found_by == FoundBy::Map);
-  // The whole label in place of its side, and its side in place of the whole.
+  // An entry for the whole label replaces that of its side, and an entry for a side replaces that of the whole.
   const BoneMap whole = with_entry(one, femora, {}, &left);
   CHECK(whole == BoneMap{{"40", "LeftThigh"}});
   rows = rows_of(body, whole);
@@ -109,7 +109,7 @@ TEST_CASE("bone map: what names no tissue or no bone is left out, and the rest i
   CHECK(fitting.map == BoneMap{{"40@left", "LeftThigh"}, {"Pelvis", "LeftThigh"}, {"thing", "Pelvis"}});
   CHECK(fitting.left_out == std::vector<std::string>{"", "40@right", "99"});
   CHECK_NOTHROW(rows_of(body, fitting.map));
-  // Two sides of a label whose name says neither fit together or not at all.
+  // If the name of a label tells no side, its two sided entries are valid together, and invalid alone.
   CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"50@right", "RightThigh"}}, body.tissues, body.armature)
             .left_out.empty());
   CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"99", "Pelvis"}}, body.tissues, body.armature).map.empty());

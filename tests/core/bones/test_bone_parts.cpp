@@ -15,7 +15,7 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// Bone voxels per rig bone.
+// Counts bone voxels by rig bone.
 std::map<std::string, std::int64_t> voxels_by_bone(const BoneParts& parts, const Armature& armature) {
   std::map<std::string, std::int64_t> count;
   for (std::uint16_t part : parts.part_of)
@@ -23,7 +23,7 @@ std::map<std::string, std::int64_t> voxels_by_bone(const BoneParts& parts, const
   return count;
 }
 
-// Two balls of bone, each with a shaft, that touch in a disc; joint between them.
+// Two bones, each a ball with a shaft, whose balls touch in a disc. The rig's joint lies in the disc.
 SmallBody two_touching_bones() {
   SmallBody body;
   body.volume.grid.size = {32, 32, 92};
@@ -35,7 +35,7 @@ SmallBody two_touching_bones() {
         const double to_ball = std::min(std::abs(z - 37.0), std::abs(z - 54.0));
         if (r < 4.5 || r * r + to_ball * to_ball < 90) body.volume.at({x, y, z}) = kBone;
       }
-  // Nothing but the touching balls between z = 37 and 54.
+  // Cuts the bone between the balls down to the disc in which they touch.
   for (int z = 45; z < 47; ++z)
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)
@@ -46,7 +46,7 @@ SmallBody two_touching_bones() {
   return body;
 }
 
-// Muscle, to draw tubes of bone into.
+// Makes a block of muscle, into which tests draw tubes of bone.
 SmallBody muscle_block(const glm::ivec3& size) {
   SmallBody body;
   body.volume.grid.size = size;
@@ -54,7 +54,7 @@ SmallBody muscle_block(const glm::ivec3& size) {
   body.tissues = muscle_and_bone();
   return body;
 }
-// Pointed at its beginning, where it may touch another one.
+// Draws a tube of bone with a pointed start, so that it touches a neighbouring bone only there.
 void draw_tube(SmallBody& body, const glm::dvec3& from, const glm::dvec3& to, double radius) {
   const glm::dvec3 along = glm::normalize(to - from);
   const glm::ivec3 size = body.volume.grid.size;
@@ -77,7 +77,7 @@ TEST_CASE("bone parts: a rib beside the arm that hangs on the collarbone follows
   SmallBody body = muscle_block({56, 24, 72});
   draw_tube(body, {4, 12, 60}, {36, 12, 60}, 4);       // collarbone
   draw_tube(body, {42, 12, 62}, {42, 12, 2}, 4);       // arm
-  draw_tube(body, {28, 12, 55.5}, {28, 12, 24}, 2.5);  // rib, nearer to the arm
+  draw_tube(body, {28, 12, 55.5}, {28, 12, 24}, 2.5);  // a rib that is nearer to the arm's bone
   body.armature.bones = {bone_between("Collarbone", -1, {4, 12, 60}, {40, 12, 60}),
                          bone_between("Arm", 0, {40, 12, 60}, {42, 12, 0})};
   const TissueVoxels tissue(body.volume);
@@ -119,7 +119,7 @@ TEST_CASE(
                          bone_between("RightUpperArm", 3, {20, 22, 74}, {14, 22, 2})};
   draw_tube(body, {100, 50, 5}, {100, 50, 85}, 4);  // spine
   draw_tube(body, {112, 12, 78}, {172, 21, 74},
-            4);  // collarbones, the left one on a neck that grows from the breastbone
+            4);  // collarbones; the left one is connected by a thin neck to the breastbone
   draw_tube(body, {98, 12, 78}, {118, 13, 78}, 2.5);
   draw_tube(body, {88, 12, 78}, {28, 21, 74}, 3);
   draw_tube(body, {184, 22, 66}, {186, 22, 2}, 4);  // upper arms
@@ -175,7 +175,7 @@ TEST_CASE(
 
 TEST_CASE("bone parts: a toe beside the toe that the rig bone runs along is a toe") {
   SmallBody body = muscle_block({64, 44, 24});
-  draw_tube(body, {2, 12, 12}, {36, 12, 12}, 4);  // foot, two bones wide
+  draw_tube(body, {2, 12, 12}, {36, 12, 12}, 4);  // the foot, with two bones side by side
   draw_tube(body, {2, 32, 12}, {36, 32, 12}, 4);
   draw_tube(body, {18, 15, 12}, {18, 29, 12}, 4);
   draw_tube(body, {37, 12, 12}, {58, 12, 12}, 3);  // toes
@@ -199,7 +199,7 @@ TEST_CASE("bone parts: two bones that touch part where they touch, shafts stay w
     CHECK((parts.part_of[place] > 0) == (body.volume.at(v) == kBone));
     if (parts.part_of[place]) wrong += (parts.parts[parts.part_of[place] - 1].bone == 0) != (v.z < 46);
   });
-  CHECK(wrong <= 40);  // of the disc in which they touch
+  CHECK(wrong <= 40);  // voxels of the disc in which the bones touch
 }
 
 TEST_CASE("bone parts: one tube drawn along several rig bones is cut at their joints") {
@@ -215,7 +215,8 @@ TEST_CASE("bone parts: labels that name different bones are never joined, a shel
   for (int z = 0; z < 92; ++z)
     for (int y = 0; y < 32; ++y)
       for (int x = 0; x < 32; ++x)
-        if (Label& label = body.volume.at({x, y, z}); label == kBone && z >= 43) label = 3;  // not where the neck is
+        // The labels meet at z = 43, which is not where the bones touch.
+        if (Label& label = body.volume.at({x, y, z}); label == kBone && z >= 43) label = 3;
   for (Label label : {Label{3}, Label{4}}) {
     Tissue tissue = body.tissues.tissues.back();
     tissue.label = label;
@@ -273,7 +274,7 @@ TEST_CASE("bone parts: each of the arm's 21 rig bones finds its own bone, and no
   const BoneParts parts = split_bones(file.volume, tissue, tissues, armature);
   const auto count = voxels_by_bone(parts, armature);
   CHECK(count.size() == 21);
-  // Humerus and forearm leave only a few touching voxels.
+  // The humerus and the bones of the forearm touch in a few voxels only.
   std::int64_t touching = 0;
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
     if (!parts.part_of[place] || parts.parts[parts.part_of[place] - 1].bone != 0) return;

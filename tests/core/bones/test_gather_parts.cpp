@@ -14,7 +14,7 @@ using namespace limber::test;
 
 namespace {
 
-constexpr int kBones = 16;  // so few cells of each that they do not all touch
+constexpr int kBones = 16;  // so many that the few cells of one bone do not all touch each other
 
 // A slab of bone, large enough for several blocks of every parallel loop, whose cells follow random rig bones. Cells
 // join to pieces of every size and shape.

@@ -14,8 +14,8 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// Two thighs and shanks in a slab of muscle; the body's left has larger x. The slab reaches further to the left than to
-// the right.
+// Two thighs and shanks in a slab of muscle. The body's left has larger x. The slab reaches further out on the left
+// than on the right.
 SmallBody legs() {
   SmallBody body;
   body.volume.grid.size = {60, 12, 84};
@@ -76,7 +76,7 @@ TEST_CASE("input doubts: a rig beside the body, in RAS axes or mirrored is told 
 }
 
 TEST_CASE("input doubts: a rig that reaches beyond a scan which cuts its body raises none") {
-  // Only the upper quarter of the thighs is in the volume.
+  // Cuts the volume so that only the upper quarter of the thighs remains.
   SmallBody cut = legs();
   const LabelVolume whole = cut.volume;
   cut.volume.grid.size.z = 20;
@@ -87,7 +87,7 @@ TEST_CASE("input doubts: a rig that reaches beyond a scan which cuts its body ra
       for (int x = 0; x < 60; ++x) cut.volume.at({x, y, z}) = whole.at({x, y, z + 62});
   CHECK(share_in_tissue(cut.volume, cut.armature) < 0.3);
   CHECK_FALSE(doubts(cut, "outside the body"));
-  // The same rig beside the legs, or below them, is no such rig.
+  // The warning comes when the same rig lies beside the legs or below them.
   for (const glm::dvec3& shift : {glm::dvec3(15, 0, 0), glm::dvec3(0, 0, -60), glm::dvec3(0, 9, 0)}) {
     SmallBody aside = cut;
     for (Bone& bone : aside.armature.bones) bone.head += shift, bone.tail += shift;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies of one bone label whose bones touch, with known truth: every voxel is of the bone whose surface it lies
-// deepest in.
+// Tests bodies whose bones touch and share one label. The truth is known: each voxel belongs to the bone in which it
+// lies deepest.
 #include "core/bones/joint_cuts.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ struct Dumbbell {
   int rig_bone;
 };
 
-// How far outside a bone a place lies, mm. The knobs reach a third of their radius beyond the ends, into the next bone.
+// Returns how far outside a bone a position lies, mm; negative inside. The knobs reach a third of their radius beyond
+// the ends, into the next bone.
 double outside_of(const Dumbbell& bone, const glm::dvec3& at) {
   const glm::dvec3 along = glm::normalize(bone.to - bone.from), inset = 2.0 / 3 * bone.knob * along;
   const double length = glm::length(bone.to - bone.from), t = std::clamp(glm::dot(at - bone.from, along), 0.0, length);
@@ -36,7 +37,7 @@ double outside_of(const Dumbbell& bone, const glm::dvec3& at) {
 
 struct FusedBody {
   SmallBody body;
-  std::vector<int> truth;  // by voxel: rig bone, -1 for no bone
+  std::vector<int> truth;  // rig bone of each voxel, -1 for no bone
 };
 FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const glm::ivec3& size,
                 const glm::dvec3& spacing) {
@@ -61,9 +62,9 @@ FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const g
 
 struct Wrong {
   std::int64_t voxels = 0;
-  double worst_share = 0;  // the largest of a rig bone's true voxels
+  double worst_share = 0;  // largest share of a rig bone's true voxels that follow another one
 };
-// What follows another rig bone than the true one.
+// Counts the voxels that follow another rig bone than the true one.
 Wrong wrong_bones(const FusedBody& made) {
   const TissueVoxels tissue(made.body.volume);
   const BoneParts parts = split_bones(made.body.volume, tissue, made.body.tissues, made.body.armature);
@@ -87,7 +88,8 @@ Wrong wrong_bones(const FusedBody& made) {
 }
 double worst_share(const FusedBody& made) { return wrong_bones(made).worst_share; }
 
-// Thigh and shank along z, 2 x 2 x 8 mm; the rig's knee is `off` mm from where the bones touch.
+// Makes thigh and shank along z, in voxels of 2 x 2 x 8 mm. The rig's knee lies `off` mm away from where the bones
+// touch.
 FusedBody coarse_leg(const glm::dvec3& off) {
   const glm::dvec3 hip(50, 50, 396), knee(50, 50, 204), ankle(50, 50, 12);
   Armature rig;
@@ -95,7 +97,7 @@ FusedBody coarse_leg(const glm::dvec3& off) {
   return fused({{hip, knee, 13, 32, 0}, {knee, ankle, 12, 30, 1}}, rig, {51, 51, 52}, {2, 2, 8});
 }
 
-// A finger of three bones along points, 1 mm.
+// Makes a finger whose bones join the given joints, in voxels of 1 mm.
 std::vector<Dumbbell> finger(const std::vector<glm::dvec3>& joints, int first_bone) {
   std::vector<Dumbbell> bones;
   for (std::size_t k = 0; k + 1 < joints.size(); ++k)
@@ -118,8 +120,8 @@ TEST_CASE("joint cuts: a rig's knee 5 mm off moves the cut by one 8 mm slice at 
     CHECK(worst_share(coarse_leg(off)) < 0.065);
 }
 
-// Thigh, shank and kneecap in one label, 2 x 2 x 5 mm. The kneecap leans on the femur; its tip hangs `low` mm below the
-// joint.
+// Makes thigh, shank and kneecap with one label, in voxels of 2 x 2 x 5 mm. The kneecap touches the femur; its tip lies
+// `low` mm below the joint.
 FusedBody leg_with_kneecap(double low) {
   const glm::dvec3 hip(50, 60, 796), knee(50, 60, 404), ankle(50, 60, 12);
   Armature rig;
@@ -163,13 +165,14 @@ TEST_CASE("joint cuts: finger joints 2 mm off along the finger move the cuts by 
   off[2].z -= 2;
   Armature rig;
   add_chain(rig, "Finger", off);
-  CHECK(worst_share(fused(finger(joints, 0), rig, {40, 40, 122}, {1, 1, 1})) < 0.05);  // two layers of voxels are 0.08
+  // A cut that is off by two layers of voxels would give 0.08.
+  CHECK(worst_share(fused(finger(joints, 0), rig, {40, 40, 122}, {1, 1, 1})) < 0.05);
 }
 
 struct Head {
-  double radius, apex;  // mm; the apex lies so far beyond the joint
+  double radius, apex;  // mm; the apex of the head lies this far beyond the joint
 };
-// A finger of one rod whose bones have rounded heads, 1 mm.
+// Makes a finger as one rod whose bones end in rounded heads, in voxels of 1 mm.
 FusedBody rounded_finger(const std::vector<glm::dvec3>& joints, const Armature& rig, const std::vector<Head>& heads) {
   std::vector<Dumbbell> bones = finger(joints, 0);
   for (Dumbbell& bone : bones) bone.shaft = bone.knob = 5;
@@ -205,7 +208,7 @@ TEST_CASE("joint cuts: rounded heads of finger bones stay with their bone, and t
   flat.body.armature = unnamed;
   const Wrong wrong = wrong_bones(body);
   CHECK(wrong.worst_share < 0.02);
-  CHECK(wrong.voxels < 0.7 * wrong_bones(flat).voxels);  // a rig whose names say nothing of fingers is cut flat
+  CHECK(wrong.voxels < 0.7 * wrong_bones(flat).voxels);  // without names of fingers, the rig's joints are cut flat
 }
 
 Armature ring_finger(const std::vector<glm::dvec3>& joints) {
@@ -217,8 +220,9 @@ Armature ring_finger(const std::vector<glm::dvec3>& joints) {
   return rig;
 }
 
-// A finger of one rod, 12 mm wide and 9 mm deep, whose bones end in rollers across it; 1 mm.
-//   apex  mm by joint between bones: so far beyond it, towards the finger's tip, the roller reaches
+// Makes a finger as one rod, 12 mm wide and 9 mm deep, in voxels of 1 mm. Its bones end in cylinders that lie across
+// the finger.
+//   apex  for each joint between bones: how far the cylinder reaches beyond it towards the finger's tip, mm
 FusedBody rolling_finger(const std::vector<glm::dvec3>& joints, const Armature& rig, const std::vector<double>& apex) {
   FusedBody made;
   SmallBody& body = made.body;
@@ -227,7 +231,7 @@ FusedBody rolling_finger(const std::vector<glm::dvec3>& joints, const Armature& 
   body.tissues = muscle_and_bone();
   body.armature = rig;
   made.truth.assign(body.volume.grid.voxel_count(), -1);
-  const double roller = 6.5;  // radius, mm
+  const double roller = 6.5;  // radius of the cylinder, mm
   for (int z = 0; z < 122; ++z)
     for (int y = 0; y < 40; ++y)
       for (int x = 0; x < 40; ++x) {
@@ -269,11 +273,11 @@ TEST_CASE("joint cuts: where finger bones touch in a small spot they are cut the
       for (int z = 60; z < 72; ++z)
         if (int& bone = made.truth[made.body.volume.grid.index({x, y, z})]; bone >= 0) bone = z < 64;
     }
-  CHECK(wrong_bones(made).voxels < 10);  // the spot itself is 9 voxels
+  CHECK(wrong_bones(made).voxels < 10);  // the spot where they are joined has 9 voxels
 }
 
 TEST_CASE("joint cuts: a bone that hangs on the parent of the one it sits on is cut from both") {
-  // A thumb on a wrist bone that reaches out towards it; the rig has the thumb follow the forearm.
+  // A thumb sits on a wrist bone that reaches out towards it. In the rig the thumb's parent is the forearm.
   const glm::dvec3 elbow(24, 20, 112), wrist(24, 20, 70), palm(24, 20, 40), outer(44, 20, 54), tip(64, 20, 26);
   Armature rig;
   rig.bones = {bone_between("Forearm", -1, elbow, wrist), bone_between("Hand", 0, wrist, palm),
@@ -317,7 +321,8 @@ TEST_CASE("joint cuts: a bridge as thick as the shafts between two bones side by
   add_chain(rig, "One", {a, b, c});
   add_chain(rig, "Two", {d, e, f});
   std::vector<Dumbbell> bones = {{a, b, 4, 7, 0}, {b, c, 4, 7, 1}, {d, e, 4, 7, 2}, {e, f, 4, 7, 3}};
-  bones.push_back({glm::dvec3(20, 20, 35), glm::dvec3(32, 20, 35), 3.5, 3.5, 1});  // the bridge, half of either
+  // These two halves of a bridge connect the bones; each half belongs to one of them.
+  bones.push_back({glm::dvec3(20, 20, 35), glm::dvec3(32, 20, 35), 3.5, 3.5, 1});
   bones.push_back({glm::dvec3(44, 20, 35), glm::dvec3(32, 20, 35), 3.5, 3.5, 3});
   CHECK(worst_share(fused(bones, rig, {64, 40, 122}, {1, 1, 1})) < 0.02);
 }
@@ -364,7 +369,7 @@ TEST_CASE("joint cuts: depths after a cut are those of the graph that was cut") 
   const std::vector<float> depth = bone_depth(graph, body.volume.grid.spacing);
   double worst = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) worst = std::max(worst, double(std::abs(depth[i] - cuts.depth[i])));
-  CHECK(worst < 0.5);  // mm; the distances are carried from voxel to voxel and may be a little long in either
+  CHECK(worst < 0.5);  // mm; distances that are propagated from voxel to voxel may be a little too long
 }
 
 TEST_CASE("joint cuts: one, two and four threads cut alike") {

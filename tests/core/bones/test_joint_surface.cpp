@@ -9,7 +9,7 @@
 using namespace limber;
 
 namespace {
-// Places 0.5 mm apart in an elliptic rod about the z axis, turned about it by `turn`.
+// Returns positions 0.5 mm apart in an elliptic rod about the z axis, which is turned about z by `turn`.
 std::vector<glm::dvec3> rod(double half_wide, double half_deep, double turn) {
   std::vector<glm::dvec3> places;
   for (double z = -10; z <= 10; z += 0.5)
@@ -63,8 +63,9 @@ TEST_CASE("joint surface: without any bone at the joint it is still a surface") 
 
 TEST_CASE("joint surface: names tell the shape, and a hip, a shoulder or no role has none") {
   auto shape = [](BodyPart part, int index) { return shape_of_joint(JointRole{part, BodySide::Left, index}); };
-  CHECK(shape(BodyPart::Index, 1)->along_hinge < 0);                                              // a ball
-  CHECK(shape(BodyPart::Little, 2)->across_hinge < 3 * shape(BodyPart::Little, 2)->along_hinge);  // a roller
+  CHECK(shape(BodyPart::Index, 1)->along_hinge < 0);  // a ball
+  // This surface is a cylinder across the finger.
+  CHECK(shape(BodyPart::Little, 2)->across_hinge < 3 * shape(BodyPart::Little, 2)->along_hinge);
   CHECK(shape(BodyPart::Thumb, 3)->across_hinge < 0);
   CHECK(shape(BodyPart::Shank, 0).has_value());
   CHECK(!shape(BodyPart::Thigh, 0));

@@ -15,7 +15,7 @@ namespace {
 
 using Inside = std::function<bool(const glm::dvec3&)>;
 
-// The voxels whose centres lie in a shape, mm along the grid's axes.
+// Returns the voxels whose centres lie in a shape, given in mm along the grid's axes.
 std::vector<glm::ivec3> voxels_of(const Inside& inside, const glm::dvec3& spacing, const glm::dvec3& size) {
   std::vector<glm::ivec3> voxels;
   const glm::ivec3 end(size / spacing);
@@ -28,7 +28,7 @@ std::vector<glm::ivec3> voxels_of(const Inside& inside, const glm::dvec3& spacin
 
 AffineTransform affine(const RigidTransform& rigid) { return {glm::mat3_cast(rigid.rotation), rigid.translation}; }
 
-// Up to the whole turn about an axis through a point, in steps of ten degrees.
+// Returns the path of a turn about an axis through a point, in steps of ten degrees.
 std::vector<AffineTransform> turn(const glm::dvec3& about, const glm::dvec3& axis, double degrees) {
   std::vector<AffineTransform> path;
   const int steps = static_cast<int>(std::ceil(degrees / 10));
@@ -62,13 +62,13 @@ Inside block(const glm::dvec3& low, const glm::dvec3& high) {
 
 TEST_CASE("least shift: a ball that is led into another one is pushed back along the line between their middles") {
   const Inside one = ball({20, 25, 25}, 10), other = ball({46, 25, 25}, 10);
-  // Middles end 14 mm apart, 6 less than two radii; half a voxel of that is allowed.
+  // The middles end 14 mm apart, which is 6 mm less than two radii. Half a voxel of overlap is allowed.
   const glm::dvec3 line(0.8, 0.6, 0);
   const LeastShift found = least(one, other, slide(glm::dvec3(20, 25, 25) + 14.0 * line - glm::dvec3(46, 25, 25)), 10);
   CHECK(found.free);
   CHECK(std::abs(found.depth_before - 5.5) < 0.5);
   CHECK(found.depth_after <= 0.05);
-  // Sideways by a voxel costs next to nothing.
+  // A shift sideways by a voxel hardly lengthens the way, so the direction is not exact.
   CHECK(std::abs(glm::length(found.shift) - 5.5) < 0.3);
   CHECK(std::abs(glm::length(14.0 * line + found.shift) - 19.5) < 0.3);
 }
@@ -99,7 +99,7 @@ TEST_CASE("least shift: what the fixed bone was carried along by counts where bo
        {glm::dvec3(3, 0, 0), glm::dvec3(0, -3, 1), glm::dvec3(-4, 0, 0), glm::dvec3(4, 0, 0)}) {
     const LeastShift found = least_shift(bones, slide({-12, 0, 0}), {.most_mm = 10, .whole_mm = 4, .carried = carried});
     CAPTURE(carried.x);
-    CHECK(found.free == (carried.x < 0));  // then there is room for more than 4 mm
+    CHECK(found.free == (carried.x < 0));  // only then may the shift exceed 4 mm
     CHECK(glm::length(carried + found.shift) <= 4 + 1e-9);
     CHECK(found.depth_after <= found.depth_before);
   }
@@ -108,7 +108,7 @@ TEST_CASE("least shift: what the fixed bone was carried along by counts where bo
 
 TEST_CASE("least shift: a ball turned about a point beside its middle goes back into its socket") {
   const glm::dvec3 middle(30, 30, 30), head(30, 26, 33);
-  // A block with a bowl that holds somewhat more than half of the ball, half a millimetre wider than it.
+  // Makes a socket: a block with a bowl that holds a little more than half of the ball and is 0.5 mm wider.
   const Inside socket = [&](const glm::dvec3& p) {
     return p.z > 28 && p.z < 50 && glm::length(glm::dvec2(p - middle)) < 22 && glm::distance(p, middle) > 11.5;
   };
@@ -120,7 +120,7 @@ TEST_CASE("least shift: a ball turned about a point beside its middle goes back 
   CHECK(found.free);
   const glm::dvec3 off = path.back() * middle - middle;
   REQUIRE(glm::length(off) > 3.5);
-  // Half a millimetre of air and half a voxel are left to every side.
+  // A gap of half a millimetre and half a voxel remains on every side.
   CHECK(glm::distance(found.shift, -off) < 1.4);
   CHECK(glm::length(found.shift) < glm::length(off));
 }
@@ -144,8 +144,8 @@ TEST_CASE("least shift: a ball turned about its middle in a closed socket stays,
 }
 
 TEST_CASE("least shift: of two boxes on a hinge, the corner is freed through the nearer face") {
-  // Turned by 90 degrees about z at (30, 30), the second covers x 20 to 40 and y from 30 on. The first reaches up to
-  // y = 36 and to x = 30: out by 6 mm along y, or by 10 along x.
+  // Turned by 90 degrees about z at (30, 30), the second box covers x 20 to 40, and y from 30 on. The first box reaches
+  // to y = 36 and x = 30, so the corner is freed by 6 mm along y or by 10 mm along x.
   const Inside first = block({9.5, 20, 20}, {29.5, 36, 40}), second = block({29.5, 20, 20}, {49.5, 40, 40});
   const LeastShift found = least(first, second, turn({29.5, 30, 30}, {0, 0, 1}, 90), 15);
   CHECK(found.free);
@@ -156,7 +156,7 @@ TEST_CASE("least shift: of two boxes on a hinge, the corner is freed through the
 }
 
 TEST_CASE("least shift: a bone is pushed back to the side that it comes from, also where the other one is thin") {
-  // A wall of two voxels, and a ball that ends with its middle beyond it.
+  // A ball moves into a wall of two voxels until its middle lies beyond the wall.
   const Inside wall = block({29.5, 5, 5}, {31.5, 55, 55});
   const LeastShift found = least(wall, ball({17, 30, 30}, 9), slide({16, 0, 0}), 20);
   CHECK(found.free);

@@ -8,10 +8,9 @@
 using namespace limber;
 
 namespace {
-enum class Ways { Alike, Differ };  // to and fro along an edge
+enum class Ways { Alike, Differ };  // capacities of the two directions of an edge
 
-// A cube of `side` voxels with random capacities; edge k of the 26 leads where the k-th of the offsets in z, y, x order
-// does.
+// Makes a cube of `side` voxels with random capacities. Edge k of the 26 leads to the k-th neighbour in z, y, x order.
 CutGraph<26> random_cube(int side, unsigned seed, int most_edge, int most_terminal, Ways ways) {
   std::mt19937 random(seed);
   CutGraph<26> graph;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber batch, as a user runs it. tests/cluster runs batches by many processes and kills them.
+// Runs `limber batch` as a user does. tests/cluster runs batches in many processes and kills some of them.
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -67,7 +67,7 @@ TEST_CASE("batch: one cell that fails stops no other, what is there is kept, and
   CHECK(table.find("an arm,no,,lbs,cell,,failure,") != std::string::npos);
   CHECK(read_file(folder / "out" / "times.csv").find("an arm,+30,,dqs,") != std::string::npos);
 
-  // The cell is what the command line makes of the same inputs.
+  // The cell's volume equals the one that `limber resample` makes of the same inputs.
   const Path body = std::filesystem::directory_iterator(folder / "out" / "bodies")->path();
   const auto direct = run_limber({"resample", body / "volume.nrrd", "--rig", body / "rig.json", "--tissues",
                                   body / "tissues.json", "--weights", body / "weights.nrrd", "--flex", "Forearm=30",
@@ -75,7 +75,7 @@ TEST_CASE("batch: one cell that fails stops no other, what is there is kept, and
   REQUIRE(direct.exit_code == 0);
   CHECK(read_file(folder / "direct.nrrd") == read_file(cell / "posed.nrrd"));
 
-  // Another export of the same cells poses nothing again.
+  // Asking for another export of the same cells does not compute their poses again.
   const auto before = std::filesystem::last_write_time(cell / "cell.json");
   write_batch(folder, R"([".vti"])");
   run_limber({"batch", batch, "-o", out, "--shard", "2/2"});

@@ -33,7 +33,7 @@ nlohmann::json info_of(const std::string& path) {
   return nlohmann::json::parse(run.out);
 }
 
-// The arm of the phantoms, coarse.
+// The phantom arm with coarse voxels.
 struct Arm {
   TemporaryFolder folder;
   std::string volume = folder / "volume.nrrd", rig = folder / "rig.json", motion = folder / "motion.bvh",
@@ -125,7 +125,7 @@ TEST_CASE(
     CHECK(bytes_of(arm.folder / ("posed_" + number + ".nrrd")) == bytes_of(arm.folder / "one.nrrd"));
     const auto report = nlohmann::json::parse(bytes_of(arm.folder / (number + ".json")));
     CHECK(report["settings"]["frame"] == std::stoi(frame));
-    // A frame's times are its own: what is done once for all counts in the first.
+    // A report states the times of its own frame. Work that is done once for all frames counts in the first.
     double stages = 0;
     for (const auto& [stage, seconds] : report["seconds"].items())
       if (stage != "total") stages += seconds.get<double>();
@@ -305,10 +305,11 @@ TEST_CASE("command line: Ctrl-C ends with 3, a kill with nothing left, whenever 
     for (const int signal : {SIGINT, SIGKILL}) {
       const int code = exit_code_after(signal, std::chrono::milliseconds(wait), words);
       CAPTURE(code);
-      // Either it was done already, and whole, or it was stopped and nothing is there; before main a signal ends it.
+      // The program has either finished with a whole output, or it has stopped without one. Before main() runs, the
+      // signal itself ends the process.
       const bool done = code == 0;
       CHECK((done || code == (signal == SIGINT ? 3 : 128 + SIGKILL) || (signal == SIGINT && code == 128 + SIGINT)));
-      // A kill cannot be seen coming: it may fall between the file's taking its place and the end.
+      // SIGKILL may come after the output has its final name, but before the program ends.
       if (signal == SIGKILL && code == 128 + SIGKILL && std::filesystem::exists(out))
         CHECK(run_limber({"info", out}).exit_code == 0);
       else CHECK(std::filesystem::exists(out) == done);

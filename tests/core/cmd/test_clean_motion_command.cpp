@@ -18,7 +18,7 @@ namespace {
 
 using Places = std::vector<std::array<double, 3>>;
 
-// Where a bone's head or tail is in each frame of a motion on a rig, as `limber fk` says.
+// Returns the position of a bone's head or tail in each frame of a motion on a rig, as `limber fk` prints it.
 Places track(const std::string& rig, const std::string& motion, const std::string& bone, const std::string& point) {
   const auto fk =
       run_limber({"fk", rig, "--motion", motion, "--up", "auto", "--root-motion", "--all-frames", "--json"});
@@ -35,7 +35,7 @@ double along_ground(const std::array<double, 3>& a, const std::array<double, 3>&
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-// The largest second difference of a track: what a jump would show, mm per frame^2.
+// Returns the largest second difference of a track, mm per frame^2. A jump makes it large.
 double roughest(const Places& places) {
   double most = 0;
   for (std::size_t f = 1; f + 1 < places.size(); ++f)
@@ -60,7 +60,7 @@ TEST_CASE(
     REQUIRE(run_limber({"clean-motion", rig, "--motion", motion, "--up", "auto", "--smooth", "6", "-o", smooth})
                 .exit_code == 0);
     const Places free = track(rig, smooth, "LeftHand", "tail");
-    // A place nearer to the elbow, which every arm can reach.
+    // The target lies nearer to the elbow than the hand does, so that every arm can reach it.
     const Places elbow = track(rig, smooth, "LeftForearm", "position");
     std::array<double, 3> target;
     for (int axis = 0; axis < 3; ++axis) target[axis] = free[40][axis] + 0.2 * (elbow[40][axis] - free[40][axis]);
@@ -85,10 +85,10 @@ TEST_CASE(
       for (auto f = first; f <= last; ++f) slides = std::max(slides, along_ground(places[f], places[first]));
       CHECK(slides < 2);
       slid = std::max(slid, std::stod(part[5]));
-      if (++stances == 6) break;  // each asks the program for all frames
+      if (++stances == 6) break;  // each `limber fk` computes all frames
     }
     CHECK(stances >= 4);
-    CHECK(slid > 5);  // they slid before
+    CHECK(slid > 5);  // mm that a foot slid before cleaning
     const Places hand = track(rig, clean, "LeftHand", "tail");
     for (int f = 38; f <= 42; ++f)
       CHECK(std::hypot(hand[f][0] - target[0], hand[f][1] - target[1], hand[f][2] - target[2]) < 3);
@@ -112,7 +112,7 @@ TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated w
     return to;
   };
   const std::string walk = made(shared_path("data/bvh/cmu_12_01_walk.bvh").string(), "walk.bvh", {"--smooth", "6"});
-  // Two steps, in which the body comes back to its pose.
+  // Two steps, after which the body is back in its first pose.
   constexpr int kFirst = 174, kSteps = 152, kSeam = 36;
   limber::Motion cycle = limber::read_bvh(walk);
   cycle.values.erase(cycle.values.begin() + (kFirst + kSteps + 1) * cycle.channel_count, cycle.values.end());
@@ -144,13 +144,14 @@ TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated w
     for (const int seam : {kSteps, 2 * kSteps}) {
       CHECK(fastest(looped, seam - kSeam / 2, seam + kSeam / 2) < 1.5 * sides);
       const double before = apart(looped[seam - 1], looped[seam]), after = apart(looped[seam], looped[seam + 1]);
-      CHECK(std::abs(after - before) < 0.5);  // mm per frame; the take itself has 2
+      CHECK(std::abs(after - before) < 0.5);  // mm per frame; this change is up to 2 in the recording itself
     }
     CHECK(apart(looped[kSteps], looped[2 * kSteps]) == doctest::Approx(apart(looped[0], looped[kSteps])).epsilon(0.02));
     const Places still = track(rig, spot, bone, "tail");
     for (std::size_t f = 0; f + kSteps < still.size(); ++f) CHECK(apart(still[f], still[f + kSteps]) < 0.01);
   }
-  // The left foot of the mirrored walk steps as the right one did, but for what differs between the legs.
+  // The left foot of the mirrored walk moves like the right foot of the original, up to the difference between the
+  // legs.
   const Places left = track(rig, mirrored, "LeftFoot", "position"),
                right = track(rig, (folder / "cycle.bvh").string(), "RightFoot", "position");
   double most = 0, lifted = 0;

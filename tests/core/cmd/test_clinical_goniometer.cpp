@@ -29,20 +29,20 @@ constexpr double kTolerance = 1;  // degrees
 
 using Json = nlohmann::json;
 
-// What the goniometer looks at. "@" in a rig bone's name stands for the side.
+// The names of the rig bones that the goniometer measures. "@" in a name stands for the side.
 struct BodyNames {
   std::string upper_arm, forearm, hand, thigh, shank, foot, index, little;
 };
 
 struct GoniometerBody {
-  std::string volume, rig_file, tissues;  // files
+  std::string volume, rig_file, tissues;  // paths of files
   Armature rig;
   BodyNames names;
   // The labels of each rig bone's own bones. Rig bones that are not listed have no labels of their own: their bones are
-  // the voxels of bone around the rig bone's middle.
+  // label name -> value in the file
   std::map<std::string, std::vector<std::string>> bones;
   std::map<std::string, double> file_values;                  // of labels, by name
-  std::map<std::string, std::vector<std::string>> carried{};  // rig bones that stay fixed to a rig bone
+  std::map<std::string, std::vector<std::string>> carried{};  // bone -> bones that move rigidly with it
 };
 
 std::string replaced_side(std::string name, double out) {
@@ -50,8 +50,8 @@ std::string replaced_side(std::string name, double out) {
   return name;
 }
 
-// Turns a search's start by 6 degrees and moves it by 5 mm away from the program's own answer, so that the answer
-// cannot come from there. Returns the best of three such searches.
+// Registers points from three starts that differ by 6 degrees and 5 mm from the program's own answer, so that the
+// result does not depend on that answer. Returns the best of the three.
 Registration searched_from_afar(const std::vector<glm::dvec3>& rest, const std::vector<glm::dvec3>& posed,
                                 const Registration& told, double spacing) {
   glm::dvec3 middle(0);
@@ -96,7 +96,7 @@ class Goniometer {
     surfaces_.clear();
   }
 
-  // The measured rotation of a rig bone from rest, by its own bones' voxels.
+  // Returns the rotation of a rig bone from rest, measured by the voxels of its own bones.
   const glm::dmat3& turn_of(const std::string& bone) {
     const auto known = turns_.find(bone);
     if (known != turns_.end()) return known->second;
@@ -116,7 +116,8 @@ class Goniometer {
     return turns_[bone] = found.rotation;
   }
 
-  // The posed direction between the heads of two rig bones, carried by the bone of the first.
+  // Returns the posed direction from the head of one rig bone to that of another. Both heads move with the bone of the
+  // first, or with `carrier`.
   glm::dvec3 line(const std::string& from, const std::string& to, const std::string& carrier = "") {
     const auto head = [&](const std::string& bone) {
       return body_.rig.bones[static_cast<std::size_t>(require_bone(body_.rig, bone))].head;
@@ -157,7 +158,7 @@ class Goniometer {
     return file;
   }
 
-  // The values in files of the labels that hold a rig bone's bones.
+  // Returns the values, in files, of the labels that hold a rig bone's bones.
   std::set<double> values_of(const std::string& bone) const {
     std::set<double> values;
     const auto own = body_.bones.find(bone);
@@ -200,7 +201,7 @@ class Goniometer {
                                     bones.begin());
   }
 
-  // The middle part of a bone is apart from its joints and from bones beside it.
+  // Returns true in the middle part of a bone, away from its joints and from the bones beside it.
   static bool is_around_middle(const Bone& bone, const glm::dvec3& p) {
     const glm::dvec3 along = bone.tail - bone.head;
     const double share = glm::dot(p - bone.head, along) / glm::dot(along, along);
@@ -234,7 +235,7 @@ void expect_limb(const std::string& what, const LimbAngles& measured, const Aske
   if (asked.bend >= 30) expect("internal rotation", measured.rotation, asked.rotation);
 }
 
-// Ten poses of a body with arms and legs.
+// Measures ten poses of a body with arms and legs.
 void measure_whole_body(const GoniometerBody& body, bool hands) {
   Goniometer goniometer(body);
   goniometer.pose({"left hip flexion=70", "left knee flexion=90"});
@@ -392,8 +393,8 @@ TEST_SUITE("slow") {
     expect("wrist", degrees_between_vectors(forearm(), wrist_to("RightMiddleProximal")), 40);
     goniometer.pose({"wrist ulnar deviation=20", "elbow flexion=30"});
     expect("wrist", degrees_between_vectors(forearm(), wrist_to("RightMiddleProximal")), 20);
-    // Fingers. Their bones are round, so their directions are measured: the angle between two poses that differ by one
-    // angle is that angle.
+    // Finger bones are too round for a measured rotation, so their directions are compared: two poses that differ by
+    // one joint angle give directions that differ by that angle.
     const auto proximal = [&](const std::string& finger) {
       return goniometer.line("Right" + finger + "Proximal", "Right" + finger + "Middle");
     };

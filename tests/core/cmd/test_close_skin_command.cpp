@@ -15,7 +15,8 @@ using namespace limber::test;
 
 namespace {
 
-// A ball of flesh (2) around bone (3), skin (1) around its middle alone, in a volume that it touches at the lowest z.
+// A ball of flesh (2) around bone (3), with skin (1) around its middle only. The ball touches the lowest z of the
+// volume.
 LabelVolume ball() {
   LabelVolume volume{{{24, 24, 20}, glm::dvec3(2), glm::dvec3(0), glm::dmat3(1)}, {}};
   volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber experiment, as a user runs it: whole, in shards, killed and taken up again.
+// Runs `limber experiment` as a user does: to its end, in shards, and resumed after a kill.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -32,7 +32,7 @@ void describe(const Path& path, const std::string& methods,
       << R"(, "poses": )" << poses << "}";
 }
 
-// Without what differs from run to run.
+// Returns the report without the values that differ from run to run.
 json without_times(json value) {
   if (value.is_object())
     for (const char* key : {"cpu_seconds", "wall_seconds", "seconds", "peak_memory_mb"}) value.erase(key);
@@ -50,7 +50,7 @@ int cells_there(const Path& folder) {
   return cells;
 }
 
-// Starts it, ends it by a signal `after` seconds after that many cells are there, and returns how it ended.
+// Starts the study, sends it a signal `after` seconds after `cells` cells are there, and returns its exit code.
 int ended_by(int signal, const Path& study, const Path& out, int cells, double after) {
   const pid_t child = ::fork();
   if (child == 0) {
@@ -170,7 +170,7 @@ TEST_CASE(
   CHECK(count(again.err, ": there already") == 6);
   CHECK(cells_of(killed) == cells);
 
-  // A job of a cell makes the cell's volume again.
+  // A cell's job file makes the cell's volume again.
   const Path one = killed / cells["cells"][4]["folder"].get<std::string>();
   const std::string before = read_file(one / "posed.nrrd");
   REQUIRE(run_limber({"job", one / "job.json"}).exit_code == 0);
@@ -259,7 +259,7 @@ TEST_CASE("experiment: shards compute each their own cells, and a run without on
   CHECK(count(all.err, ": there already") == 4);
   CHECK(cells_of(out)["cells"].size() == 4);
 
-  // Another pose more: only its cells are computed.
+  // A pose is added to the study: only its cells are computed.
   describe(study, R"(["lbs", "dqs"])",
            R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}, {"name": "+20", "flex": "Forearm=20"}])");
   const auto more = run_limber({"experiment", study, "-o", out});
@@ -295,7 +295,7 @@ TEST_CASE("experiment: a cancel leaves done cells and nothing half-written, and 
   refused({"experiment", study, "-o", folder / "file" / "out"}, "cannot be made");
   CHECK(run_limber({"experiment"}).exit_code == 2);
 
-  // A pose that the rig does not know fails its cells alone, and the page says so.
+  // A pose that the rig does not have fails in its own cells only, and the page reports it.
   describe(study, R"(["lbs"])", R"([{"name": "+0"}, {"name": "wrong", "flex": ["Elbow=40"]}])");
   const auto wrong = run_limber({"experiment", study, "-o", out});
   CHECK(wrong.exit_code == 1);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber experiment, for readers who do not believe: repeats, a form for raters, and a bundle to compute again.
+// Tests `limber experiment` for sceptical readers: repeats, a form for raters, and a bundle with which others compute
+// the study again.
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -24,7 +25,7 @@ void describe(const Path& path, const std::string& body) {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// The codes of the form's pictures, with their methods, by the key.
+// Returns the picture codes of the form with their methods, read from the key file.
 std::vector<std::pair<std::string, std::string>> key_of(const Path& file) {
   std::vector<std::pair<std::string, std::string>> key;
   std::istringstream rows(read_file(file));

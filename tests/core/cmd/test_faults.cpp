@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Disks that fail, and kills, at every n-th call: whoever could not write says so, inputs and older outputs are as they
-// were, and after the next start nothing is left behind. (tests/support/failing_calls.cpp makes the calls fail.)
+// Makes every n-th file system call fail, or kills the program there. A command that could not write reports it, inputs
+// and older outputs are unchanged, and nothing is left behind after the next start. The calls fail by
+// tests/support/failing_calls.cpp.
 #include <algorithm>
 #include <csignal>
 #include <map>
@@ -11,7 +12,7 @@
 #include "tests/support/program.h"
 #include "tests/support/sanitizer.h"
 
-#ifndef LIMBER_ADDRESS_SANITIZER  // it must be loaded first itself
+#ifndef LIMBER_ADDRESS_SANITIZER  // the sanitizer's library must be loaded before any other
 
 using namespace limber;
 using namespace limber::test;
@@ -44,7 +45,7 @@ struct Bench {
   }
 };
 
-// `output` is made by the words; run once well, and then with faults over the older output and where there is none.
+// A command that makes `output`. It runs once without faults, then with faults over the older output and without one.
 struct Request {
   std::string output;
   std::vector<std::string> words;
@@ -89,7 +90,7 @@ TEST_CASE("faults: when every n-th write, open, rename or sync fails, commands s
           if (!bench.failed()) {
             CHECK(run.exit_code == 0);
             if (!over_older) fs::remove(bench.in(request.output));
-            before = bench.contents();  // a project has a mark of its own after each save
+            before = bench.contents();  // saving a project again changes its identifier
             continue;
           }
           ++faults;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber resample --method fem, as a user or a worker runs it.
+// Runs `limber resample --method fem` as a user or a worker process does.
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -24,7 +24,7 @@ using nlohmann::json;
 
 namespace {
 
-// The arm in files, coarse enough to be quick.
+// The phantom arm in files, with coarse voxels, so that tests are quick.
 struct Arm {
   TemporaryFolder folder;
   Arm() {
@@ -103,10 +103,10 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   }
   CHECK(nodes);
   CHECK(worst < 1e-3);
-  CHECK((step->V - mesh->tets.V).rowwise().norm().maxCoeff() > 10);  // the forearm has moved
+  CHECK((step->V - mesh->tets.V).rowwise().norm().maxCoeff() > 10);  // mm: the forearm has moved
 
-  // The share of the body that the command tells, by the tets' own volumes at rest: they reach a little beyond the
-  // tissue.
+  // The command prints which share of the body the mesh holds. The test computes it from the volumes of the tets at
+  // rest, which reach a little beyond the tissue.
   double mesh_mm3 = 0;
   for (int t = 0; t < mesh->tets.T.rows(); ++t) {
     const auto corner = [&](int i) -> Eigen::RowVector3d { return mesh->tets.V.row(mesh->tets.T(t, i)); };
@@ -167,7 +167,7 @@ TEST_CASE(
   CHECK(iterations == report["solve"]["iterations"].get<int>());
   CHECK(last == 1);
 
-  // As many tets and nodes as the report says, each of a tissue of the volume.
+  // The files hold as many nodes and tets as the report says, and each tet has a tissue of the volume.
   std::ifstream nodes(arm.folder / "posed.node"), tets(arm.folder / "posed.ele");
   std::int64_t count = 0;
   nodes >> count;
@@ -190,7 +190,7 @@ TEST_CASE(
 
 namespace {
 
-// Waits until the process handles Ctrl-C itself: before that the system ends it.
+// Waits until the process handles Ctrl-C itself. Before that, the signal ends it.
 void await_handler(pid_t child) {
   for (int tries = 0; tries < 5000; ++tries) {
     std::ifstream in("/proc/" + std::to_string(child) + "/status");
@@ -228,7 +228,7 @@ TEST_CASE("fem command: Ctrl-C ends a solve within a tenth of a second and leave
     ::waitpid(child, &status, 0);
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
     INFO("after ", wait_ms, " ms");
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;  // it was done before
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;  // it had finished before the signal
     CHECK(took < 0.1);
     CHECK(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The displacement field of a pose that is known by a formula: a body that turns as one. In one direction it is posed
-// minus rest, in the other what warping programs take: posed(x) = rest(x + field(x)).
+// Checks the displacement field of a known pose, a body that turns rigidly. In one direction the field is posed minus
+// rest. In the other it is what warping programs take: posed(x) = rest(x + field(x)).
 #include <cmath>
 #include <numbers>
 
@@ -46,7 +46,7 @@ struct TurnedArm {
     words.insert(words.end(), more.begin(), more.end());
     return run_limber(words);
   }
-  // Where a point of the posed body was at rest.
+  // Returns the rest position of a point of the posed body.
   glm::dvec3 rest_of(const glm::dvec3& posed) const {
     const double turn = -kDegrees * std::numbers::pi / 180, c = std::cos(turn), s = std::sin(turn);
     const glm::dvec3 from = posed - centre;
@@ -76,7 +76,7 @@ TEST_CASE(
     CHECK(bytes.find("limber_field_direction:=" + word + "\n") != std::string::npos);
     CHECK(bytes.find(to_rest ? "LPS: rest minus posed" : "LPS: posed minus rest") != std::string::npos);
 
-    const VectorVolume field = read_vector_volume(file);  // posed minus rest, whatever the file holds
+    const VectorVolume field = read_vector_volume(file);  // the reader returns posed minus rest for both directions
     const LabelVolume posed = read_volume(arm.folder / "posed.nrrd").volume;
     REQUIRE(field.grid.size == posed.grid.size);
     double worst = 0;
@@ -137,7 +137,7 @@ TEST_CASE(
   header.replace(header.find(":=to-rest"), 9, ":=sidewise");
   write_file_atomically(folder / "rest.nhdr", header);
   CHECK_THROWS_WITH(read_vector_volume(folder / "rest.nhdr"), doctest::Contains("points sidewise"));
-  // NIfTI has room for one sentence.
+  // A NIfTI header has room for a short description only.
   write_displacement_field(grid, field, FieldDirection::ToRest, folder / "rest.nii");
   CHECK(read_file(folder / "rest.nii").substr(148, 79).starts_with("displacement, mm, LPS: rest minus posed"));
 }

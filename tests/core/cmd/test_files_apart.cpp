@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// No command writes over what it reads, by whatever name, nor two outputs over each other. It says so with exit code 2
-// before it reads anything.
+// No command writes over a file that it reads, under whatever name, nor writes two outputs to one file. It reports this
+// with exit code 2 before it reads anything.
 #include <filesystem>
 
 #include <doctest/doctest.h>
@@ -20,7 +20,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// A small arm and what belongs to it. The commands below fail before they would look into most of these files.
+// A small arm and the files that belong to it. The commands below fail before they read most of them.
 struct Files {
   TemporaryFolder folder;
   Files() {
@@ -43,7 +43,7 @@ struct Files {
   std::string hash() const { return sha256_of_file(folder.path()); }
 };
 
-// `words` with @NAME as the file NAME of the folder.
+// Returns `words` with each @NAME replaced by the path of file NAME in the folder.
 Words in_folder(Words words, const TemporaryFolder& folder) {
   for (std::string& word : words)
     for (std::size_t at; (at = word.find('@')) != std::string::npos;) word.replace(at, 1, folder.path().string() + "/");

@@ -13,7 +13,7 @@ using namespace limber::test;
 
 namespace {
 
-// The phantom's arm. Where the elbow of its rig lies 10 mm too far back, bending drives the forearm into the upper arm.
+// The phantom arm. If the elbow of its rig lies 10 mm too far back, bending drives the forearm into the upper arm.
 struct Arm {
   TemporaryFolder folder;
   std::string out = folder / "out.nrrd", report = folder / "report.json";
@@ -114,7 +114,8 @@ TEST_CASE("glide: jobs say it as the command line does, and what is no way to gl
     const ProgramRun run = arm.run({"--flex", "Forearm=100", std::string("--glide=") + wrong});
     INFO(wrong, " -> ", run.err);
     const bool is_number =
-        std::string_view("nan inf").find(wrong) == std::string_view::npos;  // what is none is refused everywhere
+        // The option parser itself refuses these two.
+        std::string_view("nan inf").find(wrong) == std::string_view::npos;
     CHECK(run.exit_code == (is_number ? 1 : 2));
     CHECK(run.err.find(is_number ? "joints do not glide that way" : "no finite number") != std::string::npos);
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the user guide tells to type works as it stands.
+// The commands that the user guide tells the reader to type work as printed.
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The CT that a recipe asks its reader for: a body's densities, in Hounsfield units.
+// Writes the CT that a recipe asks its reader for: the densities of a body, in Hounsfield units.
 void write_ct(const fs::path& path) {
   const Phantom body = make_body_phantom(8);
   std::ofstream file(path, std::ios::binary);
@@ -35,7 +35,7 @@ void write_ct(const fs::path& path) {
   }
 }
 
-// Runs the points of the page that are commands, one after the other, in a folder of their own. Returns their number.
+// Runs the commands among a page's bullet points one after the other, in their own folder. Returns their number.
 int run_commands_of(const fs::path& page) {
   const TemporaryFolder folder;
   std::ifstream guide(page);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Names of files that are longer than a file system allows.
+// Tests file names that are longer than the file system allows.
 #include <fstream>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// SAR over cubes of 10 g (assets/examples/peak_sar.py) against a slow program that was written on its own
-// (tests/support/peak_sar_slow.py), on bodies made by hand and at random, and against the exact field in a ball
+// Compares SAR over cubes of 10 g (assets/examples/peak_sar.py) with a slow program that was written independently
+// (tests/support/peak_sar_slow.py), on hand-made and on random bodies, and with the exact field in a ball
 // (tests/support/mie_ball.py).
 #include <doctest/doctest.h>
 
@@ -16,7 +16,7 @@ bool has_numpy() {
   return false;
 }
 
-// The program compares peak_sar.py with what it knows otherwise, and says "same".
+// Runs a program that compares peak_sar.py with an independent result and prints "same".
 void check_same(const std::string& program, const std::vector<std::string>& more) {
   std::vector<std::string> words{LIMBER_SOURCE_DIR "/tests/support/" + program, LIMBER_SOURCE_DIR "/assets/examples"};
   words.insert(words.end(), more.begin(), more.end());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Wrong inputs and wrong results, planted one by one: each must be caught with a sentence and, with --strict, by exit
-// code 5. And good inputs in small poses, of which none may be called wrong.
+// Plants wrong inputs and wrong results one by one. Each must be reported, and with --strict end with exit code 5.
+// Correct inputs in small poses must pass.
 #include <algorithm>
 #include <fstream>
 #include <functional>
@@ -42,7 +42,7 @@ ProgramRun resample(const TemporaryFolder& folder, const std::vector<std::string
                     more);
 }
 
-// Caught: exit code 5, the sentence on stderr, and both outputs written.
+// Checks that a fault is caught: exit code 5, the sentence on stderr, and both outputs written.
 void check_caught(const ProgramRun& run, const TemporaryFolder& folder, const char* sentence) {
   INFO(run.err);
   CHECK(run.exit_code == 5);
@@ -52,7 +52,7 @@ void check_caught(const ProgramRun& run, const TemporaryFolder& folder, const ch
   CHECK(std::filesystem::exists(folder / "report.json"));
 }
 
-// Weights of the figure, changed voxel by voxel.
+// Changes the weights of the figure voxel by voxel.
 void change_weights(const Figure& figure, const TemporaryFolder& folder,
                     const std::function<void(const glm::ivec3& voxel, Label label, Influence& influence)>& change) {
   const auto run = run_limber(std::vector<std::string>{"weights"} + body_arguments(folder) +
@@ -70,14 +70,14 @@ void change_weights(const Figure& figure, const TemporaryFolder& folder,
   write_weights(weights, figure.volume, tissue, folder / "weights.nrrd");
 }
 
-// The place of a rig bone among those of the weights, which have the rig's order.
+// Returns the index of a rig bone. The weights list the bones in the rig's order.
 int bone(const Figure& figure, const char* name) { return *figure.armature.find(name); }
 
 void rewrite_rig(Figure& figure, const std::function<glm::dvec3(const glm::dvec3&)>& move) {
   for (Bone& bone : figure.armature.bones) bone.head = move(bone.head), bone.tail = move(bone.tail);
 }
 
-// A posed volume and its field by a map of the test's own, drawn from many points in each rest voxel.
+// A posed volume and its field, made by the test's own map from `points` sample points in each rest voxel.
 struct OwnPose {
   LabelVolume posed;
   ZeroedVector<glm::vec3> displacement;
@@ -170,7 +170,7 @@ TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the bo
     const TemporaryFolder folder;
     Figure figure = block_figure();
     rewrite_rig(figure, one.move);
-    // The body that the RAS rig belongs to lies behind the origin.
+    // The body must lie behind the origin, where the rig in RAS axes has it.
     if (std::string(one.sentence) == "RAS axes") figure.volume.grid.origin.y += 100;
     write_figure(figure, folder.path());
     check_caught(resample(folder, {}), folder, one.sentence);
@@ -245,7 +245,7 @@ TEST_CASE("planted faults: a grey image in place of labels is refused before any
       written += entry.path().filename().string().starts_with("out");
     CHECK(written == 0);
   }
-  // As an image it may still be converted.
+  // The same file is still accepted as an image.
   CHECK(run_limber({"convert", grey, folder / "copy.mha"}).exit_code == 0);
 }
 
@@ -279,10 +279,10 @@ TEST_CASE(
   fill_where(figure.volume, {44, 7, 46}, {48, 17, 54}, 0, kFigureMuscle);
   write_figure(figure, folder.path());
   Pose pose = rest_pose(figure.armature);
-  pose.rotation[2] = glm::angleAxis(glm::radians(-25.0), glm::dvec3(0, 1, 0));  // the left arm away from the trunk
+  pose.rotation[2] = glm::angleAxis(glm::radians(-25.0), glm::dvec3(0, 1, 0));  // the left arm, away from the trunk
   const RigidTransform arm = posed_from_rest(figure.armature, pose)[2];
   std::ofstream(folder / "pose.json") << R"({"bones": {"LeftUpperArm": {"axis": [0, 1, 0], "degrees": -25}}})";
-  // From the trunk to the arm the map goes over within the shoulder above, and within the weld below.
+  // The map blends from the trunk to the arm inside the shoulder above, and inside the weld below.
   const auto posed = posed_by(figure.volume,
                               [&](const glm::ivec3& v, const glm::dvec3& p) {
                                 if (v.x < 44) return p;
@@ -301,8 +301,8 @@ TEST_CASE(
   CHECK(run.exit_code == 5);
   CHECK(run.err.find("A band of ") != std::string::npos);
   CHECK(run.err.find("part what touches there at rest") != std::string::npos);
-  CHECK(run.err.find("between LeftForearm and LeftThigh") !=
-        std::string::npos);  // the thigh stays with the pelvis, and begins there
+  // The thigh, which stays with the pelvis, begins there.
+  CHECK(run.err.find("between LeftForearm and LeftThigh") != std::string::npos);
   CHECK(run.out.find("passed      Each of 11 named bones moved as one") != std::string::npos);
 }
 
@@ -344,7 +344,7 @@ TEST_CASE("strict: gates that nobody could check say so, and never pass") {
 TEST_CASE("good cases: bodies built in code, at rest and in small poses, pass every gate of the body" *
           doctest::test_suite("slow")) {
   struct Case {
-    std::string body;  // arm, body: the phantoms; figure, block arm
+    std::string body;  // arm, body: the phantoms; figure, block arm: bodies of this test
     std::vector<std::string> flex;
     std::string method;
   };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses by joints' names, told by the bones of the posed volume alone: where their voxels lie, and not what the rig
-// says.
+// Tests poses by joint names, measured by the voxels of the posed bones only, not by the rig.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -21,10 +20,10 @@ using namespace limber::test;
 namespace {
 
 struct LongBone {
-  glm::dvec3 middle{0}, along{0};  // mm; unit, downwards or forwards
+  glm::dvec3 middle{0}, along{0};  // mm; unit vector along the bone, downwards or forwards
 };
 
-// The line of a bone's voxels, by their spread.
+// Returns the line through each bone's voxels, along the direction of their largest spread.
 std::map<Label, LongBone> lines_of(const LabelVolume& volume, const std::vector<Label>& labels) {
   const AffineTransform to_world = world_from_voxel(volume.grid);
   std::map<Label, std::vector<glm::dvec3>> places;
@@ -51,7 +50,7 @@ std::map<Label, LongBone> lines_of(const LabelVolume& volume, const std::vector<
   return lines;
 }
 
-// Degrees forward from straight down, seen from the left.
+// Returns the angle in degrees between a bone and straight down, positive forwards, in the view from the left.
 double forward_of(const LongBone& bone) { return glm::degrees(std::atan2(-bone.along.y, -bone.along.z)); }
 
 }  // namespace
@@ -93,6 +92,6 @@ TEST_CASE(
   }
   CHECK(forward_of(bones["sit"]["Left humerus"]) - forward_of(bones["supine"]["Left humerus"]) ==
         doctest::Approx(10).epsilon(0.1));
-  // The ulna turns with the forearm as the palm turns inwards, and lies askew to it by some degrees.
+  // When the palm turns inwards, the ulna turns with the forearm, and it lies askew to it by some degrees.
   CHECK(std::abs(forward_of(bones["sit"]["Left ulna"]) - forward_of(bones["supine"]["Left ulna"]) - 90) < 8);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the command line prints: names from files give no orders to the terminal, and what cannot be written is no
-// success.
+// Tests what the command line prints: names from files cannot control the terminal, and output that cannot be written
+// is an error.
 #include <algorithm>
 #include <cstdlib>
 
@@ -20,7 +20,7 @@ using namespace limber::test;
 
 namespace {
 
-// Clears the screen, renames the window by C1, and hides what follows by a carriage return.
+// Tries to clear the screen, to rename the window by a C1 code, and to hide text by a carriage return.
 const std::string kHostile =
     "Fore\x1b[2J\xc2\x9d"
     "0;x\x07\x7f\rarm";
@@ -56,9 +56,9 @@ TEST_CASE("printed text: control characters and broken UTF-8 are made visible, l
   CHECK(cmd::printable("Schädel 頭 \xf0\x9f\xa6\xb4\n\tA") == "Schädel 頭 \xf0\x9f\xa6\xb4\n\tA");
   CHECK(cmd::printable("a\x1b[31mb\x7f") == "a?[31mb?");
   CHECK(cmd::printable("a\xc2\x9b"
-                       "31m") == "a?31m");  // CSI as C1
+                       "31m") == "a?31m");  // CSI as a C1 character
   CHECK(cmd::printable("a\x9b"
-                       "31m\xe9") == "a?31m?");  // the same as a bare byte, and Latin-1
+                       "31m\xe9") == "a?31m?");  // CSI as a single byte, and a Latin-1 letter
   CHECK(cmd::printable("\xed\xa0\x80\xc0\x80\xf4\x90\x80\x80\xe2\x82").find_first_not_of('?') == std::string::npos);
   CHECK(cmd::one_line("a\nb\tc\rd\x1b") == "a b c d?");
 }
@@ -135,7 +135,8 @@ TEST_CASE("printed text: without stdout and stderr the files that are written ho
 
 TEST_CASE("modules: a planted one in the working folder is not loaded, whatever the environment says") {
   const TemporaryFolder folder;
-  // Any library does: loaded by its bare name it would be taken for the module and found damaged.
+  // Plants a library under the module's name. A program that loads by the bare name would load this one and call it
+  // damaged.
   const std::string planted = folder / "limber_dicom.so";
   write_file_atomically(
       folder / "planted.c",

@@ -39,7 +39,7 @@ void make_arm(const TemporaryFolder& folder) {
 
 namespace {
 
-// A project does not say what seams its weights were made with.
+// Returns the weights' header without its seams, which a project does not store.
 std::string without_seams(std::string weights) {
   const std::size_t begin = weights.find("limber_seams:=");
   if (begin != std::string::npos) weights.erase(begin, weights.find('\n', begin) + 1 - begin);
@@ -135,10 +135,10 @@ TEST_CASE("project command: recover writes the edits that a crash left, or what 
   CHECK(recovered.exit_code == 0);
   CHECK(recovered.out == "edits recovered up to: Turn\n");
   CHECK(nlohmann::json::parse(run_limber({"info", folder / "out.limber", "--json"}).out)["posed_bones"].size() == 1);
-  CHECK(project(folder, {"recover", "-o", folder / "out.limber"}).exit_code == 1);  // it is there
+  CHECK(project(folder, {"recover", "-o", folder / "out.limber"}).exit_code == 1);  // the output exists already
 
   std::string bytes = read_file(folder / "out.limber");
-  const std::size_t first_chunk = bytes.find("\x28\xb5\x2f\xfd");  // as zstd's frames begin
+  const std::size_t first_chunk = bytes.find("\x28\xb5\x2f\xfd");  // the first bytes of a zstd frame
   REQUIRE(first_chunk != std::string::npos);
   for (std::size_t at = first_chunk + 16; at < first_chunk + 24; ++at) bytes[at] ^= 0x55;
   std::ofstream(folder / "bad.limber", std::ios::binary) << bytes;
@@ -154,7 +154,7 @@ TEST_CASE("project command: what cannot be done is refused in one line and write
   const TemporaryFolder folder;
   make_arm(folder);
   std::ofstream(folder / "text.limber") << "hello";
-  std::vector<std::vector<std::string>> requests = {{"create", folder / "volume.nrrd"},  // it is there
+  std::vector<std::vector<std::string>> requests = {{"create", folder / "volume.nrrd"},  // the project exists already
                                                     {"export"},
                                                     {"export", "volume"},
                                                     {"export", "pictures", "-o", folder / "new"},
@@ -253,7 +253,7 @@ TEST_CASE("project command: constraints hold in the motion and the poses that ar
     const glm::dvec3 from_pose = tail(read_pose(file, arm)), from_motion = tail(played.at(frame));
     CHECK(glm::distance(from_pose, from_motion) < 0.01);
     CHECK((glm::distance(from_pose, plant.place) < 0.5) == (frame >= 10));
-    // At weight 0 only the trunk is turned.
+    // In frame 0 the constraint has weight 0, and only the trunk is turned.
     if (frame == 0) CHECK(glm::distance(from_pose, arm.bones[3].tail) < 1e-6);
   }
   const auto told = nlohmann::json::parse(project(folder, {"inspect", "--json"}).out);
@@ -265,7 +265,7 @@ TEST_CASE("project command: constraints hold in the motion and the poses that ar
     CHECK(refused.exit_code == 1);
     CHECK(refused.err.find("only export pose takes a frame") != std::string::npos);
   }
-  // A clip with more constraints than the editor makes is no project of this program.
+  // A clip with more constraints than the editor allows is refused.
   std::vector<Constraint> many;
   for (std::size_t i = 0; i <= kMostConstraints; ++i) {
     many.push_back(plant);

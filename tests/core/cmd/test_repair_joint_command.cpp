@@ -23,7 +23,7 @@ struct PhantomFiles {
     REQUIRE(run_limber({"weights", volume, "--rig", rig, "-o", weights}).exit_code == 0);
   }
 
-  // |skin| + |fat| + |muscle| volume change in %, from the voxels in the report of a resampling.
+  // Returns |skin| + |fat| + |muscle| volume change in %, from the voxel counts in the report of a resampling.
   double sum_by_report(const std::string& with, const std::string& degrees) const {
     const std::string report = folder / "report.json";
     REQUIRE(run_limber({"resample", volume, "--rig", rig, "--tissues", tissues, "--weights", with, "--flex",

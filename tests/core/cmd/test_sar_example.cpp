@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The guide's example: from a posed volume to the energy that it takes up from a field
+// Runs the guide's example, from a posed volume to the energy that it absorbs from a field
 // (assets/examples/sar_openems.py).
 #include <filesystem>
 #include <fstream>
@@ -73,7 +73,7 @@ TEST_CASE(
   const auto coarse = sar({"deck", folder / "elbow.xml", "--cell", "20", "-o", folder / "coarse.json"});
   CHECK(coarse.exit_code == 0);
   const auto of_coarse = read(folder / "coarse.json")["elbow"];
-  CHECK(of_coarse["cells_heavier_than_10g"] > 0);  // cortical bone: 15 g
+  CHECK(of_coarse["cells_heavier_than_10g"] > 0);  // a cell of cortical bone weighs 15 g
   CHECK(coarse.err.find("make --cell smaller") != std::string::npos);
   const auto arm =
       sar({"deck", folder / "elbow.xml", "--cell", "12", "-o", folder / "sar.json", "--plot", folder / "sar.svg"});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The XML by which 3D Slicer makes a form of a command.
+// Tests the XML from which 3D Slicer makes the form of a command.
 #include <fstream>
 #include <regex>
 #include <set>

@@ -11,7 +11,7 @@ using namespace limber;
 
 namespace {
 
-// 12 x 10 x 14 voxels of a mirrored and oblique grid, in cubes of 2.
+// A block of 12 x 10 x 14 voxels on a mirrored and oblique grid, meshed in cubes of 2 voxels.
 struct Block {
   Grid grid = test::oblique_grid();
   std::shared_ptr<const TetMesh> mesh =
@@ -38,7 +38,7 @@ TEST_CASE("carried points: those in and near a mesh turn with it as one body, th
        {glm::dvec3(9.3, 7.1, 12.9), glm::dvec3(4, 4, 4), glm::dvec3(2.5, 3, 12), glm::dvec3(17, 15, 19.5)})
     points.push_back({at, at});
   points.push_back({{40, 10, 10}, {40, 10, 10}});
-  points.push_back({{40, 10, 10}, {10, 10, 10}});  // far itself, but tied to the middle
+  points.push_back({{40, 10, 10}, {10, 10, 10}});  // far from the mesh, but attached to its middle
   const double furthest = 4 * std::max({block.grid.spacing.x, block.grid.spacing.y, block.grid.spacing.z});
   const CarriedPoints carried(block.mesh, block.grid, points, furthest);
   const RigidTransform turn{glm::angleAxis(1.1, glm::normalize(glm::dvec3(1, 2, -1))), {20, -3, 8}};
@@ -61,7 +61,7 @@ TEST_CASE("carried points: in a mesh that is stretched they keep their place in 
   const auto stretched = [&](const glm::dvec3& p) { return p + 0.5 * glm::dot(along, p) * along; };
   const auto posed = carried.posed(block.moved(stretched));
   CHECK(glm::distance(block.world * *posed[0], stretched(block.world * inside)) < 1e-9);
-  // Beside the mesh nothing is stretched: 1.5 voxels from its border they stay.
+  // Outside the mesh nothing is stretched: the point keeps its distance of 1.5 voxels from the border.
   const glm::dvec3 border(16, 9, 11);
   CHECK(glm::distance(block.world * *posed[1],
                       stretched(block.world * border) + block.world.linear * (beside - border)) < 1e-9);

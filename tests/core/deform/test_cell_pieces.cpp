@@ -11,7 +11,7 @@ using namespace limber;
 
 namespace {
 
-// Two bars along z with air between, joined at the bottom.
+// Two bars along z with air between them, joined at the bottom.
 LabelVolume fork(int gap) {
   LabelVolume volume{Grid{}, {}};
   volume.grid.size = {24, 16, 40};
@@ -42,9 +42,9 @@ TEST_CASE("cell pieces: what touches by faces within a cell is one piece, and ev
       CHECK(piece.stiff[0].places == piece.places);
     }
     CHECK(voxels == tissue.size());
-    CHECK(shares == doctest::Approx(1000.0 * kFullWeight * double(tissue.size()))
-                        .epsilon(1e-4));  // of each voxel, over the corners
-    // The gap lies at x = 8, the first voxel of a cell.
+    // The weights of each voxel over the corners of its cell sum to kFullWeight.
+    CHECK(shares == doctest::Approx(1000.0 * kFullWeight * double(tissue.size())).epsilon(1e-4));
+    // The gap lies at x = 8, where a cell begins.
     const glm::ivec3 beside(8 / step, 8 / step, 24 / step);
     REQUIRE(by_cell.of(beside).size() == 1);
     REQUIRE(by_cell.of(beside - glm::ivec3(1, 0, 0)).size() == 1);
@@ -65,6 +65,6 @@ TEST_CASE("cell pieces: bars that pass through one cell side by side are two pie
   const SkinWeights weights({"A"}, tissue);
   const auto pieces = cell_pieces(tissue, weights, 4, glm::dvec3(1));
   const PiecesByCell by_cell(pieces, glm::ivec3(-1), glm::ivec3(8, 6, 12));
-  CHECK(by_cell.of({2, 2, 6}).size() == 2);  // x 8 and 9, and x 11
+  CHECK(by_cell.of({2, 2, 6}).size() == 2);  // one at x = 8 and 9, and one at x = 11
   CHECK(by_cell.of({2, 2, 0}).size() == 1);
 }

@@ -52,7 +52,7 @@ TEST_CASE("depth: it is the distance to the nearest air, with voxels of any shap
         }
     CHECK(worst < 1e-6);
   }
-  // Depths beyond the limit on whole numbers are floats for cubes too.
+  // Depths too large for whole numbers are stored as floats for cubic voxels too.
   const TissueDepth as_steps(tissue, glm::dvec3(0.7)), as_floats(tissue, glm::dvec3(0.7), 20);
   double furthest = 0;
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -60,7 +60,7 @@ TEST_CASE("depth: it is the distance to the nearest air, with voxels of any shap
     furthest = std::max(furthest, double{as_steps.at_voxel(v)});
   });
   CHECK(furthest > 0.7 * std::sqrt(20.0) + 1);
-  // With voxels of 0.5 mm every squared depth is a float.
+  // With voxels of 0.5 mm all depths are stored as floats.
   const TissueDepth depth(tissue, glm::dvec3(0.5));
   for (const glm::ivec3 v : {glm::ivec3(13, 11, 16), glm::ivec3(9, 14, 20), glm::ivec3(2, 11, 15)})
     CHECK(depth.at_voxel(v) == std::sqrt(static_cast<float>(squared_depth(volume, v, glm::dvec3(0.5)))));

@@ -22,7 +22,7 @@ std::vector<RigidTransform> random_motions(std::mt19937& random, int count) {
   return motions;
 }
 
-// Weights of four corners, with bones that only some of them follow.
+// Random weights for four corners. Some of the bones influence only some of the corners.
 std::vector<FourWeights> random_weights(std::mt19937& random, int bones) {
   std::uniform_int_distribution<int> any(-30000, 65535);
   std::vector<FourWeights> weights;

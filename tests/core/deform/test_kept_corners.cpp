@@ -9,7 +9,7 @@ using namespace limber;
 
 namespace {
 
-// Corners within `extent` of `low`, and their bounds.
+// Random corners between `low` and `low + extent`, and their bounding box.
 struct Brick {
   KeptCorners::Corners corners;
   FixedBox box;

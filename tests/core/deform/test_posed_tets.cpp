@@ -16,7 +16,7 @@ namespace {
 
 const std::vector<int> kPriority(65536, 0);
 
-// A tube of tissue, at rest as a lattice, carried by a mesh around it.
+// A tube of tissue with its rest lattice, and a mesh around the tube that moves it.
 struct Carried {
   test::BentTube tube;
   TissueVoxels tissue{tube.volume};
@@ -127,7 +127,8 @@ TEST_CASE(
 
 TEST_CASE("posed tets: a bent bar has no holes, keeps its volume, and each voxel comes from where the bend says") {
   const Carried body;
-  // Along z onto a circle of radius 40 about the x axis through y = 52: volume is kept at y = 12, the tube's middle.
+  // Bends the z axis onto a circle of radius 40 about the x direction through y = 52. Volume is kept at y = 12, the
+  // tube's middle.
   const auto bend = [](const glm::dvec3& p) {
     const double angle = (p.z - 20) / 40, radius = 52 - p.y;
     return glm::dvec3(p.x, 52 - radius * std::cos(angle), 20 + radius * std::sin(angle));
@@ -153,7 +154,7 @@ TEST_CASE("posed tets: a bent bar has no holes, keeps its volume, and each voxel
       }
     holes += around == 6;
   });
-  CHECK(furthest < 0.25);  // edges of five voxels around a radius of 40
+  CHECK(furthest < 0.25);  // voxels; each tet edge of five voxels replaces an arc of radius 40
   CHECK(holes == 0);
   CHECK(map.lost.empty());
   CHECK(covered(map) == doctest::Approx(body.tissue.size()).epsilon(0.02));
@@ -193,7 +194,7 @@ TEST_CASE("posed tets: the map is the same in one piece, in tiles, and with two 
 TEST_CASE(
     "posed tets: of two parts that come to lie in one place only strangers count as overlap, and the deeper stays") {
   Carried body;
-  // The upper half is pushed down into the lower one: each voxel of the fold is claimed from both.
+  // Pushes the upper half down into the lower one, so that both parts claim each voxel of the overlap.
   const auto push = [](const glm::dvec3& p) {
     return p.z > 25 ? p - glm::dvec3(0, 0, 12) : p.z > 20 ? p - glm::dvec3(0, 0, 12 * (p.z - 20) / 5) : p;
   };
@@ -206,13 +207,14 @@ TEST_CASE(
     inverted += (map.flags[i] & InverseMap::kInverted) != 0;
   }
   CHECK(overlap > 500);
-  CHECK(inverted == 0);  // whatever is inverted gives way
+  CHECK(inverted == 0);  // a voxel prefers a tet that is not inverted
 }
 
 TEST_CASE(
     "posed tets: what sticks out of two parts that are pressed together is pressed flat, and takes no place twice") {
-  // Voxels stick out of the lower part's top and of the upper part's bottom, by more than what is left of the air
-  // between them: first into the other part, then into what sticks out there, then both.
+  // Voxels stick out of the lower part's top and of the upper part's bottom, further than the remaining gap is wide.
+  // In the first case they reach into the other part, in the second into the voxels that stick out of it, in the third
+  // into both.
   for (const auto& [top, bottom, air] :
        {std::array{20.2, 27.2, 0.1}, std::array{19.6, 27.2, 0.8}, std::array{19.7, 27.3, 0.9}}) {
     CAPTURE(air);
@@ -241,7 +243,7 @@ TEST_CASE(
     CHECK(map.lost.empty());
     CHECK(std::none_of(map.flags.begin(), map.flags.end(),
                        [](std::uint8_t flags) { return flags & InverseMap::kInverted; }));
-    CHECK(covered(map) > 0.93 * double(tissue));  // but for a layer of each part
+    CHECK(covered(map) > 0.93 * double(tissue));  // all but one layer of each part
   }
 }
 
@@ -280,7 +282,7 @@ TEST_CASE("posed tets: where a mesh carries only a part, mesh and lattice meet w
       if (alone.cell[i] != InverseMap::kNoCell && joined.cell[i] != InverseMap::kNoCell)
         furthest = std::max(furthest, double(glm::length(alone.rest[i] - joined.rest[i])));
     }
-    CHECK(differ <= 2);  // centres within rounding of the border
+    CHECK(differ <= 2);  // voxel centres that lie on the border up to rounding
     CHECK(furthest < 1e-3);
   }
 }

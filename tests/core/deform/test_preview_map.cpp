@@ -131,7 +131,7 @@ TEST_CASE(
     LivePreview stepwise = tube.preview();
     std::shared_ptr<const PreviewMap> last;
     std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>>
-        held;  // maps that somebody goes on showing, and as they were
+        held;  // maps that are still in use, and copies of them
     for (const double degrees : {0.0, 25.0, 24.0, 24.5, 24.6, 24.7, 24.8, 80.0, 81.0, 80.5, 81.0}) {
       last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);
       if (held.size() < 4 && degrees < 24.7) held.emplace_back(last, *last);
@@ -202,7 +202,7 @@ TEST_CASE(
     const double near =
         double(std::lower_bound(errors.begin(), errors.end(), 0.5) - errors.begin()) / double(errors.size());
     CHECK(median < 0.1);
-    CHECK(near > 0.95);  // the others lie around the elbow, where rigid bone touches flesh that bends
+    CHECK(near > 0.95);  // voxels; the rest lie around the elbow, where rigid bone touches flesh that bends
     CHECK(missing < covered / 1000);
   }
 }
@@ -234,8 +234,8 @@ TEST_CASE(
 
 namespace {
 
-// Two bars along z, a gap of air between them, joined at the bottom: each follows its own bone, as fingers of a hand
-// do.
+// Two bars along z, joined at the bottom, with a gap of air between. Each follows its own bone, like two fingers of a
+// hand.
 Sitter fork_sitter(int gap) {
   LabelVolume volume{Grid{}, {}};
   const glm::ivec3 size(40, 20, 72);
@@ -285,7 +285,7 @@ TEST_CASE("preview: what lies on both sides of a narrow gap moves apart, and not
         const std::array<BoneWeight, 2> weights{{{0, follows.of(0)}, {1, follows.of(1)}}};
         return blend_point(Blend::DualQuaternion, bones, weights, glm::dvec3(v));
       };
-      // Where the bars follow one bone each.
+      // Counts only where each bar follows a single bone.
       std::int64_t bars = 0, near = 0, drawn = 0, astray = 0;
       fork.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
         if (v.z < 30) return;
@@ -322,7 +322,7 @@ TEST_CASE("preview: tissue goes where a tet mesh carries it, and what the bones 
   const PreviewMap before = *plain;
   CHECK(same(*preview.update(rest_motions, Blend::Linear, {mesh, still}), before));
 
-  // All swings aside along z, as no bone does.
+  // Swings everything sideways in a wave along z, which no bone motion can do.
   const glm::dvec3 across = tube.volume->grid.direction[0];
   const AffineTransform world = world_from_voxel(tube.volume->grid), voxel = voxel_from_world(tube.volume->grid);
   const auto swung = [&](const glm::dvec3& p) {
@@ -337,10 +337,10 @@ TEST_CASE("preview: tissue goes where a tet mesh carries it, and what the bones 
   double worst = 0;
   tube.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
     const glm::dvec3 rest(v);
-    if (tube.volume->at(v) == test::kBone) return;  // beside another bone it stays with its own
+    if (tube.volume->at(v) == test::kBone) return;  // bone follows its own rig bone, not the mesh
     const auto back = map->rest_at(voxel * swung(world * rest));
     worst = std::max(worst, back ? glm::distance(*back, rest) : 1e9);
   });
-  CHECK(worst < 0.5);  // voxels; nodes lie 4 apart
+  CHECK(worst < 0.5);  // voxels; the nodes are 4 voxels apart
   CHECK(same(*preview.update(rest_motions, Blend::Linear), before));
 }

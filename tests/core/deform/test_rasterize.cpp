@@ -13,8 +13,8 @@ namespace {
 
 constexpr VoxelRange kEverywhere{glm::ivec3(-1000), glm::ivec3(1000)};
 
-// N^3 cubes with edges of three output voxels, their inner corners moved by whole numbers of `step`: coarse steps put
-// many voxel centres exactly on faces, edges and corners.
+// Rasterizes N^3 cubes with edges of three output voxels, whose inner corners are moved by random multiples of `step`.
+// Coarse steps put many voxel centres exactly on faces, edges and corners.
 template <class Claim>
 void rasterize_jittered(int n, int step, unsigned seed, const Claim& claim) {
   std::mt19937 random(seed);
@@ -105,7 +105,8 @@ TEST_CASE("rasterize: a large tet and its halves cover the same voxels, each onc
       rasterize_tet(tet, voxels_in_box(tet), [&](const glm::ivec3& v, int) { ++claims[{v.x, v.y, v.z}]; });
     return claims;
   };
-  // `middle` is rounded, so that the halves' outer faces differ from the whole's by less than a unit: compare inside.
+  // `middle` is rounded, so the outer faces of the halves differ from those of the whole by less than a unit. Only the
+  // totals are compared there.
   const auto halves = cover({{a, b, middle, d}, {a, middle, c, d}});
   int twice = 0;
   for (const auto& [voxel, count] : halves) twice += count != 1;

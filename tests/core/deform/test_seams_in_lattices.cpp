@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A seam parts the cells of both lattices: the one that resamples and the one that previews.
+// A seam separates the cells of both lattices: the one for resampling and the one for the preview.
 #include <bit>
 
 #include <doctest/doctest.h>
@@ -11,8 +11,8 @@ using namespace limber;
 
 namespace {
 
-// A bar of 16 x 8 x 8 voxels; the first seven columns follow bone 0, the others bone 1, cut between them up to a
-// height.
+// A bar of 16 x 8 x 8 voxels. The first seven columns follow bone 0, the others bone 1, with a seam between them below
+// a given height.
 struct Bar {
   static constexpr int kLeft = 6;  // last column of bone 0
   LabelVolume volume;
@@ -37,7 +37,7 @@ struct Bar {
   }
 };
 
-// Of the posed corners of all cells, whether some cell is longer along x than `longest` voxels.
+// Returns true if the posed corners of some cell are further apart along x than `longest` voxels.
 bool has_long_cell(const PosedLattice& lattice, double longest) {
   bool found = false;
   for (std::int64_t brick = 0; brick < std::ssize(lattice.tissue().bricks()); ++brick) {
@@ -70,12 +70,12 @@ TEST_CASE("seams in lattices: a cell of the preview that a seam runs through is 
     std::int64_t voxels = 0;
     for (const CellPiece& piece : pieces) {
       for (const std::uint64_t slice : piece.voxels) voxels += std::popcount(slice);
-      CHECK(piece.stiff.size() == 1);  // of one bone each
+      CHECK(piece.stiff.size() == 1);  // each piece follows one bone
     }
     CHECK(voxels == bar.tissue.size());
     CHECK(std::ssize(pieces) == (step == 8 ? 3 : 4 * 4 + 4));
   }
-  // The seam on the border of two cells.
+  // Here the seam lies on the border of two cells.
   Bar bar(0);
   auto seams = std::make_shared<Seams>(bar.volume.grid.size);
   for (int z = 0; z < 8; ++z)

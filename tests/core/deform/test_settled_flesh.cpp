@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Flesh settles: cells get their volume back by small, smooth shifts, bones stay, and what does not bend does not move.
+// Tests the volume correction after blending: cells get their volume back by small, smooth shifts, bones stay, and
+// cells that do not bend do not move.
 #include "core/deform/settled_flesh.h"
 
 #include <cstring>
@@ -18,7 +19,7 @@ namespace {
 
 constexpr Label kFlesh = 1, kBone = 2;
 
-// A limb along z of 28 voxels across, with a bone of 8 inside that ends at the joint and goes on behind it.
+// A limb along z, 28 voxels across. Its two bones, 8 voxels across, end at the joint.
 struct Limb {
   static constexpr int kJoint = 40, kMiddle = 16;
   LabelVolume volume;
@@ -58,7 +59,8 @@ struct Limb {
   }
 };
 
-// The volume of the posed cells by their corners alone, in voxels: a cube's is the mean over ways to part it into tets.
+// Returns the volume of the posed cells in voxels, from their corners: for each cube the mean over the ways to split it
+// into tets.
 double posed_volume(const Limb& limb, const PosedLattice& lattice) {
   double sum = 0;
   PosedLattice::Corners room;
@@ -70,7 +72,7 @@ double posed_volume(const Limb& limb, const PosedLattice& lattice) {
         return glm::dvec3(corners[PosedLattice::place(v.x + (c & 1), v.y + (c >> 1 & 1), v.z + (c >> 2))]) /
                double(kFixedOne);
       };
-      for (int c = 0; c < 8; ++c) {  // an eighth of the parallelepiped at each corner
+      for (int c = 0; c < 8; ++c) {  // at each corner, an eighth of the parallelepiped that its edges span
         const double sign = (c & 1 ? -1 : 1) * (c & 2 ? -1 : 1) * (c & 4 ? -1 : 1);
         sum += sign * glm::dot(at(c ^ 1) - at(c), glm::cross(at(c ^ 2) - at(c), at(c ^ 4) - at(c))) / 8;
       }
@@ -86,7 +88,7 @@ double volume_error(const Limb& limb, const std::vector<RigidTransform>& motions
   return posed_volume(limb, lattice) / double(limb.tissue.size()) - 1;
 }
 
-// Returns how many voxels are stretched beyond `limit`, by the singular values of their gradient.
+// Counts the voxels that are stretched beyond `limit`, by the singular values of their gradient.
 int stretched(const Limb& limb, const PosedLattice& lattice, double limit) {
   int count = 0;
   PosedLattice::Corners room;
@@ -245,7 +247,8 @@ TEST_CASE("posed bones: the way out of a bone is the shortest, wherever the pose
       PosedBones(limb.volume, limb.tissue, limb.weights, LabelSet(65536), motions).way_out({middle, middle, 30}));
 }
 
-// Two slabs of 12 voxels with air between, each on a bone of its own; a little of each bends, so that both have cells.
+// Two slabs of 12 voxels with air between, each on its own bone. Both have a third bone's weight in part, so that both
+// have cells.
 struct Slabs {
   LabelVolume volume;
   TissueVoxels tissue;
@@ -268,7 +271,7 @@ struct Slabs {
       weights.set_chunk(brick, chunk);
     }
   }
-  // Both go towards each other by `each` mm at the weight that they have.
+  // Moves the slabs towards each other, each by `each` mm where its weight is 0.75.
   std::vector<RigidTransform> together(double each) const {
     const glm::dquat straight(1, 0, 0, 0);
     return {{straight, {0, 0, each / 0.75}}, {straight, {0, 0, -each / 0.75}}, {}};
@@ -278,7 +281,7 @@ struct Slabs {
 TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and rest beside each other otherwise") {
   const Slabs slabs;
   const TissueDepth depth(slabs.tissue, glm::dvec3(1));
-  for (const double each : {8.0, 12.0}) {  // the gap is 20: an overlap of 4 mm, and a gap of 4 still open
+  for (const double each : {8.0, 12.0}) {  // mm; the gap is 20: an overlap of 4, and a gap of 4 that stays open
     const auto motions = slabs.together(20 - each);
     const double overlap = 2 * (20 - each) - 20;
     const BrickMotions bricks(slabs.tissue, slabs.weights, motions);
@@ -299,7 +302,7 @@ TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and
     }
     CHECK((met > 0) == (overlap > 0));
   }
-  // Settled, they press against each other instead.
+  // After the correction, the slabs press against each other.
   const auto motions = slabs.together(12);
   const SettledFlesh settled(slabs.volume, slabs.tissue, slabs.weights, LabelSet(65536), motions, Blend::Linear,
                              no_progress());
@@ -317,7 +320,7 @@ TEST_CASE("volume shifts: the nearest matrix of volume one") {
     if (std::abs(glm::determinant(F)) < 0.2) continue;
     const glm::dmat3 P = with_volume(F, 1);
     CHECK(glm::determinant(P) == doctest::Approx(1).epsilon(0.03));
-    // Nearer than F made larger or smaller as a whole.
+    // The result is nearer to F than F scaled uniformly to volume one.
     if (glm::determinant(F) > 0) {
       const glm::dmat3 scaled = F / std::cbrt(glm::determinant(F));
       const auto square = [](const glm::dmat3& M) {
@@ -326,7 +329,7 @@ TEST_CASE("volume shifts: the nearest matrix of volume one") {
       CHECK(square(P - F) <= square(scaled - F) * 1.05 + 1e-9);
     }
   }
-  const glm::dmat3 flat = with_volume(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.3), 1);  // inverted: it is turned back
+  const glm::dmat3 flat = with_volume(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.3), 1);  // inverted: the result is not
   CHECK(glm::determinant(flat) > 0.5);
 }
 
@@ -349,7 +352,7 @@ TEST_CASE("volume shifts: a limited stretch keeps volume and directions") {
       continue;
     }
     ++limited;
-    // In the axes of the stretches nothing but their lengths has changed.
+    // Along the principal axes of the stretch, only the lengths have changed.
     const glm::dmat3 D = glm::transpose(U) * P * V;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b)

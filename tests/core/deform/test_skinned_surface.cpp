@@ -11,7 +11,7 @@ namespace {
 
 constexpr Label kFlesh = 2, kSkin = 5;
 
-// A ball of flesh in a shell of skin, of which the upper half follows bone 1.
+// A ball of flesh in a shell of skin. Its upper half follows bone 1.
 struct Ball {
   LabelVolume volume;
   TissueVoxels tissue;
@@ -55,7 +55,7 @@ TEST_CASE("skinned surface: it lies on the body, is closed, and knows the tissue
   for (const Label label : inner.label) CHECK(label == kFlesh);
   CHECK(inner.V.size() < outer.V.size());
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 200).V.size() <= 200);
-  ball.shown[0] = 1;  // air never counts
+  ball.shown[0] = 1;  // air is never shown
   CHECK(skinned_surface(ball.volume, ball.tissue, ball.weights, ball.shown, 100'000).V == inner.V);
   ball.shown[0] = 0;
   ball.shown[kFlesh] = 0;

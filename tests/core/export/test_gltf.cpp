@@ -51,7 +51,7 @@ const Arm& arm() {
   return body;
 }
 
-// A reader of its own, by the specification.
+// An independent reader, written from the glTF specification.
 struct Reader {
   std::string bytes;
   nlohmann::json json;
@@ -63,7 +63,7 @@ struct Reader {
     json = nlohmann::json::parse(bytes.substr(20, length));
     data = bytes.data() + 20 + length + 8;
   }
-  // All numbers of an accessor, one after the other.
+  // Returns all numbers of an accessor, one after the other.
   std::vector<double> numbers(int index) const {
     const auto& accessor = json["accessors"][index];
     const auto& view = json["bufferViews"][accessor["bufferView"].get<int>()];
@@ -92,7 +92,7 @@ struct Reader {
     return values;
   }
 
-  // Skinned places of all vertices at a key of an animation; -1: at rest.
+  // Returns the skinned positions of all vertices at a key of an animation; -1: at rest.
   std::vector<glm::dvec3> skinned(int animation, int key) const {
     std::vector<glm::dmat4> local, world, joint;
     for (const auto& node : json["nodes"]) {
@@ -115,7 +115,7 @@ struct Reader {
         }
       }
     world = local;
-    for (std::size_t n = 0; n < local.size(); ++n)  // parents come first
+    for (std::size_t n = 0; n < local.size(); ++n)  // parents come before their children
       if (json["nodes"][n].contains("children") && n < json["skins"][0]["joints"].size())
         for (const int child : json["nodes"][n]["children"]) world[child] = world[n] * local[child];
     const auto bind = numbers(json["skins"][0]["inverseBindMatrices"]);
@@ -173,7 +173,7 @@ TEST_CASE("gltf: the surface moves in every clip as the linear blend moves the s
   CHECK(moved > 0.1 * extent);
 }
 
-// An independent reader and an independent skinning. Blender's axes are the world's own.
+// Blender reads and skins the file independently. Its axes are those of the world.
 TEST_CASE("gltf: Blender opens the file, and its vertices go where ours go") {
   NEEDS_PROGRAM("blender");
   const Arm& body = arm();

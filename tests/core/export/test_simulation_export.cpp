@@ -86,13 +86,13 @@ TEST_CASE("decks: openEMS' boxes lie in millimetres at voxel faces, names are pl
 
 TEST_CASE("decks: a volume with other axes is turned, and stays where it is in the world") {
   LabelVolume volume = volume_of({3, 2, 1}, [](const glm::ivec3& v) { return Label(1 + v.x); });
-  volume.grid.direction = glm::dmat3(-1, 0, 0, 0, -1, 0, 0, 0, 1);  // R, A, S
+  volume.grid.direction = glm::dmat3(-1, 0, 0, 0, -1, 0, 0, 0, 1);  // voxel axes towards right, anterior, superior
   std::vector<std::string> warnings;
   const LabelVolume turned = turned_to_lps(volume, warnings);
   CHECK(warnings.empty());
   CHECK(turned.voxels[0] == 3);
   const SimulationBody body{turned, {material(1, "a"), material(2, "b"), material(3, "c")}, 1e9};
-  // Voxel 0 of the original, label 1, has its centre at x = 10.
+  // Voxel 0 of the original, with label 1, has its centre at x = 10.
   CHECK(openems_xml(body).find("<XLines>5,7,9,11</XLines>") != std::string::npos);
   volume.grid.direction = glm::dmat3(0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1);
   turned_to_lps(volume, warnings);
@@ -111,7 +111,8 @@ TEST_CASE("convert: simulation decks are read back by h5py and numpy, voxel for 
     CHECK_MESSAGE(run.exit_code == 0, run.err);
     READ_BACK(kind, folder / name, nifti, csv);
   }
-  // The labels and names of Virtual Family RAW + .txt come back (by nibabel, from a volume made of it).
+  // Labels and names survive the way through a Virtual Family RAW file with its text file. Nibabel reads the volume
+  // made from it.
   REQUIRE(run_limber({"convert", volume, folder / "vf.txt", "--tissues", tissues}).exit_code == 0);
   CHECK(std::filesystem::file_size(folder / "vf.raw") > 1000);
   REQUIRE(run_limber({"convert", folder / "vf.txt", folder / "vf.nii.gz"}).exit_code == 0);

@@ -11,7 +11,7 @@ using namespace limber;
 
 namespace {
 
-// As TetGen's manual describes the files (sections 5.2.1 and 5.2.4).
+// Reads the files as TetGen's manual describes them (sections 5.2.1 and 5.2.4).
 TetMesh read_tetgen_files(const Path& stem) {
   TetMesh mesh;
   std::ifstream nodes(stem.string() + ".node"), tets(stem.string() + ".ele");

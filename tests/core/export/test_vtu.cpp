@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Unstructured grids, read back by hand: points, cells and labels are the body's.
+// Reads unstructured grids back with a simple reader: points, cells and labels are those of the body.
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -68,7 +68,7 @@ TEST_CASE("vtu: each tissue voxel is a cell between its faces, with its label in
   CHECK(point(grid, grid.corners[0]) == glm::dvec3(9, 18.5, 28));
   CHECK(point(grid, grid.corners[7]) == glm::dvec3(11, 21.5, 32));
   CHECK(point(grid, grid.corners[15]) == glm::dvec3(13, 21.5, 32));
-  tissues.tissues[0].file_value = 3e9;  // no silent wrap
+  tissues.tissues[0].file_value = 3e9;  // too large for the file's type: must be refused
   CHECK_THROWS_AS(exported(volume, tissues, nullptr), Error);
 }
 

@@ -23,7 +23,7 @@ NodePositions random_places(int count, double size, unsigned seed) {
   return places;
 }
 
-// Two boxes' skins, `gap` apart along z.
+// The surfaces of two boxes with a gap of `gap` mm along z.
 struct TwoBoxes {
   TetMesh mesh = kuhn_box(3, 3, 2, {0, 0, 0}, {9, 9, 4});
   NodePositions rest;
@@ -89,10 +89,10 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   const ContactPair point{{0, 1, 2, 3}, Kind::PointTriangle};
   CHECK(bound(point, x, step, 8) == doctest::Approx(1.5));
   CHECK(bound(point, x, step, 1.4) == 1.4);
-  const double far = bound(point, x, step, 8, 1);  // to half of what counts as near
+  const double far = bound(point, x, step, 8, 1);  // the step may close the distance to half of `near`
   CHECK(far > 2);
   CHECK(far <= 2.5);
-  CHECK(bound(point, x, step, 8, 4) == doctest::Approx(1.5));  // nearer than that already
+  CHECK(bound(point, x, step, 8, 4) == doctest::Approx(1.5));  // the pair is nearer than `near` already
   int too_far = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     const NodePositions from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
@@ -124,7 +124,7 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
   std::vector<Key> expected;
   const auto consider = [&](Kind kind, const std::array<int, 4>& node) {
     const ContactPair pair{node, kind};
-    double least = 1e9;  // sampled: what comes nearer than the reach must be found
+    double least = 1e9;  // by sampling: every pair that comes nearer than 1 mm must be found
     for (int k = 0; k <= 20; ++k) least = std::min(least, nearest_points(pair, boxes.rest + k / 20.0 * step).distance);
     if (least < 1) expected.push_back(key(pair));
   };
@@ -188,9 +188,9 @@ TEST_CASE("contact: what one bone carries is not watched against itself") {
 
 TEST_CASE("contact: of two ways to one place each is watched by itself") {
   TwoBoxes boxes(1);
-  boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // sums are exact, so that both ways end in the same bits
+  boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // rounded, so that both sums give the same bits
   ContactForm form(boxes.F, boxes.rest, boxes.free());
-  // To a place high above from the side, which is free, and from below, through the other box.
+  // Two ways lead to the same position above: from the side through free space, and from below through the other box.
   const NodePositions above = boxes.rest + boxes.upper_by({0, 0, 20}),
                       beside = boxes.rest + boxes.upper_by({50, 0, 20}),
                       below = boxes.rest - boxes.upper_by({0, 0, 20});
@@ -210,7 +210,8 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
   std::uniform_int_distribution<int> any_node(0, count - 1);
   std::int64_t touching = 0;
   for (unsigned k = 0; k < 60; ++k) {
-    // Far, near, or as before but for a node or two; from where the last way led, or from elsewhere.
+    // The step is large, small, or the last one with one node changed. It starts where the last step ended, or
+    // elsewhere.
     NodePositions step = boxes.upper_by({0, 0,
                                          k % 4 == 0   ? -0.9
                                          : k % 4 == 2 ? 0.7
@@ -254,7 +255,7 @@ TEST_CASE(
   CHECK(form.touching() == 0);
   CHECK(form.value(boxes.rest) == 0);
 
-  // Nearly parallel edges too: the boxes' sides are, up to what `jitter` moves them.
+  // Tests nearly parallel edges too: the edges of the boxes are parallel up to `jitter`.
   for (const double jitter : {0.02, 1e-4}) {
     const NodePositions x =
         boxes.rest + boxes.upper_by({0, 0, -0.22}) + random_places(int(boxes.rest.rows()), jitter, 11);
@@ -263,7 +264,7 @@ TEST_CASE(
     REQUIRE(form.touching() > 20);
     NodePositions slope = still;
     form.add_gradient(slope);
-    CHECK(slope.bottomRows(boxes.rest.rows() / 2).col(2).sum() < 0);  // upwards is less
+    CHECK(slope.bottomRows(boxes.rest.rows() / 2).col(2).sum() < 0);  // the energy falls when the upper box moves up
     const NodePositions way = random_places(int(boxes.rest.rows()), 1, 13);
     const double e = 1e-7, difference = (form.value(x + e * way) - form.value(x - e * way)) / (2 * e);
     CHECK(slope.cwiseProduct(way).sum() == doctest::Approx(difference).epsilon(1e-4));
@@ -274,7 +275,7 @@ TEST_CASE("contact: a step that would press one fold shut yields there, and is t
   const TwoBoxes boxes(1);
   FemEnergy energy(boxes.rest, boxes.T, std::vector<TetMaterial>(boxes.T.rows(), {4, 0.3}), 0);
   energy.set_contact(ContactForm(boxes.F, boxes.rest, boxes.free()));
-  // One corner of the upper box goes through the lower box, and all goes far aside.
+  // One corner of the upper box goes through the lower box, while all nodes move far sideways.
   NodePositions step = boxes.upper_by({0, 0, 0});
   step.col(0).setConstant(20);
   Eigen::Index low = 0;
@@ -286,7 +287,7 @@ TEST_CASE("contact: a step that would press one fold shut yields there, and is t
   const NodePositions yielded = energy.limit_step(boxes.rest, step, {});
   CHECK(energy.largest_step(boxes.rest, yielded, 1).length == 1);
   CHECK((yielded.col(0).array() - 20).abs().maxCoeff() < 1e-9);
-  // The fixed stay.
+  // Fixed nodes keep their step.
   std::vector<char> fixed(boxes.rest.rows(), 1);
   CHECK(energy.limit_step(boxes.rest, step, fixed) == step);
 }

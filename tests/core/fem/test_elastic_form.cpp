@@ -16,7 +16,7 @@
 using namespace limber;
 
 namespace {
-// A little box of several materials with patches and a barrier, shaken as far as no tet inverts.
+// A small box of several materials with patches and a barrier. Its nodes are moved at random, as far as no tet inverts.
 struct Shaken {
   TetMesh mesh = kuhn_box(2, 2, 2, {0, 0, 0}, {2, 2.5, 2.2});
   NodePositions rest = mesh.V, x;
@@ -74,7 +74,7 @@ struct Shaken {
     tets.add_gradient(at, pressure, g);
     return g;
   }
-  // The matrix and, on the way, the forces.
+  // Returns the Hessian, and the gradient in `g`.
   Eigen::MatrixXd hessian(const NodePositions& at, HessianKind curvature, NodePositions& g) {
     std::vector<double> J, pressure;
     tets.volume_ratios(at, J);
@@ -143,9 +143,10 @@ TEST_CASE(
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
     CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected - exact).eigenvalues()[0] >=
           -1e-10 * std::max(1.0, values[80]));
-    CHECK((projected - exact).norm() > 1e-6);  // the shaken box has some
+    // the shaken box has negative eigenvalues, so the projection changes something
+    CHECK((projected - exact).norm() > 1e-6);
   }
-  // Nor with patches, whose pressures may be anything.
+  // The same holds with patches, whose pressures have any sign.
   for (unsigned seed = 0; seed < 3; ++seed) {
     Shaken shaken(2.0, seed);
     NodePositions g;
@@ -154,7 +155,7 @@ TEST_CASE(
             .eigenvalues();
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
   }
-  // Blown up a little and evenly, every curvature is positive: nothing to leave out.
+  // If the box is scaled up a little, all eigenvalues are positive and the projection changes nothing.
   Shaken blown(0, 0, 0.4);
   blown.x = 1.001 * blown.rest;
   NodePositions g;
@@ -292,7 +293,7 @@ TEST_CASE("step bound: the step ends where the first tet has a tenth of its volu
     const NodePositions step =
         (round < 30 ? 0.15 : 2.0) * NodePositions::NullaryExpr(x.rows(), 3, [&] { return uniform(random); });
     const double limit = 8;
-    for (const double must : {0.0, 0.3, 0.7}) {  // of its volume, of every other tet
+    for (const double must : {0.0, 0.3, 0.7}) {  // share of its volume that every other tet must keep
       CAPTURE(must);
       std::vector<double> keep, least;
       for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The energy of flesh against an independent program's: GetFEM, which integrates the same formula from its text.
+// Compares the energy of flesh with that of an independent program: GetFEM integrates the same formula, given as text.
 #include <random>
 
 #include <doctest/doctest.h>

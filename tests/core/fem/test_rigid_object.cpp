@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rigid plate presses on a column of flesh whose foot is held: what it takes is known on paper.
+// A rigid plate presses on a column of flesh whose foot is held. The force is known analytically.
 #include "core/fem/rigid_object.h"
 
 #include <cmath>
@@ -15,9 +15,9 @@ using namespace limber;
 
 namespace {
 
-constexpr double kWidth = 60, kHeight = 120, kFoot = 8;  // of the column, mm; kFoot of its height is held
+constexpr double kWidth = 60, kHeight = 120, kFoot = 8;  // mm; the column, and the height of the part that is held
 
-// A column along z from the origin, in voxels of 2 mm.
+// Makes a column along z from the origin, in voxels of 2 mm.
 LabelVolume column() {
   LabelVolume volume{{{40, 40, 70}, {2, 2, 2}, {-9, -9, -9}, glm::dmat3(1)}, {}};
   volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count(), 0);
@@ -31,14 +31,14 @@ LabelVolume column() {
   return volume;
 }
 
-constexpr double kShear = 10, kPoisson = 0.3;  // kPa
+constexpr double kShear = 10, kPoisson = 0.3;  // shear modulus in kPa, Poisson's ratio
 
 struct Pressed {
   FemModel model;
   SolvedPose solved;
 };
 
-// Presses the column by a plate that comes from above to the height `to`.
+// Moves a plate from above down to the height `to`, mm.
 Pressed press(double to, const SolveSettings& settings) {
   Pressed pressed;
   FemModel& model = pressed.model;
@@ -53,7 +53,7 @@ Pressed press(double to, const SolveSettings& settings) {
     objects.rest.row(Eigen::Index(v)) << plate.V[v].x + kWidth / 2, plate.V[v].y + kWidth / 2, 1000;
   objects.F.resize(std::ssize(plate.F), 3);
   for (std::size_t f = 0; f < plate.F.size(); ++f)
-    objects.F.row(Eigen::Index(f)) << plate.F[f].x, plate.F[f].z, plate.F[f].y;  // the outside is below
+    objects.F.row(Eigen::Index(f)) << plate.F[f].x, plate.F[f].z, plate.F[f].y;  // the outside of the plate faces down
   objects.object.assign(plate.V.size(), 0);
   objects.name = {"plate"};
   objects.at = [rest = objects.rest, to](double t) {
@@ -94,11 +94,11 @@ TEST_CASE("rigid object: a plate presses a column by what its stiffness takes, a
     const double force = 1e-3 * pressed.solved.force_on_objects.col(2).sum();
     CHECK(force > expected);
     CHECK(force < expected * (1.08 + strain));
-    // What presses the skin is what presses the plate, the other way round; nothing pushes sideways.
+    // The force on the skin is opposite and equal to that on the plate. Nothing pushes sideways.
     CHECK(1e-3 * pressed.solved.force_on_skin.col(2).sum() == doctest::Approx(-force).epsilon(1e-9));
     CHECK(std::abs(pressed.solved.force_on_objects.col(0).sum()) < 1e-2 * 1e3 * force);
     CHECK(std::abs(pressed.solved.force_on_objects.col(1).sum()) < 1e-2 * 1e3 * force);
-    // Nothing has passed the plate, and no gap is left beyond the thickness of the barrier.
+    // No node has passed the plate, and the remaining gap is within the thickness of the barrier.
     CHECK(pressed.solved.V.col(2).maxCoeff() < to);
     CHECK(pressed.solved.V.col(2).maxCoeff() > to - 0.2);
   }
@@ -112,18 +112,18 @@ TEST_CASE("rigid object: gravity presses a column on its foot, and its head sink
   for (Eigen::Index t = 0; t < model.mesh.T.rows(); ++t) {
     const double mm3 = signed_volume(model.mesh.V, model.mesh.T.row(t));
     volume += mm3;
-    for (const int v : model.mesh.T.row(t)) model.mass[v] += 1e-6 * mm3 / 4;  // as water
+    for (const int v : model.mesh.T.row(t)) model.mass[v] += 1e-6 * mm3 / 4;  // kg, at the density of water
   }
   SolveSettings settings = exact();
   settings.gravity = {0, 0, -9.80665};
   const SolvedPose solved = solve_pose(
       model, [](double) { return std::vector<RigidTransform>(1); }, 45, settings);
   REQUIRE(solved.converged);
-  // The head of a column of length L and density r sinks by r g L^2 / (2 E).
+  // A column of length L, density r and Young's modulus E sinks at its top by r g L^2 / (2 E).
   const double length = kHeight - kFoot, young = 2 * kShear * (1 + kPoisson),
                expected = 1e-3 * 9.80665 * length * length / (2 * young);
   const double sunk = top(model, model.mesh.V) - top(model, solved.V);
-  CHECK(volume == doctest::Approx(kWidth * kWidth * kHeight).epsilon(0.06));  // coarse tets
+  CHECK(volume == doctest::Approx(kWidth * kWidth * kHeight).epsilon(0.06));  // the tets are coarse
   CHECK(sunk == doctest::Approx(expected).epsilon(0.1));
 }
 

@@ -158,7 +158,7 @@ TEST_CASE("solve pose: flesh that waits goes with its bone until then, and the s
 
 TEST_CASE("solve pose: a flap that hangs by an edge, and what hangs by nothing, go with the bones that they follow") {
   BarModel bar;
-  // Two tets more on the skin of the lower half: one shares two nodes with the bar, one none.
+  // Adds two tets at the skin of the lower half: one shares two nodes with the bar, one none.
   TetMesh& mesh = bar.fem.mesh;
   const auto first = mesh.V.rows(), tets = mesh.T.rows();
   std::vector<int> edge;
@@ -192,7 +192,7 @@ TEST_CASE("solve pose: a flap that hangs by an edge, and what hangs by nothing, 
 }
 
 TEST_CASE("solve pose: a pose out of reach ends at the last good step and says what is in the way") {
-  const BarModel bar;  // its bones are 24 mm apart: they cannot come 40 mm nearer
+  const BarModel bar;  // its bones are 24 mm apart, so that they cannot come 40 mm nearer
   const SolvedPose solved = solve_pose(bar.fem, bar.push(40), 45);
   CHECK_FALSE(solved.converged);
   CHECK(solved.reached > 0.2);

@@ -38,8 +38,8 @@ struct RandomTets {
   }
 };
 
-// The block between nodes a and b as the energy's second derivatives have it: along dF, mu dF:dF' + h (C:dF)(C:dF') + g
-// d2J.
+// Returns the block of the Hessian between nodes a and b. For two directions dF and dF' the second derivative is mu
+// dF:dF' + h (C:dF)(C:dF') + g d2J.
 Eigen::Matrix3d block(const TetState& tet, int a, int b) {
   const auto cofactor = [](const Eigen::Matrix3d& F) {
     Eigen::Matrix3d C;
@@ -53,7 +53,7 @@ Eigen::Matrix3d block(const TetState& tet, int a, int b) {
                             B = Eigen::Vector3d::Unit(j) * (*tet.slopes)[b].transpose();
       const auto along = [](const Eigen::Matrix3d& P, const Eigen::Matrix3d& Q) { return P.cwiseProduct(Q).sum(); };
       const Eigen::Matrix3d C = cofactor(tet.F);
-      // The cofactors are quadratic in F: their derivative along B is exact by a difference.
+      // The cofactors are quadratic in F, so a central difference gives their exact derivative along B.
       const Eigen::Matrix3d dC = 0.5 * (cofactor(tet.F + B) - cofactor(tet.F - B));
       double value = tet.shear * along(A, B) + tet.curvature * along(C, A) * along(C, B) + tet.slope * along(dC, A);
       for (int k = 0; k < tet.negative.count; ++k) {

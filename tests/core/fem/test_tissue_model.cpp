@@ -81,7 +81,7 @@ TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is hel
       const bool is_free = has(moving.free, body.tissue, v), is_meshed = has(moving.meshed, body.tissue, v);
       const int off = std::abs(v.z - length / 2);
       if (off < 8) inside &= is_free;          // where weights blend
-      if (off > 6 + 10 + 8) near &= !is_free;  // beyond the margin and two cells
+      if (off > 6 + 10 + 8) near &= !is_free;  // beyond the margin and two cells, in voxels
       if (off > 6 + 10 + 8 + 8) rim &= !is_meshed;
       if (is_free) rim &= is_meshed;
     });
@@ -131,11 +131,11 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
     same &= has(whole.free, body.tissue, v) == (from < INFINITY);
   });
   CHECK(same);
-  REQUIRE(voxels.size() > 2);  // at once, never, and in between
+  REQUIRE(voxels.size() > 2);  // free from the start, never free, and in between
   CHECK(voxels.begin()->first == 0);
   for (const auto& [from, count] : voxels) {
     if (from == 0 || from == INFINITY) continue;
-    // A pose no further than that has it not.
+    // A pose that goes no further than `from` does not have these voxels free.
     const DeformingRegion part = body.moving(kWhole * from, settings);
     bool still = true;
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -185,9 +185,9 @@ TEST_CASE(
     CHECK(near > 0);
     CHECK(far > 0);
     CHECK(free > 0);
-    CHECK(joint == 0);  // the bones end four voxels from the joint, more than a tet
+    CHECK(joint == 0);  // the bones end four voxels from the joint, which is more than a tet
   }
-  // Bones that meet.
+  // Makes the two bones meet.
   Body body;
   for (int z = 14; z < 30; ++z)
     for (int y = 10; y < 15; ++y)
@@ -219,7 +219,7 @@ TEST_CASE(
   for (Tissue& tissue : body.tube.tissues.tissues)
     if (tissue.label == test::kFat) {
       tissue.young_modulus = 6;
-      tissue.poisson_ratio = 0.5;  // more than can be computed with
+      tissue.poisson_ratio = 0.5;  // incompressible, which the solver limits
     } else if (tissue.label == test::kSkin) {
       tissue.young_modulus = 30;
       tissue.poisson_ratio = 0.25;
@@ -266,7 +266,7 @@ TEST_CASE(
     "tissue model: no soft tissue counts as stiffer than a solid of its width could be, whatever the table says") {
   Body body;
   for (Tissue& tissue : body.tube.tissues.tissues)
-    if (tissue.label == test::kFat) tissue.young_modulus = 1.2e6;  // a tendon's, along its fibres
+    if (tissue.label == test::kFat) tissue.young_modulus = 1.2e6;  // the modulus of a tendon along its fibres
   const TissueModel model = model_of(body, body.moving(50), 4);
   double stiffest = 0;
   for (int t = 0; t < model.fem.mesh.T.rows(); ++t)
@@ -291,7 +291,7 @@ TEST_CASE("stretch: a turn stretches nothing, a pull and a press show as they ar
     CHECK(seen.at(label).most[2] == doctest::Approx(1.5));
   }
 
-  // A quarter of the length twice as long: that many of the fat's voxels, and no more.
+  // Doubles the length of a quarter of the body: a quarter of the fat's voxels are stretched, and no more.
   Eigen::MatrixX3d part = model.fem.mesh.V;
   const double low = part.col(2).minCoeff(), high = part.col(2).maxCoeff(), from = high - 0.25 * (high - low);
   for (auto z : part.col(2)) z += std::max(0.0, z - from);
@@ -309,7 +309,7 @@ TEST_CASE("tissue model: where a pose brings bones close together they are not h
                         test::kuhn_mesh_of(regions, 2), settings)
         .fem;
   };
-  // Only the pose decides: at rest no distance between bones is below 0.
+  // With joint_mm = 0, no part of the bones counts as close at rest.
   const FemModel apart = held_by({.joint_mm = 0});
   std::vector<int> of_bone[2];
   for (Eigen::Index t = 0; t < apart.mesh.T.rows(); ++t)

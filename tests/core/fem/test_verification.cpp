@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Shapes whose stress is known on paper.
+// Shapes whose stress is known analytically.
 #include <algorithm>
 #include <cmath>
 
@@ -12,9 +12,9 @@
 using namespace limber;
 
 namespace {
-constexpr double kStiff = 1e7;  // of a spring that holds a place, kPa mm
+constexpr double kStiff = 1e7;  // stiffness of a spring that holds a node, kPa mm
 
-// Springs that hold the axes of nodes for which `hold(place)` gives a target; NaN leaves an axis free.
+// Makes springs that hold nodes at `hold(position)`. A NaN leaves that axis of the node free.
 template <class Hold>
 PinForm held(const NodePositions& rest, const Hold& hold) {
   std::vector<int> node;
@@ -34,7 +34,7 @@ PinForm held(const NodePositions& rest, const Hold& hold) {
   return pins;
 }
 
-// What the springs pull with, against their nodes.
+// Returns the forces that the springs apply to the nodes.
 NodePositions pull(const PinForm& pins, const NodePositions& x) {
   NodePositions force = NodePositions::Zero(x.rows(), 3);
   pins.add_gradient(x, force);
@@ -43,9 +43,9 @@ NodePositions pull(const PinForm& pins, const NodePositions& x) {
 
 constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 
-// Pressure that blows a shell's inner surface up to radius a (times its place): work of the springs there over the
-// volume gained, on the shell as meshed.
-//   axial  a tube that does not get longer; else an eighth of a sphere, its cuts held in their planes
+// Returns the pressure that blows up a shell until the points of its inner surface (radius `inner`) lie at radius `a`:
+// the work of the springs there per gained volume of the meshed shell.
+//   axial  true: a tube of constant length; false: an eighth of a sphere whose cut faces stay in their planes
 double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int patch_size, bool axial) {
   const NodePositions rest = mesh.V;
   FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {1, nu}), 0, patch_size);
@@ -68,11 +68,11 @@ double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int p
     REQUIRE(solved.converged);
   }
   const NodePositions force = pull(pins, x);
-  double work = 0;  // of the springs when a grows by one
+  double work = 0;  // of the springs when `a` grows by one
   for (const int v : pins.node)
     if (radius(rest.row(v)) < inner * (1 + 1e-6))
       for (int c = 0; c < (axial ? 2 : 3); ++c) work += force(v, c) * rest(v, c) / inner;
-  // What a surface of radius r encloses as meshed is `unit` r^n.
+  // A meshed surface of radius r encloses `unit` r^n.
   double solid = 0;
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
     solid += determinant(rest, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / 6;
@@ -127,7 +127,7 @@ TEST_CASE("verification: a patch of tets held by its skin in an affine shape tak
     energy.set_constraints(pins, {}, {});
     NodePositions x = rest;
     REQUIRE(minimise(energy, x, {.tolerance_mm = 1e-11, .iterations = 80}).converged);
-    // The skin's springs give way by what the stress there is over their stiffness.
+    // The springs of the skin yield by the stress over their stiffness, which is the tolerance.
     CHECK((x - rest * A.transpose()).cwiseAbs().maxCoeff() < 1e-5);
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Round bars made of voxels, meshed as bodies are, in torsion and in bending: the moments that they transmit are known
-// on paper. They grow with the fourth power of the radius, so they show a mesh that is too thick or too thin, and tets
-// that are too stiff.
+// Twists and bends round bars made of voxels and meshed like bodies. Their moments are known analytically. Moments grow
+// with the fourth power of the radius, so they reveal a mesh that is too thick or too thin, and tets that are too
+// stiff.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -18,10 +18,10 @@ using namespace limber;
 
 namespace {
 
-constexpr double kRadius = 40, kLength = 200, kHeld = 40;  // mm; at each end, kHeld of the length is held
+constexpr double kRadius = 40, kLength = 200, kHeld = 40;  // mm; a length of kHeld is held at each end
 constexpr double kPoisson = 0.45;
 
-// A bar along z through the origin, in voxels of 2 mm that lie off its middle line.
+// Makes a bar along z, in voxels of 2 mm whose centres do not lie on its axis.
 LabelVolume bar() {
   const int across = 54, along = 110;
   LabelVolume volume{{{across, across, along}, {2, 2, 2}, {}, glm::dmat3(1)}, {}};
@@ -39,8 +39,8 @@ LabelVolume bar() {
 
 using Shape = Eigen::RowVector3d (*)(const Eigen::RowVector3d& rest);
 
-// Returns the moment of the forces that hold the upper end of the bar, about the axis `axis` through the bar's middle
-// line, when both ends are held in the given shape. The shear modulus is 1 kPa; in kPa mm3.
+// Returns the moment in kPa mm3 of the forces that hold the upper end, about axis `axis` (0 to 2) through the bar's
+// middle line, when both ends are held in the given shape. The shear modulus is 1 kPa.
 double moment(const TetMesh& mesh, const Shape& shape, int axis) {
   const NodePositions rest = mesh.V;
   FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {1, kPoisson}), 0);
@@ -67,7 +67,7 @@ double moment(const TetMesh& mesh, const Shape& shape, int axis) {
 }
 
 constexpr double kTwist = 2e-4;      // rotation of the cross sections per length, radians / mm
-constexpr double kCurvature = 1e-4;  // of the bar's middle line, 1 / mm
+constexpr double kCurvature = 1e-4;  // curvature of the bar's middle line, 1 / mm
 
 Eigen::RowVector3d twisted(const Eigen::RowVector3d& p) {
   const double angle = kTwist * (p[2] - kLength / 2), c = std::cos(angle), s = std::sin(angle);
@@ -90,7 +90,7 @@ TEST_CASE(
   const double second_moment = std::numbers::pi * std::pow(kRadius, 4) / 4;
   const double torque = 2 * second_moment * kTwist;
   const double bending = 2 * (1 + kPoisson) * second_moment * kCurvature;
-  // Linear tets are too stiff by an error that falls with the square of their size.
+  // Linear tets are too stiff. The error falls with the square of their size.
   std::array<double, 2> before{INFINITY, INFINITY}, limit{};
   double size_before = 0;
   for (const double spacing : {12.0, 8.0, 5.0}) {  // those of the qualities for a limb that thick: draft, normal, fine
@@ -103,7 +103,7 @@ TEST_CASE(
     for (int k = 0; k < 2; ++k) {
       CHECK(std::abs(error[k]) < 0.01 + std::pow(spacing / kRadius, 2));
       CHECK(std::abs(error[k]) < before[k]);
-      // Where the error would come to with tets of no size.
+      // Extrapolates the error to tets of size zero.
       if (size_before > 0) limit[k] = error[k] - (before[k] - error[k]) / (std::pow(size_before / spacing, 2) - 1);
     }
     before = error;

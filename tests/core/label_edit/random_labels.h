@@ -25,7 +25,7 @@ inline LabelVolume volume_of(const Grid& grid, const std::function<Label(const g
   return volume;
 }
 
-// Lumps of the labels 0 .. labels - 1, a few voxels wide.
+// Makes lumps of the labels 0 to labels - 1, each a few voxels wide.
 inline LabelVolume random_labels(const Grid& grid, int labels, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> any(0, labels - 1);

@@ -10,7 +10,7 @@ using namespace limber::test;
 
 namespace {
 
-// Which voxels a flood from the rim of the whole grid, through faces of voxels without the label, does not reach.
+// Marks the voxels that a flood from the border of the grid, through faces of voxels without the label, does not reach.
 std::vector<std::uint8_t> enclosed(const LabelVolume& volume, Label label) {
   const Grid& grid = volume.grid;
   std::vector<std::uint8_t> in(volume.voxels.size(), 1);

@@ -11,7 +11,8 @@ using namespace limber::test;
 
 namespace {
 
-// The least distance from a voxel to one whose label is (`with`), or is not, `label`, over the whole grid, mm.
+// Returns the distance in mm from a voxel to the nearest one of the whole grid with label `label` (`with` is true) or
+// with another label (false).
 double nearest(const LabelVolume& volume, const glm::ivec3& from, Label label, bool with) {
   double least = 1e300;
   for_voxels(volume.grid, [&](const glm::ivec3& v) {

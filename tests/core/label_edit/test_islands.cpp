@@ -11,7 +11,7 @@ using namespace limber::test;
 
 namespace {
 
-// Three cubes of bone (1) with edges of 6, 4 and 2 voxels in muscle (2), a fourth one of 3 in air.
+// Three cubes of bone (1) with edges of 6, 4 and 2 voxels in muscle (2), and a fourth with edges of 3 voxels in air.
 LabelVolume cubes() {
   return volume_of({{40, 20, 20}, {2, 2, 2}}, [](const glm::ivec3& v) {
     const auto cube = [&](const glm::ivec3& low, int edge) {
@@ -41,7 +41,7 @@ TEST_CASE("islands: the largest pieces stay, the others become what surrounds th
 }
 
 TEST_CASE("islands: pieces below a volume are removed, in mm3") {
-  const LabelVolume volume = cubes();  // 1728, 512, 64 and 216 mm3
+  const LabelVolume volume = cubes();  // islands of 1728, 512, 64 and 216 mm3
   const auto left = [&](const KeptIslands& kept) { return remove_islands(volume, 1, kept).kept; };
   CHECK(left({.largest = 0, .least_volume = 64}) == 4);
   CHECK(left({.largest = 0, .least_volume = 65}) == 3);

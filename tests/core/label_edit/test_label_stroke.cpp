@@ -12,7 +12,7 @@ using namespace limber::test;
 namespace {
 
 double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  double least = 1e300;  // by brute force, on points of the segment
+  double least = 1e300;  // by brute force over points of the segment
   for (int i = 0; i <= 4000; ++i) least = std::min(least, glm::distance(p, glm::mix(a, b, i / 4000.0)));
   return least;
 }
@@ -39,7 +39,7 @@ TEST_CASE("label stroke: a dab paints the voxels of a ball in mm, on an oblique 
   });
   CHECK(painted > 500);
   CHECK(stroke.change().voxel_count() == painted);
-  // The analytic volume of the ball, to a few per cent.
+  // The stroke's volume is the analytic volume of the ball within 3 %.
   CHECK(static_cast<double>(painted) * grid.voxel_volume() == doctest::Approx(4.0 / 3 * M_PI * 729).epsilon(0.03));
   LabelVolume back = *stroke.volume();
   take_back_change(stroke.change(), back);
@@ -88,7 +88,7 @@ TEST_CASE("label stroke: a flat brush paints one layer of voxels, along each vox
       const double disc = stroke.change().voxel_count() * grid.voxel_volume() / grid.spacing[axis];
       CHECK(disc == doctest::Approx(M_PI * 36).epsilon(0.12));
 
-      // A brush that is smaller than a voxel paints the layer that holds its centre all the same.
+      // A brush smaller than a voxel still paints the voxel that contains its centre.
       LabelStroke small(before, {.label = 1, .radius = 0.2 * grid.spacing[axis], .flat = grid.direction[axis]});
       small.to(world * at);
       CHECK(small.change().voxel_count() == 1);
@@ -130,7 +130,7 @@ TEST_CASE("label stroke: it changes only labels and image values that the mask a
 }
 
 TEST_CASE("label stroke: erasing a leak gives it back to the tissue around it") {
-  // Bone (1) beside muscle (2); the bone has leaked into the muscle as a rod.
+  // Bone (1) beside muscle (2). A rod of the bone's label has leaked into the muscle.
   const Grid grid{{40, 30, 30}};
   const auto rod = [](const glm::ivec3& v) {
     return v.x >= 10 && v.x < 24 && std::abs(v.y - 15) < 2 && std::abs(v.z - 15) < 2;
@@ -148,7 +148,7 @@ TEST_CASE("label stroke: erasing a leak gives it back to the tissue around it") 
   CHECK(air.volume()->at({18, 15, 15}) == 0);
   CHECK(air.volume()->at({18, 19, 15}) == 2);
 
-  // Where only the label itself is around, it becomes air.
+  // If no other label is near, erased voxels become air.
   LabelStroke inside(shared(volume_of(grid, [](const glm::ivec3&) { return Label(1); })),
                      {.label = 1, .erases = true, .radius = 3});
   inside.to({20, 15, 15});

@@ -27,10 +27,10 @@ TEST_CASE("split: a cut across one leg divides it there, and leaves the other le
   LabelVolume split = volume;
   apply_change(split_label(volume, 1, {{0, 0, 61}, {40, 0, 61}, {0, 1, 0}}, 7), split);
   for_voxels(volume.grid, [&](const glm::ivec3& v) {
-    const bool upper = v.z * 2 > 61;  // the lower part is the larger one: 28 layers to 16
+    const bool upper = v.z * 2 > 61;  // the lower part is larger: 28 layers, the upper has 16
     CHECK(split.at(v) == (volume.at(v) == 1 && v.x < 20 && upper ? 7 : volume.at(v)));
   });
-  // The same cut drawn the other way divides the same.
+  // The same line drawn backwards gives the same parts.
   LabelVolume back = volume;
   apply_change(split_label(volume, 1, {{40, 0, 61}, {0, 0, 61}, {0, 1, 0}}, 7), back);
   CHECK(back.voxels == split.voxels);

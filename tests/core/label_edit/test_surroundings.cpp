@@ -13,7 +13,7 @@ using namespace limber::test;
 
 namespace {
 
-// The same by its definition, voxel by voxel over the whole volume.
+// Fills in the same way, directly from the definition, over the whole volume.
 LabelVolume filled_slowly(LabelVolume volume, std::vector<std::int64_t> open, Label label) {
   const Grid grid = volume.grid;
   std::vector<std::uint8_t> waits(volume.voxels.size(), 0);

@@ -19,7 +19,7 @@ namespace {
 
 constexpr Label kSkin = 1, kFlesh = 2;
 
-// A cylinder along any axis with a skin of its own label, in a grid that is turned and has voxels that are no cubes.
+// A cylinder along any axis, with its skin in another label, on a grid that is rotated and whose voxels are not cubes.
 struct Cylinder {
   LabelVolume volume;
   glm::dvec3 centre, axis;
@@ -80,18 +80,18 @@ TEST_CASE("girth: a tape around a cylinder has its circumference, however grid a
     const auto tape = girth_tape(arm.volume, arm.centre, arm.axis);
     CHECK(measure(MeasureKind::Girth, tape) == doctest::Approx(wanted).epsilon(0.01));
     for (const glm::dvec3& corner : tape) CHECK(std::abs(glm::dot(corner - arm.centre, arm.axis)) < 1e-6);
-    // From a point at the surface too, where a click is.
+    // A point at the surface, where a user clicks, gives the same girth.
     const glm::dvec3 side = glm::normalize(glm::cross(arm.axis, glm::dvec3(0.3, 0.5, -0.2)));
     CHECK(measure(MeasureKind::Girth, girth_tape(arm.volume, arm.centre + 30.5 * side, arm.axis)) ==
           doctest::Approx(wanted).epsilon(0.01));
-    // Obliquely it is that of an ellipse (Ramanujan's formula).
+    // An oblique girth is the perimeter of an ellipse, here by Ramanujan's formula.
     const double a = 30 / std::cos(glm::radians(30.0)), b = 30;
     const double ellipse = std::numbers::pi * (3 * (a + b) - std::sqrt((3 * a + b) * (a + 3 * b)));
     const glm::dvec3 oblique = std::cos(glm::radians(30.0)) * arm.axis + std::sin(glm::radians(30.0)) * side;
     CHECK(measure(MeasureKind::Girth, girth_tape(arm.volume, arm.centre, oblique)) ==
           doctest::Approx(ellipse).epsilon(0.01));
     CHECK(std::abs(glm::dot(least_girth_normal(arm.volume, arm.centre), arm.axis)) > std::cos(glm::radians(6.0)));
-    // From a click on the surface, along the line of sight.
+    // From a click on the surface, the middle is found along the line of sight.
     const glm::dvec3 middle = middle_along(arm.volume, arm.centre + 31.0 * side, -side);
     CHECK(glm::distance(middle, arm.centre) < 2);
     CHECK(std::abs(glm::dot(least_girth_normal(arm.volume, middle), arm.axis)) > std::cos(glm::radians(6.0)));
@@ -101,7 +101,7 @@ TEST_CASE("girth: a tape around a cylinder has its circumference, however grid a
 TEST_CASE("girth: a tape bridges hollows, and takes no part that is not connected to the point") {
   Cylinder legs(20, 40, 3, {0, 0, 1}, glm::dvec3(2));
   const double one = measure(MeasureKind::Girth, girth_tape(legs.volume, legs.centre, legs.axis));
-  // A groove along the leg, and a bar beside it that does not touch it.
+  // Cuts a groove along the leg, and adds a bar beside the leg that does not touch it.
   for (int z = 0; z < legs.volume.grid.size.z; ++z)
     for (int y = 0; y < legs.volume.grid.size.y; ++y)
       for (int x = 0; x < legs.volume.grid.size.x; ++x) {
@@ -152,7 +152,7 @@ TEST_CASE("thickness: the shortest line through a layer, a rod and a slab") {
   const auto line = thickness_line(slab, {20, 20, 19});
   CHECK(glm::distance(line[0], line[1]) == doctest::Approx(3).epsilon(1e-4));
   CHECK_THROWS_AS(thickness_line(slab, {20, 20, 3}), Error);
-  // A slab at the volume's border, where the tissue may go on.
+  // At the border of the volume a thickness is refused, since the tissue may go on outside.
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) slab.at({x, y, 0}) = slab.at({x, y, 1}) = kFlesh;
   CHECK_THROWS_AS(thickness_line(slab, {20, 20, 1}), Error);

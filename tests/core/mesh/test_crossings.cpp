@@ -28,13 +28,13 @@ Pairs crossings(std::initializer_list<std::array<double, 3>> places,
 }  // namespace
 
 TEST_CASE("crossings: the side of a point is exact where rounding would decide otherwise") {
-  // Points of a plane whose coordinates are not round, then a hair off it.
+  // Tests points in the plane whose coordinates are not exact in binary, then points just off a plane.
   const std::array<double, 3> a{0.1, 0.2, 0.3}, b{1.1, 0.7, -0.4}, c{-0.3, 0.9, 2.2};
   CHECK(side_3d(a, b, c, a) == 0);
   CHECK(side_3d(a, b, c, c) == 0);
   CHECK(side_3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 1e-300}) == 1);
   CHECK(side_3d({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, -1e-300}) == -1);
-  // On the line y = x far from the origin one unit in the last place decides, and each turn of the corners agrees.
+  // On the line y = x far from the origin, one unit in the last place decides the side.
   const double far = 1e8, next = std::nextafter(far, 2e8);
   CHECK(side_2d({0, 0}, {far, far}, {far / 3, far / 3}) == 0);
   CHECK(side_2d({0, 0}, {far, far}, {far, next}) == 1);
@@ -43,8 +43,8 @@ TEST_CASE("crossings: the side of a point is exact where rounding would decide o
   std::uniform_int_distribution<int> step(0, 40);
   int flat = 0;
   for (int i = 0; i < 20000; ++i) {
-    // Places near (0.5, 0.5, 0.5) in steps of one unit in the last place: nearly always too flat for rounded
-    // arithmetic.
+    // The positions near (0.5, 0.5, 0.5) lie on a grid of one unit in the last place. Their tets are nearly always too
+    // flat for rounded arithmetic.
     std::array<std::array<double, 3>, 4> p;
     std::array<std::array<long, 3>, 4> whole;
     for (int k = 0; k < 4; ++k)
@@ -66,24 +66,26 @@ TEST_CASE("crossings: the side of a point is exact where rounding would decide o
 
 TEST_CASE("crossings: triangles that pierce, touch or lie upon each other cross, neighbours and strangers do not") {
   const std::initializer_list<std::array<int, 3>> two = {{0, 1, 2}, {3, 4, 5}};
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}}, two) ==
-        Pairs{{0, 1}});  // pierced
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 2, 1}}, two) ==
-        Pairs{{0, 1}});  // touched by a corner
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, two) ==
-        Pairs{{0, 1}});  // one upon the other
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {3, 3, 0}, {4, 3, 0}, {3, 4, 0}}, two)
-            .empty());  // beside it, on its plane
-  CHECK(
-      crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1e-12}, {1, 1, 1}, {5, 5, 1}}, two).empty());  // a hair above
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 1, 3}}).empty());  // one edge in common
+  // An edge pierces the first triangle.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {5, 5, 1}}, two) == Pairs{{0, 1}});
+  // A corner touches the first triangle.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 2, 1}}, two) == Pairs{{0, 1}});
+  // The triangles lie in one plane and overlap.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {2, 1, 0}, {1, 2, 0}}, two) == Pairs{{0, 1}});
+  // The triangles lie in one plane, side by side.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {3, 3, 0}, {4, 3, 0}, {3, 4, 0}}, two).empty());
+  // The second triangle passes just above the first.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1e-12}, {1, 1, 1}, {5, 5, 1}}, two).empty());
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 1, 3}}).empty());  // an edge is shared
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}) ==
-        Pairs{{0, 1}});                                                                             // folded flat
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}}).empty());  // unfolded flat
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {-1, 0, 1}, {-1, 0, -1}}, {{0, 1, 2}, {0, 3, 4}})
-            .empty());  // one corner in common
+        Pairs{{0, 1}});  // folded flat
+  // The triangles share an edge and are unfolded flat.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}}).empty());
+  // The triangles share one corner.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {-1, 0, 1}, {-1, 0, -1}}, {{0, 1, 2}, {0, 3, 4}}).empty());
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {2, 1, 1}, {2, 1, -1}}, {{0, 1, 2}, {0, 3, 4}}) == Pairs{{0, 1}});
-  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 2, 0}}) == Pairs{{0, 1}});  // the same twice
+  // The two faces are the same triangle.
+  CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}, {{0, 1, 2}, {1, 2, 0}}) == Pairs{{0, 1}});
   CHECK(crossings({}, {}).empty());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The part of core/mesh/surface_file.h that reads glTF.
+// Tests the part of core/mesh/surface_file.h that reads glTF.
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ const std::string kGltf = tetrahedron_gltf("\"uri\": \"data:;base64," + base64(t
 
 TriangleMesh mesh_of(const std::string& gltf) { return parse_surface(gltf, "a.gltf"); }
 
-// Where the tetrahedron's corner of three right angles, and its corner on x, come to lie.
+// Checks the positions of the tetrahedron's right-angled corner and of its corner on the x axis.
 void check_corners(const TriangleMesh& mesh, const glm::dvec3& corner, const glm::dvec3& on_x) {
   REQUIRE(mesh.V.size() == 4);
   CHECK(glm::length(mesh.V[0] - corner) < 1e-4);
