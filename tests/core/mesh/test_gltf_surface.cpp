@@ -40,7 +40,7 @@ void check_refused(const std::string& gltf, const std::string& part) {
   CHECK(message.find(part) != std::string::npos);
 }
 
-// A file of the positions of four corners of a square, and of these indices.
+// Returns a file with the positions of a square's four corners and the given indices.
 std::string square(int mode, const std::vector<std::uint32_t>& indices, int component, int stride) {
   std::string data;
   for (const glm::vec3& p : {glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(1, 1, 0)}) {
@@ -102,7 +102,7 @@ TEST_CASE("gltf surface: lists, strips and fans, with and without indices of eac
   for (const int component : {5121, 5123, 5125})
     for (const int stride : {12, 20}) {
       CHECK(mesh(4, {0, 1, 2, 2, 1, 3}, component, stride).F == std::vector<glm::ivec3>{{0, 1, 2}, {2, 1, 3}});
-      // (Vertices are numbered as triangles name them.)
+      // The reader numbers vertices in the order in which triangles name them.
       CHECK(mesh(5, {0, 1, 2, 3}, component, stride).F == std::vector<glm::ivec3>{{0, 1, 2}, {1, 3, 2}});
       CHECK(mesh(6, {0, 1, 3, 2}, component, stride).F == std::vector<glm::ivec3>{{0, 1, 2}, {0, 2, 3}});
     }
@@ -148,7 +148,7 @@ TEST_CASE("gltf surface: what is damaged, compressed or too large is refused") {
   check_refused(replaced(kGltf, "[{\"nodes\": [0]}]", "[{\"nodes\": [1]}]"), "number 1 of 1 nodes");
   check_refused(replaced(kGltf, "{\"mesh\": 0}", "{\"mesh\": 0, \"scale\": [1e300, 1e300, 1e300]}"), "kilometre");
   check_refused(replaced(kGltf, "base64,AA", "base64,!!"), "a buffer has 0 of 60 bytes");
-  // Half a million nodes that show one mesh of four triangles, and a list that names one vertex again and again.
+  // Tries half a million nodes that show one mesh of four triangles, and a list of two million indices of one vertex.
   std::string nodes = "{\"mesh\": 0}", roots = "0";
   for (int i = 1; i < 500'001; ++i) nodes += ",{\"mesh\":0}", roots += "," + std::to_string(i);
   check_refused(replaced(replaced(kGltf, "{\"mesh\": 0}", nodes), "\"nodes\": [0]", "\"nodes\": [" + roots + "]"),

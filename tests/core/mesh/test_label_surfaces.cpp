@@ -30,9 +30,9 @@ LabelVolume volume_of(const glm::ivec3& size, const std::function<int(const glm:
   return volume;
 }
 
-// Every edge once in each direction, and the triangles around each vertex one fan.
+// Checks that each edge occurs once in each direction, and that the triangles around each vertex form one fan.
 void check_manifold(const LabelSurface& surface) {
-  std::map<std::pair<int, int>, int> next;  // of a vertex' fan: (vertex, from) -> to
+  std::map<std::pair<int, int>, int> next;  // the fans: (vertex, previous corner) -> next corner
   bool once = true;
   std::vector<int> fan(surface.vertex.size());
   for (const glm::ivec3& f : surface.F)
@@ -60,7 +60,8 @@ const LabelSurface& of_label(const LabelSurfaces& all, Label label) {
                        [&](const LabelSurface& s) { return s.label == label; });
 }
 
-// Of the border between two tissues, as sets of three places: each triangle of one must be the other's, turned round.
+// Returns the triangles as sorted triples of vertices. Two tissues share the triangles of their common border, with
+// opposite orientation.
 std::set<std::vector<int>> triangles_of(const LabelSurface& surface) {
   std::set<std::vector<int>> set;
   for (const glm::ivec3& f : surface.F) {
@@ -84,7 +85,7 @@ TEST_CASE(
   check_manifold(ball.surfaces[0]);
   const double voxels = double(std::count(solid.voxels.begin(), solid.voxels.end(), Label{3}));
   CHECK(enclosed_volume(ball, ball.surfaces[0]) == doctest::Approx(voxels).epsilon(0.05));
-  // Unrelaxed it is made of whole voxels, cut at their corners and edges only.
+  // Without relaxation, the surface is that of whole voxels.
   const LabelSurfaces plain = label_surfaces(volume_of({6, 6, 6},
                                                        [](const glm::ivec3& v) {
                                                          return glm::all(glm::greaterThan(v, glm::ivec3(0))) &&
@@ -103,9 +104,9 @@ TEST_CASE(
     const double r = glm::length(glm::dvec3(v) - 6.5);
     return r < 3 ? 2 : r < 5 ? 1 : 0;
   }));
-  CHECK(of_label(shell, 1).euler_number() == 4);  // outside and inside
+  CHECK(of_label(shell, 1).euler_number() == 4);  // two closed surfaces: outside and inside
   CHECK(of_label(shell, 2).euler_number() == 2);
-  // The inner tissue's whole surface is the shell's inner one.
+  // The surface of the inner tissue is the inner surface of the shell.
   const auto inner = triangles_of(of_label(shell, 2)), outer = triangles_of(of_label(shell, 1));
   CHECK(std::includes(outer.begin(), outer.end(), inner.begin(), inner.end()));
 }
@@ -114,7 +115,7 @@ TEST_CASE(
     "label surfaces: voxels that touch by an edge or a corner are taken apart, and every edge lies in two triangles "
     "whatever the labels") {
   const auto edge = label_surfaces(volume_of({2, 2, 1}, [](const glm::ivec3& v) { return v.x == v.y ? 1 : 0; }));
-  CHECK(edge.surfaces[0].euler_number() == 4);  // two balls
+  CHECK(edge.surfaces[0].euler_number() == 4);  // two balls: each adds 2
   check_manifold(edge.surfaces[0]);
   const auto corner =
       label_surfaces(volume_of({2, 2, 2}, [](const glm::ivec3& v) { return v.x == v.y && v.y == v.z ? 1 : 0; }));
@@ -136,7 +137,7 @@ TEST_CASE(
         CHECK(surface.euler_number() % 2 == 0);
         sum += enclosed_volume(all, surface);
       }
-      // Tissues share their borders, so what air leaves over is theirs: the same as all of them merged to one.
+      // Tissues share their borders, so their volumes add up to the volume of all tissues merged into one.
       auto merged = noise;
       for (Label& label : merged.voxels) label = label != 0;
       const LabelSurfaces whole = label_surfaces(merged, {.relaxations = 0}),

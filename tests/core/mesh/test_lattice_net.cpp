@@ -49,9 +49,9 @@ Body limb(const glm::dmat3& direction = glm::dmat3(1)) {
   });
 }
 
-// Around each region, every edge is passed as often one way as the other.
+// Returns true if, around each region, every edge occurs as often in one direction as in the other.
 bool regions_are_closed(const RegionSurface& surface) {
-  std::map<std::array<int, 3>, int> passes;  // region, edge
+  std::map<std::array<int, 3>, int> passes;  // (region, edge) -> occurrences forwards less backwards
   for (Eigen::Index i = 0; i < surface.F.rows(); ++i)
     for (int k = 0; k < 3; ++k) {
       const int a = surface.F(i, k), b = surface.F(i, (k + 1) % 3), way = a < b ? 1 : -1;
@@ -61,7 +61,7 @@ bool regions_are_closed(const RegionSurface& surface) {
   return std::all_of(passes.begin(), passes.end(), [](const auto& pass) { return pass.second == 0; });
 }
 
-// Each node in its box, and the box no larger than a cell less its margin.
+// Checks that each node lies in its box, and that no box is larger than a cell less its margin.
 void check_boxes(const LatticeNet& net) {
   const glm::dmat3 back = glm::inverse(net.world_from_lattice.linear);
   double outside = 0, largest = 0;
@@ -190,8 +190,8 @@ TEST_CASE("lattice net: random bodies are enclosed by a closed surface and fille
   }
 }
 
-// As far as they may, each node of the surface to a corner of its box or somewhere in it: what the improvement of tets
-// relies on.
+// Improving the tets moves the surface's nodes within their boxes. The test moves each node to a corner of its box, or
+// to a random point in it.
 TEST_CASE("lattice net: its tets stay positive and its skin uncrossed wherever the nodes lie in their boxes") {
   std::mt19937 random(5);
   for (const bool fine : {false, true}) {
@@ -217,7 +217,7 @@ TEST_CASE("lattice net: its tets stay positive and its skin uncrossed wherever t
 }
 
 TEST_CASE("lattice net: far from the surface its tets are those of the body-centred cubic lattice") {
-  const LatticeNet net = lattice_net(limb().voxels());  // too thin for larger ones
+  const LatticeNet net = lattice_net(limb().voxels());  // the limb is too thin for larger tets
   int inner = 0;
   for (const auto& tet : net.mesh.T.rowwise()) {
     if (tet.minCoeff() < net.surface.V.rows()) continue;

@@ -33,7 +33,7 @@ TEST_CASE(
         CHECK(std::abs(glm::dot(end - point, normal)) < 1e-12);
         ++ends[{std::lround(end.x * 1e9), std::lround(end.y * 1e9), std::lround(end.z * 1e9)}];
       }
-    for (const auto& [place, lines_there] : ends) CHECK(lines_there >= 2);  // no line ends in nothing
+    for (const auto& [place, lines_there] : ends) CHECK(lines_there >= 2);  // every line continues at both ends
   }
   double border = 0;
   for (const Segment& line : plane_cut(box.V, boundary_of(box.T), point, {0, 0, 1}))

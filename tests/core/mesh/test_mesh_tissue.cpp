@@ -40,7 +40,7 @@ LabelVolume ball() {
   return volume;
 }
 
-// The mesh is sound whatever was done: positive, closed, its regions those of the volume.
+// Checks what holds for every mesh: no flat or inverted tets, a closed border, and the regions of the volume.
 void check_sound(const TissueMesh& result) {
   CHECK(find_fault(result.mesh, region_volumes(result.mesh)) == "");
   CHECK(std::ssize(result.mesh.region) == result.mesh.T.rows());
@@ -72,7 +72,7 @@ struct Regions {
   VoxelRegions voxels() const { return {volume.grid, tissue, region}; }
 };
 
-// Bones as the rig has them.
+// Makes one region for each rig bone that has bone tissue.
 Regions regions_of(LabelVolume volume, TissueTable table, const Armature& rig) {
   if (const auto guess = guess_bone_tissue(volume, table, rig)) {
     const double label = table.find(guess->label)->file_value;
@@ -97,7 +97,7 @@ double share_on_skin(const TetMesh& mesh, const LabelVolume& volume) {
     for (v.y = 0; v.y < box.size.y; ++v.y)
       for (v.x = 0; v.x < box.size.x; ++v.x) body[box.index(box.lowest + v)] = volume.at(box.lowest + v) != 0;
   const std::vector<float> distance = signed_distance(box, body, volume.grid.spacing);
-  // Interpolates the distance; between the centres of two voxels the border lies half-way.
+  // Interpolates the distance to the border. The border lies half a voxel from the centres on either side.
   const auto distance_at = [&](const glm::dvec3& place) {
     const glm::ivec3 low = glm::clamp(glm::ivec3(glm::floor(place)), box.lowest, box.lowest + box.size - 2);
     const glm::dvec3 part = glm::clamp(place - glm::dvec3(low), 0.0, 1.0);
@@ -137,17 +137,18 @@ void check_body(const Regions& regions, const std::string& name, MeshSettings se
   check_quality(quality, volume_error);
   if (volume_error < 0.1) {
     const double on_skin = share_on_skin(result.mesh, regions.volume);
-    // Where an edge is eight voxels long, more than 1 % of the nodes are further than 1.5 voxels off fingers and folds.
+    // If an edge is eight voxels long, more than 1 % of the nodes are further than 1.5 voxels away, at fingers and
+    // folds.
     const bool coarse = settings.spacing_mm >= 8 * regions.volume.grid.spacing.x;
     MESSAGE("on the skin ", 100 * on_skin, " %");
     CHECK(on_skin >= (coarse ? 0.97 : 0.99));
   }
-  // The skin crosses itself nowhere.
+  // The surface does not cross itself.
   const Eigen::MatrixX3i skin = boundary_of(result.mesh.T);
   CHECK(crossing_pairs(result.mesh.V, skin).empty());
 }
 
-// For tests: how often it was asked, counted also where the asking is done in child processes.
+// A counter in shared memory, so that calls in child processes count too.
 class SharedCount {
  public:
   SharedCount()
@@ -173,7 +174,7 @@ TEST_CASE("mesh tissue: a ball with two bones is meshed well, as it lies, with i
   CHECK(volumes.size() == 3);
   CHECK(volumes.count(1) + volumes.count(3) == 2);
   CHECK(result.mesh.V.colwise().maxCoeff().maxCoeff() < 29);
-  // Finer is finer.
+  // A fine mesh around a point has more tets, and is as good.
   MeshSettings fine;
   fine.fine_around = {{0, 0, 0}};
   const TissueMesh finer = mesh_tissue(regions, fine);
@@ -263,7 +264,7 @@ TEST_CASE("mesh tissue: a cancel is heard") {
   CHECK_THROWS_AS(mesh_tissue(ball(), {}, progress), Cancelled);
 }
 
-// LIMBER_RANDOM_BODIES=300 asks for more than there is time for in a usual run.
+// LIMBER_RANDOM_BODIES sets the number of bodies; 300 take longer than a usual test run allows.
 TEST_CASE("mesh tissue: random bodies are meshed, whatever they are" * doctest::test_suite("slow")) {
   const char* asked = std::getenv("LIMBER_RANDOM_BODIES");
   const unsigned count = asked ? unsigned(std::atoi(asked)) : 60;
@@ -282,7 +283,7 @@ TEST_CASE("mesh tissue: random bodies are meshed, whatever they are" * doctest::
       settings.mesher = mesher;
       const TissueMesh result = mesh_tissue(body.regions, settings);
       check_sound(result, body.regions);
-      // Moves of nodes that improve flat tets leave a few voxels of some tiny bodies further away.
+      // On some tiny bodies, moving nodes to improve flat tets leaves a few voxels further from the mesh.
       const double voxels = double(TissueVoxels(body.regions).size());
       const double left_out = (1 - quality_of(result, body.regions).near) * voxels;
       CHECK(left_out <= std::max(20.0, 0.05 * voxels));
@@ -364,7 +365,7 @@ TEST_CASE("mesh tissue: arm and shoulder, two whole bodies and a knee from scans
       Regions soft{std::move(file.volume), {}, {}};
       soft.tissue = TissueVoxels(soft.volume);
       soft.region.assign(soft.tissue.size(), TetMesh::kSoft);
-      // Cartilage and ligaments without the flesh around them: sheets that are thinner than the lattice's cells.
+      // This body is cartilage and ligaments only: sheets that are thinner than the cells of the lattice.
       check_body(soft, one.name, {.spacing_mm = one.spacing_mm}, 0.4);
       continue;
     }

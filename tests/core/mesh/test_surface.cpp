@@ -57,7 +57,7 @@ TEST_CASE("surface: a ball's is closed, faces outwards, lies on the ball and hol
       CAPTURE(mirror);
       CAPTURE(step);
       CHECK(is_closed(mesh));
-      // The blur draws a ball in by h^2 / 2R, flat triangles by a sixth of that.
+      // The blur moves the surface of a ball inwards by h^2 / 2R, and flat triangles add a sixth of that.
       const double h = std::max(step, 1.25);
       CHECK(volume_inside(mesh) == doctest::Approx(4.0 / 3 * std::numbers::pi * radius * radius * radius)
                                        .epsilon(0.005 + 1.75 * h * h / (radius * radius)));

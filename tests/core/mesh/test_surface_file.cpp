@@ -19,7 +19,7 @@ using namespace limber::test;
 
 namespace {
 
-using Corners = std::vector<glm::dvec3>;  // of triangle after triangle
+using Corners = std::vector<glm::dvec3>;  // three for each triangle
 
 Corners corners_of(const TriangleMesh& mesh) {
   Corners corners;
@@ -106,7 +106,7 @@ TEST_CASE("surface file: what the exporter writes is read back, triangle by tria
     const Path path = folder / name;
     write_surfaces(all, {}, path);
     const bool is_exact = path.extension() == ".ply" || path.extension() == ".obj";
-    // Floats of up to 1601 mm; glTF's are rounded in metres.
+    // Coordinates go up to 1601 mm as floats. glTF also rounds them in metres.
     const double precision = is_exact ? 0 : 2e-4;
     const std::vector<Path> paths = surface_paths(all, {}, path);
     if (paths.size() == 1) {
@@ -123,7 +123,7 @@ TEST_CASE("surface file: what the exporter writes is read back, triangle by tria
   }
 }
 
-// An independent writer. Blender's axes are the world's own.
+// Blender writes the files independently. Its axes are those of the world.
 TEST_CASE("surface file: what Blender writes is read, in every format, as the triangles that it has") {
   NEEDS_PROGRAM("blender");
   const TemporaryFolder folder;

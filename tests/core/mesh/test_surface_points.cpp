@@ -16,7 +16,7 @@ Occupancy empty_cells(const glm::ivec3& size) {
   return cells;
 }
 
-// The cells that steps across faces lead to from `seed`, all filled or all not.
+// Returns the cells that steps across faces reach from `seed`: all filled or all empty, like the seed.
 std::vector<std::int64_t> piece_at(const Occupancy& cells, const glm::ivec3& seed) {
   std::vector<std::uint8_t> seen(cells.share.size(), 0);
   std::vector<glm::ivec3> front{seed};

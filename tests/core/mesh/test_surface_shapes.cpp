@@ -30,7 +30,7 @@ void check_extent(const TriangleMesh& mesh, const glm::dvec3& half) {
   }
 }
 
-// Every vertex is used, and no two are at one position: the sides of a box share those of their edges.
+// Checks that every vertex is used and that no two are at one position: adjacent sides of a box share vertices.
 void check_vertices(const TriangleMesh& mesh) {
   std::vector<bool> used(mesh.V.size());
   for (const glm::ivec3& f : mesh.F)

@@ -30,7 +30,7 @@ TEST_CASE("tet mesh: a cube of six tets has its volume, twelve faces outside and
   CHECK(volume == doctest::Approx(1));
   const Eigen::MatrixX3i F = boundary_of(mesh.T);
   CHECK(F.rows() == 12);
-  double flux = 0;  // of the place, outwards: three times the volume
+  double flux = 0;  // flux of the position vector through the surface: three times the volume
   for (const auto& f : F.rowwise()) {
     const Eigen::RowVector3d a = mesh.V.row(f[0]), b = mesh.V.row(f[1]), c = mesh.V.row(f[2]);
     flux += (b - a).cross(c - a).dot(a + b + c) / 6;

@@ -36,7 +36,7 @@ RegionSurface box(double size, std::uint16_t inside = TetMesh::kSoft) {
   return surface;
 }
 
-// An octahedron whose faces are cut into n^2 triangles each, drawn out to a ball.
+// Makes a ball from an octahedron whose faces are cut into n^2 triangles each, with all vertices moved to the sphere.
 RegionSurface ball(double radius, const Eigen::RowVector3d& centre, int n = 8) {
   RegionSurface surface;
   std::map<std::array<int, 3>, int> number;
@@ -49,7 +49,7 @@ RegionSurface ball(double radius, const Eigen::RowVector3d& centre, int n = 8) {
   };
   for (int octant = 0; octant < 8; ++octant) {
     const Eigen::RowVector3i x(octant & 1 ? 1 : -1, 0, 0), y(0, octant & 2 ? 1 : -1, 0), z(0, 0, octant & 4 ? 1 : -1);
-    const auto triangle = [&](int i, int j, int side) {  // its first corner is i towards x and j towards y
+    const auto triangle = [&](int i, int j, int side) {  // the corner at step i in x and j in y
       const auto at = [&](int a, int b) { return corner(x * a + y * b + z * (n - a - b)); };
       Eigen::RowVector3i f(at(i, j), at(i + side, j), at(i, j + side));
       if (x[0] * y[1] * z[2] < 0) std::swap(f[1], f[2]);
@@ -100,7 +100,7 @@ TEST_CASE(
   CHECK(volumes.size() == 2);
   CHECK(volumes.at(3) == doctest::Approx(27).epsilon(1e-12));
   CHECK(volumes.at(TetMesh::kSoft) == doctest::Approx(1000 - 27 - 24).epsilon(1e-12));
-  // Its boundary is the box and the pocket, as they were.
+  // The boundary is that of the input: the box and the pocket.
   CHECK(boundary_of(result.mesh->T).rows() == 24);
   CHECK(volume_inside(result.mesh->V, boundary_of(result.mesh->T)) == doctest::Approx(1000 - 24).epsilon(1e-12));
 }
@@ -134,7 +134,7 @@ TEST_CASE(
   CHECK(why({.at_start = [] { std::_Exit(0); }}) == "it ended without an answer");
   CHECK(why({.at_start = [] { throw 2; }}) == "it gave up (exit code 1)");
 #ifndef LIMBER_ADDRESS_SANITIZER
-  // All that the limit leaves is taken before TetGen asks.
+  // The child takes all memory that its limit allows before TetGen asks for some.
   const auto eat = [] {
     for (std::size_t size = 1 << 20; size > 1000; size /= 2)
       while (std::malloc(size)) {

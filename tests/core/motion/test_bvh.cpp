@@ -15,7 +15,7 @@
 using namespace limber;
 
 namespace {
-// Two joints and an end, with the rows given.
+// Returns a BVH of two joints and an end site, with the given rows of values.
 std::string chain(const std::string& rows, const std::string& frames = "1") {
   return "HIERARCHY\nROOT base\n{\n OFFSET 0 0 0\n CHANNELS 3 Xrotation Yrotation Zrotation\n JOINT tip\n {\n  OFFSET "
          "0 10 0\n"
@@ -35,7 +35,7 @@ void check_same(const Motion& a, const Motion& b) {
 }
 
 struct Difference {
-  double position = 0;  // share of the extent
+  double position = 0;  // as a share of the extent
   double rotation = 0;  // radians
 };
 
@@ -88,7 +88,7 @@ Difference difference_to_reference(const std::filesystem::path& bvh, const std::
 TEST_CASE("bvh: rotations multiply in the order of the channels") {
   const Motion motion = parse_bvh(chain("90 0 0 90 0 0\n"), "test");
   const auto world = forward_kinematics(motion, 0);
-  // x up by a quarter: the tip lies on +z; then a quarter about its own z turns its end to -x.
+  // A quarter turn about x takes the tip to +z. Then a quarter turn about the tip's own z takes its end site to -x.
   CHECK(glm::length(world[1].translation - glm::dvec3(0, 0, 10)) < 1e-12);
   CHECK(glm::length(world[1] * *motion.joints[1].end_site - glm::dvec3(-5, 0, 10)) < 1e-12);
 }

@@ -15,7 +15,7 @@ std::shared_ptr<const Armature> two_bones() {
   return std::make_shared<const Armature>(armature);
 }
 
-// Joint 1 bends about x by a degree a frame.
+// Returns a motion in which joint 1 bends about x by one degree per frame.
 std::shared_ptr<const Motion> bending(int frames) {
   Motion motion;
   motion.joints = {{.name = "Upper"},
@@ -67,7 +67,7 @@ TEST_CASE("clip: the motion goes through its keys exactly and keeps its own cour
   const ClipOnRig on_rig(std::make_shared<const Clip>(clip), two_bones());
   CHECK(on_rig.at(10).rotation[1] == bent(40));
   CHECK(on_rig.at(30).rotation[1] == bent(30));
-  CHECK(bend(on_rig.at(20)) == doctest::Approx(20 + 15));  // the turn of 30 degrees fades to none
+  CHECK(bend(on_rig.at(20)) == doctest::Approx(20 + 15));  // the offset of 30 degrees fades to 0 between the keys
   CHECK(bend(on_rig.at(0)) == doctest::Approx(0 + 30));
   CHECK(bend(on_rig.at(50)) == doctest::Approx(50));
 }

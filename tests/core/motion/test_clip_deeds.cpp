@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Deeds on whole clips: mirrored, played faster or slower, and baked.
+// Tests edits of whole clips: mirroring, speed and baking.
 #include <algorithm>
 #include <random>
 
@@ -21,7 +21,7 @@ namespace {
 constexpr int kFrames = 90;
 
 // A walker that turns, sways and travels, with keys of every kind on top.
-//   askew  whether the body faces between the axes
+//   askew  true: the body does not face along an axis
 struct Take {
   explicit Take(bool askew = false, bool with_motion = true) {
     Armature body = walker();
@@ -60,7 +60,7 @@ struct Take {
   Clip clip;
 };
 
-// The largest turn between two poses, in degrees, and the distance of the bodies, mm.
+// Returns the largest angle between two poses' rotations, degrees.
 double degrees_apart(const Pose& a, const Pose& b) {
   double most = 0;
   for (std::size_t bone = 0; bone < a.rotation.size(); ++bone)
@@ -93,7 +93,7 @@ TEST_CASE("mirrored clips: every frame plays the mirrored pose, and twice gives 
         CHECK(mm_apart(again.at(frame), pose) < 1e-6);
         moves = std::max(moves, degrees_apart(after.at(frame), pose));
       }
-      CHECK(moves > 20);  // the mirror image differs
+      CHECK(moves > 20);  // degrees by which the mirror image differs
     }
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("clip speed: a clip played twice as fast has every second pose, and it
   CHECK(fast.markers[0].frame == 15);
   const ClipOnRig before = take.on_rig(), after = take.on_rig(fast);
   for (int frame = 11; frame <= 42; ++frame) {
-    // Every key has an even frame, so none is moved in the motion.
+    // Every key has an even frame, so its frame in the fast clip is whole.
     const Pose pose = after.at(frame), wanted = before.at(10 + 2 * (frame - 10));
     CHECK(degrees_apart(pose, wanted) < 1e-4);
     CHECK(mm_apart(pose, wanted) < 1e-3);
@@ -122,7 +122,7 @@ TEST_CASE("clip speed: a clip played twice as fast has every second pose, and it
     CHECK(degrees_apart(slowed.at(10 + 2 * (frame - 10)), before.at(frame)) < 1e-4);
     CHECK(mm_apart(slowed.at(10 + 2 * (frame - 10)), before.at(frame)) < 1e-3);
   }
-  // Halfway between two frames of the motion lies the pose halfway between: slerp.
+  // The slow clip has the pose halfway between two frames of the motion, by slerp.
   const Pose a = before.base_at(50), b = before.base_at(51), middle = slowed.base_at(10 + 2 * 40 + 1);
   for (std::size_t bone = 0; bone < a.rotation.size(); ++bone)
     CHECK(glm::length(turn_between(middle.rotation[bone], glm::slerp(a.rotation[bone], b.rotation[bone], 0.5))) < 1e-3);

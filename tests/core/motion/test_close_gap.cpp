@@ -37,7 +37,7 @@ TEST_CASE("closing a gap: the bridge meets the motion with its speeds and follow
       CHECK(glm::distance(closed[frame].root_translation, whole[frame].root_translation) < 0.1);
     }
   }
-  // The step over each end of the gap is that of the motion beside it, up to the bridge's own change of speed.
+  // At each end of the gap the motion keeps its speed, up to the small change of speed within the bridge.
   const auto step = [&](int frame) { return angle_of(closed[frame + 1]) - angle_of(closed[frame]); };
   CHECK(std::abs(step(29) - step(28)) < 0.01);
   CHECK(std::abs(step(39) - step(40)) < 0.01);

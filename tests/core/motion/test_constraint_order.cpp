@@ -31,15 +31,15 @@ TEST_CASE("constraint order: the later one of a bone has the last word, also whe
   CHECK(made_of(rig, {aim, limit}).order() == Order{0, 1});
   CHECK(made_of(rig, {aim, limit, range}).order() == Order{2, 0, 1});
   CHECK(made_of(rig, {limit, aim, range}).order() == Order{0, 2, 1});
-  // The limit holds: no part of the rotation vector is beyond 30 degrees.
+  // The limit comes after the aim, so no component of the rotation vector exceeds 30 degrees.
   Pose pose = rest_pose(rig);
   const int spine = require_bone(rig, "Spine");
   const Pose held = made_of(rig, {aim, limit, range}).constrained(pose, {}, 0);
   const Pose free = made_of(rig, {aim, range}).constrained(pose, {}, 0);
   CHECK(2 * std::acos(std::abs(free.rotation[spine].w)) > glm::radians(60.0));
-  CHECK(2 * std::acos(std::abs(held.rotation[spine].w)) < glm::radians(53.0));  // 30 degrees about each axis at most
+  CHECK(2 * std::acos(std::abs(held.rotation[spine].w)) < glm::radians(53.0));  // at most 30 degrees about each axis
 
-  // The trunk must turn before the hand is planted, although it turns the arm after it. The limit comes after both.
+  // The trunk must turn before the hand is planted, although planting turns the arm. The limit of the arm comes last.
   const Constraint plant = made(ConstraintKind::Plant, "LeftHand"),
                    elbow = made(ConstraintKind::LimitRotation, "LeftArm");
   Constraint reach = made(ConstraintKind::InverseKinematics, "LeftForeArm");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Constraints are checked by forward kinematics of this file, with matrices: the program's own quaternions and solvers
-// tell nothing here.
+// Checks constraints by this file's own forward kinematics with matrices, independently of the program's quaternions
+// and solvers.
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -20,7 +20,7 @@ using test::walker;
 
 namespace {
 
-// The matrix that takes a bone from rest to the pose, made of its chain of joints.
+// Returns the matrix that takes a bone from rest to the pose, multiplied along its chain of joints.
 glm::dmat4 posed_matrix(const Armature& rig, const Pose& pose, int bone) {
   glm::dmat4 result(1);
   for (int b = bone; b >= 0; b = rig.bones[b].parent) {
@@ -76,7 +76,7 @@ Constraint plant_of(const char* hand, const char* target, const glm::dvec3& plac
   return plant;
 }
 
-// A constraint of each kind that can be applied to the walker.
+// Returns one constraint of each kind that can be applied to the walker.
 std::vector<Constraint> one_of_each() {
   return {{.name = "Copy", .kind = ConstraintKind::CopyRotation, .bone = "LeftHand", .target = "RightFoot"},
           {.name = "Limit",
@@ -114,7 +114,7 @@ TEST_CASE("constraints: an aimed axis points at its target within 0.01 degrees, 
     const glm::dvec3 rest = (trial % 2 == 0 ? 1.0 : -1.0) * rest_axes(rig.bones[bone])[trial % 6 / 2];
     const glm::dmat3 turned(posed_matrix(rig, aimed, bone)), before(posed_matrix(rig, pose, bone));
     CHECK(degrees_between(turned * rest, place - head) < 0.01);
-    // The turn from one to the other is the shortest: its angle is that between the directions.
+    // The constraint turns the bone by the shortest rotation: its angle is that between the two directions.
     const glm::dmat3 turn = turned * glm::transpose(before);
     const double angle = std::acos(std::clamp((turn[0][0] + turn[1][1] + turn[2][2] - 1) / 2, -1.0, 1.0));
     CHECK(glm::degrees(angle) == doctest::Approx(degrees_between(before * rest, place - head)).epsilon(1e-6));
@@ -137,7 +137,7 @@ TEST_CASE("constraints: a planted hand is within 0.5 mm of a place in reach, els
         glm::normalize(glm::dvec3(random.any(-1, 1), random.any(-1, 1), random.any(-1, 1)) + glm::dvec3(1e-3));
     const double away = trial % 4 == 0 ? random.any(0, 60) : random.any(40, 800);
     const glm::dvec3 joint = shoulder + away * direction;
-    // The place of the wrist, at every second trial fixed to the chest, on which the arm hangs.
+    // In every second trial, the wrist's target is fixed to the chest, from which the arm hangs.
     const bool on_bone = trial % 2 == 0;
     const glm::dvec3 place =
         on_bone ? glm::dvec3(glm::inverse(posed_matrix(rig, pose, spine)) * glm::dvec4(joint, 1)) : joint;
@@ -148,7 +148,7 @@ TEST_CASE("constraints: a planted hand is within 0.5 mm of a place in reach, els
     const double nearest = std::max({0.0, away - (a + b), std::abs(a - b) - away});
     missed += nearest > 0;
     worst = std::max(worst, std::abs(glm::distance(wrist, joint) - nearest));
-    // The hand keeps its direction, and nothing but the arm turns.
+    // The hand keeps its direction, and no other bone turns.
     CHECK(largest_difference(posed_matrix(rig, planted, hand), posed_matrix(rig, pose, hand)) < 1e-9);
     for (int bone = 0; bone < std::ssize(rig.bones); ++bone)
       if (bone != upper && bone != lower && bone != hand) CHECK(planted.rotation[bone] == pose.rotation[bone]);
@@ -176,7 +176,7 @@ TEST_CASE("constraints: a hand planted on the hips keeps place and direction on 
 
 TEST_CASE("constraints: knees and elbows bend their own way when a straight limb is planted") {
   Armature rig = walker();
-  for (const char* side : {"Left", "Right"}) {  // exactly straight at rest
+  for (const char* side : {"Left", "Right"}) {  // make the knees exactly straight at rest
     const int shank = bone_of(rig, (std::string(side) + "Leg").c_str()), lower = shank;
     rig.bones[shank].head.y = rig.bones[shank - 1].tail.y = 0;
     CHECK(rig.bones[lower].tail.y == 0);
@@ -214,7 +214,8 @@ TEST_CASE("constraints: inverse kinematics brings a tail within 0.5 mm of its ta
                           .place = rig.bones[upper].head + glm::dvec3(0, -150, 0),
                           .chain = 3};
   const Pose held = constrained(rig, folded, rest_pose(rig));
-  CHECK(glm::distance(tail_of(rig, held, hand), folded.place) > 1);  // the elbow would have to bend further
+  // The hand misses the target by more than 1 mm, since the elbow would have to bend beyond its limit.
+  CHECK(glm::distance(tail_of(rig, held, hand), folded.place) > 1);
   const double bend =
       degrees_between(rig.bones[elbow].tail - rig.bones[elbow].head,
                       glm::mat3_cast(held.rotation[elbow]) * (rig.bones[elbow].tail - rig.bones[elbow].head));
@@ -234,7 +235,7 @@ TEST_CASE("constraints: a copied rotation is exact, in the world and relative to
     copy.space = RotationSpace::Parent;
     const Pose relative = constrained(rig, copy, pose);
     CHECK(relative.rotation[to] == pose.rotation[from]);
-    // One axis alone: of turns about that axis, the whole turn is copied; of turns about another one, nothing.
+    // With one axis only, a rotation about that axis is copied whole, and one about another axis not at all.
     copy.axes = {false, true, false};
     const glm::dvec3 along = rest_axes(rig.bones[to])[1], across = rest_axes(rig.bones[to])[0];
     const double angle = random.any(-2, 2);
@@ -257,7 +258,7 @@ TEST_CASE("constraints: limited rotations are held about each axis, and what is 
   for (int trial = 0; trial < 60; ++trial) {
     const Pose pose = random_pose(rig, random, 1.5);
     const Pose held = constrained(rig, limit, pose);
-    // The rotation vector from the matrix: the axis is what the matrix is skew about, the angle is in its trace.
+    // Computes the rotation vector from the matrix: the axis from its skew part, the angle from its trace.
     const auto parts = [&](const Pose& p) {
       const glm::dmat3 own = rest_axes(rig.bones[bone]), m(glm::mat3_cast(p.rotation[bone]));
       const double angle = std::acos(std::clamp((m[0][0] + m[1][1] + m[2][2] - 1) / 2, -1.0, 1.0));
@@ -330,7 +331,7 @@ TEST_CASE("constraints: a keyed weight switches between keys and inverse kinemat
   const Pose held = played.at(30);
   CHECK(glm::distance(tail_of(rig, held, hand), at(rig, held, hips, plant.place)) < 0.5);
   CHECK(played.unconstrained_at(30) == plain.at(30));
-  // In 20 frames the hand goes about 330 mm, and the body 2 mm in each.
+  // In 20 frames the hand moves about 330 mm in all, and the body moves 2 mm in each frame.
   glm::dvec3 before = tail_of(rig, played.at(0), hand);
   double most = 0;
   for (int frame = 1; frame <= 60; ++frame) {
@@ -368,8 +369,9 @@ TEST_CASE("constraints: a target that goes smoothly, in and out of reach, is fol
     }
     CAPTURE(static_cast<int>(kind));
     MESSAGE("largest step of the tip ", tip, " mm, of the elbow ", elbow, " mm");
-    CHECK(tip < 12);  // the target goes at most 7.3 mm in a step
-    // A limb that becomes straight moves its elbow as the root of the missing length: in a step of 7 mm by 45 mm.
+    CHECK(tip < 12);  // mm; the target moves at most 7.3 mm in a step
+    // When a limb becomes straight, its elbow moves like the square root of the missing length: up to 45 mm in a step
+    // of 7 mm.
     CHECK(elbow < 60);
   }
 }

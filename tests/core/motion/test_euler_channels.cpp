@@ -37,7 +37,7 @@ TEST_CASE("euler channels: speeds and velocities are each other's inverse, and f
         turn_between(rotation_of_channels(a - kStep * speeds), rotation_of_channels(a + kStep * speeds));
     CHECK(glm::length(turn / (2 * kStep) - velocity) < 1e-6);
   }
-  // In gimbal lock the speeds stay finite.
+  // In gimbal lock the speeds remain finite.
   const glm::dvec3 locked = channel_speeds({0.3, glm::radians(90.0), 0.2}, {1, 2, 3});
   CHECK(glm::length(locked) < 10);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The centre that a camera follows, compared with a walk whose places are known by formula.
+// Compares the point that a camera follows with a walk whose positions are known by formula.
 #include "core/motion/followed_centre.h"
 
 #include <cmath>
@@ -14,9 +14,9 @@ using namespace limber;
 namespace {
 
 constexpr int kFrames = 240;
-constexpr double kRate = 60, kSpeed = 20, kBounce = 30;  // mm in a frame forwards, mm up and down
+constexpr double kRate = 60, kSpeed = 20, kBounce = 30;  // frames per s; mm per frame forwards; mm up and down
 
-// A walk straight on at an even speed, that bounces twice in a second.
+// Returns the position in a straight walk at constant speed that bounces twice a second.
 glm::dvec3 place_at(int frame) {
   return {0, -kSpeed * frame, kBounce * std::sin(frame / kRate * 2 * 2 * 3.14159265358979)};
 }
@@ -37,7 +37,7 @@ TEST_CASE("followed centre: a camera keeps up with an even walk, and takes up li
     CAPTURE(frame);
     const glm::dvec3 gone = centre.at(frame) - start;
     CHECK(std::abs(gone.y + kSpeed * frame) < 0.1);
-    // Near the ends there is nothing to average with: there the camera comes to the place that the body has.
+    // Near the ends there are too few frames to average the bounce away.
     CHECK(std::abs(gone.z) < (frame > 45 && frame < kFrames - 45 ? 0.1 : 1.0) * kBounce);
   }
   CHECK(centre.at(-100) == start);

@@ -17,7 +17,7 @@ glm::dvec3 turned(const glm::dvec3& rotation, const glm::dvec3& way) {
   return angle > 0 ? glm::angleAxis(angle, rotation / angle) * way : way;
 }
 
-// A leg 800 mm long that stands upright on a source's foot and the body's.
+// Makes an upright leg 800 mm long from the paths of the source's ankle and of the body's ankle.
 FootTrack leg_of(int frames, const std::function<glm::dvec3(int)>& source, const std::function<glm::dvec3(int)>& body) {
   FootTrack leg{.rest_height = 60, .most_turn = 0.034};
   for (int f = 0; f < frames; ++f) {
@@ -47,7 +47,7 @@ TEST_CASE(
   CHECK(glm::length(even.thigh - even.shank) < 1e-12);
   CHECK(even.most() == doctest::Approx(10.0 / 800).epsilon(0.01));
 
-  // Sitting: the thigh lies, the shank stands, the foot can come nearer only by the shank.
+  // The body sits: the thigh is level, the shank upright, so mainly the shank can move the foot.
   const glm::dvec3 lying(0, -400, 0), standing(0, 0, -350);
   for (const glm::dvec2 aside : {glm::dvec2(0, 9), glm::dvec2(7, 0), glm::dvec2(-4, 5)}) {
     const TurnsOfLeg turns = turns_of_leg(lying, standing, aside);
@@ -56,7 +56,7 @@ TEST_CASE(
     CHECK(std::abs(moved.z) < 1);
   }
 
-  // A straight leg that leans cannot keep the height, but reaches the place.
+  // A straight leg that leans reaches the position, but cannot keep its height.
   const glm::dvec3 leaning(200, 0, -350);
   const TurnsOfLeg turns = turns_of_leg(leaning, leaning, {10, 0});
   const glm::dvec3 moved = turned(turns.thigh, leaning) + turned(turns.shank, leaning) - 2.0 * leaning;
@@ -64,7 +64,7 @@ TEST_CASE(
 }
 
 TEST_CASE("foot sliding: of one foot that stands the travel takes nearly all, and nothing gives at frame 0") {
-  // The source stands still, the body's foot is carried along; the other leg is in the air.
+  // The source's foot stands, and the body's foot is carried along. The other leg is in the air.
   const FootTrack stands = leg_of(
       100, [](int) { return glm::dvec3(0); }, [](int f) { return glm::dvec3(3.0 * f, -f, 60); });
   const FootTrack flies = leg_of(
@@ -80,7 +80,7 @@ TEST_CASE("foot sliding: of one foot that stands the travel takes nearly all, an
 TEST_CASE("foot sliding: two feet that want different things stand by their legs, as far as these may turn") {
   const auto still = [](int) { return glm::dvec3(0); };
   for (const double apart : {15.0, 90.0}) {
-    // The body's feet drift apart while both of the source's stand.
+    // The body's feet drift apart while both feet of the source stand.
     const FootTrack left = leg_of(200, still, [&](int f) { return glm::dvec3(0, apart * f / 400, 60); });
     const FootTrack right = leg_of(200, still, [&](int f) { return glm::dvec3(0, -apart * f / 400, 60); });
     const FootMending mending = mend_sliding({left, right}, kFrameTime, true);
@@ -94,7 +94,7 @@ TEST_CASE("foot sliding: two feet that want different things stand by their legs
 }
 
 TEST_CASE("foot sliding: a foot that rolls holds by its toes once its ankle moves") {
-  // Both feet of one length turn about their toes, but the body's ankle stands half as high.
+  // Both feet have the same length and turn about their toes, but the body's ankle is half as high.
   const int frames = 30;
   const auto ankle = [](double high, int f) {
     return glm::dvec3(0, 100, 0) + glm::dvec3(0, -std::cos(f * 0.02) * 100 + std::sin(f * 0.02) * high,

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRate = 60;
 
-// Steps whose feet stand still, seen from another place and heading.
+// Returns steps whose feet stand still, moved to another position and heading.
 std::vector<Pose> steps(const Armature& rig, const GroundMove& move, int first, int count) {
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   const auto clean = clean_motion(rig, limbs, sliding_steps(rig, 240), kRate, true, {}, 0.15).poses;
@@ -41,7 +41,7 @@ TEST_CASE("ground move: a body comes to the place and heading of another pose") 
   const Pose result = moved(rig, pose, move);
   CHECK(glm::distance(result.root_translation, glm::dvec3(-500, 900, 30)) < 1e-9);
   CHECK(glm::length(turn_between(result.rotation[0], wanted.rotation[0])) < 1e-9);
-  // Every joint moves as one body.
+  // All joints move rigidly together.
   const auto before = posed_from_rest(rig, pose), after = posed_from_rest(rig, result);
   for (std::size_t b = 0; b < rig.bones.size(); ++b)
     CHECK(glm::distance(after[b] * rig.bones[b].tail, move.place(before[b] * rig.bones[b].tail)) < 1e-9);
@@ -70,7 +70,7 @@ TEST_CASE("joined poses: a take cut in two and turned aside comes together again
 TEST_CASE("joined poses: feet that stand stay in place while the takes fade") {
   const Armature rig = walker();
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
-  // The second take is a few frames off its phase and turned a little further, so a foot slides as the takes fade.
+  // The second take is a few frames out of phase and turned a little further, so a foot slides during the fade.
   const std::vector<Pose> first = steps(rig, {}, 0, 120),
                           second = steps(rig, {0.12, {0, 0, 0}, {3000, 500, 0}}, 88, 140);
   const JoinedPoses free = joined(rig, limbs, first, second, kRate, {.fade = 24}),
@@ -81,7 +81,7 @@ TEST_CASE("joined poses: feet that stand stay in place while the takes fade") {
     slid = std::max(slid, error_of(plant, rig, limbs, free.poses).slide);
     CHECK(plant.first <= 119);
     CHECK(plant.last >= kept.fade_first);
-    // By forward kinematics, without the code that plants.
+    // Measures the foot by forward kinematics, independently of the code that plants it.
     const Bone& foot = rig.bones[limbs[plant.limb].end];
     const auto at = [&](int f) {
       return posed_from_rest(rig, kept.poses[f])[limbs[plant.limb].end] *
@@ -93,7 +93,7 @@ TEST_CASE("joined poses: feet that stand stay in place while the takes fade") {
     }
   }
   CHECK(slid > 10);
-  // Long before the cross-fade the first take is as it was.
+  // Long before the cross-fade, the first take is unchanged.
   for (int f = 0; f < 40; ++f) CHECK(kept.poses[f] == first[f]);
 }
 
@@ -121,7 +121,7 @@ TEST_CASE("joined poses: whatever the phases are, planted feet stay and the body
           CHECK(error_of(plant, rig, limbs, join.poses).slide < 10);
           stood += plant.first < end && plant.last >= join.fade_first;
         }
-        // A foot's place may be a seventh of a leg off, and the body follows it, but over the frames of the fade.
+        // The foot's target may be off by a seventh of a leg. The body follows it, spread over the frames of the fade.
         if (fade >= 30) CHECK(fastest(join.poses) < usual + 20);
       }
   CHECK(stood > 80);
@@ -130,7 +130,7 @@ TEST_CASE("joined poses: whatever the phases are, planted feet stay and the body
 TEST_CASE("joined poses: a foot that would have to go far without a step is told of") {
   const Armature rig = walker();
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
-  // The body stands with both feet before it, and then with both behind it.
+  // The body stands with both feet in front of it, then with both behind it.
   const auto standing = [&](double angle) {
     Pose pose = rest_pose(rig);
     for (const int thigh : {1, 4}) pose.rotation[thigh] = glm::angleAxis(angle, glm::dvec3(1, 0, 0));
@@ -145,7 +145,7 @@ TEST_CASE("joined poses: a foot that would have to go far without a step is told
                                      place_of(left, PlantPoint::Joint, rig, standing(0.3)[0]));
   CHECK(far >= joint - 1);
   CHECK(far < joint + 100);
-  // What is near enough is made one place, where the foot stays.
+  // If the two foot positions are close, they become one position, at which the foot stays.
   const JoinedPoses near = joined_at(-0.03, 0.03);
   CHECK(near.foot_gap == 0);
   REQUIRE(near.plants.size() >= 2);

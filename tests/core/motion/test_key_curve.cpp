@@ -31,7 +31,7 @@ glm::dquat from_vector(const glm::dvec3& v) {
   return angle == 0 ? glm::dquat(1, 0, 0, 0) : glm::angleAxis(angle, v / angle);
 }
 
-// A cubic Bezier curve by de Casteljau's steps, with handles at thirds of the time.
+// Evaluates a cubic Bezier curve by de Casteljau's algorithm, with handles at thirds of the time.
 double scalar_bezier(double a, double v0, double b, double v1, double frames, double share) {
   double p[] = {a, a + v0 * frames / 3, b - v1 * frames / 3, b};
   for (int left = 3; left > 0; --left)
@@ -188,7 +188,8 @@ TEST_CASE("key curve: clamped keys do not overshoot, automatic ones do") {
 }
 
 TEST_CASE("key curve: a circle through clamped keys keeps going at each of them") {
-  // Eight rotation vectors on a small circle: a component-wise clamp would stop one component at each of four keys.
+  // Eight rotation vectors lie on a small circle. Clamping each component by itself would stop one component at four of
+  // the keys.
   std::map<int, glm::dquat> keys;
   KeyShapes shapes;
   for (int i = 0; i <= 8; ++i) {

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kTau = 2 * std::numbers::pi;
 
-// One cycle of a walk along a circle, which does not quite close: arms end higher than they began, and the body lower.
+// Makes one cycle of a walk along a circle that does not quite close: at its end the arms are higher and the body is
+// lower.
 std::vector<Pose> circling(const Armature& rig, int frames, double open) {
   std::vector<Pose> poses;
   for (int f = 0; f < frames; ++f) {
@@ -55,7 +56,7 @@ TEST_CASE("looped poses: travel and heading go on from repeat to repeat") {
   const LoopedPoses loop = looped(rig, take, {.repeats = 5, .blend = 20});
   REQUIRE(loop.poses.size() == 5 * 60 + 1);
   CHECK(loop.gap_degrees < 1e-6);
-  // The circle goes on: its place and heading after any frame are known.
+  // The circle continues, so position and heading after any frame are known.
   for (int f = 0; f <= 300; ++f) {
     const double turn = 0.8 * f / 60, phase = kTau * f / 60;
     const Pose& pose = loop.poses[f];
@@ -78,7 +79,7 @@ TEST_CASE("looped poses: both sides of a seam meet with one speed, and nothing i
     for (const int seam : {60, 120})
       for (std::size_t b = 0; b < rig.bones.size(); ++b) {
         CAPTURE(rig.bones[b].name);
-        // Across the seam the step changes no more than between the other frames near it.
+        // At the seam, the step changes no more than between other frames near it.
         const double before = turn_of_step(loop.poses, seam - 1, b), after = turn_of_step(loop.poses, seam, b);
         CHECK(std::abs(after - before) < 0.01);
         double fastest = 0, was = 0;
@@ -88,12 +89,12 @@ TEST_CASE("looped poses: both sides of a seam meet with one speed, and nothing i
           was = std::max({was, turn_of_step(take, f, b), turn_of_step(take, 59 - f, b)});
         CHECK(fastest < 1.5 * was + 1e-3);
       }
-    // In the world too: no joint makes a jump in speed.
+    // Joint positions in the world have no jump in speed either.
     for (int f = 1; f + 1 < std::ssize(loop.poses); ++f) {
       const auto a = heads(rig, loop.poses[f - 1]), b = heads(rig, loop.poses[f]), c = heads(rig, loop.poses[f + 1]);
       for (std::size_t bone = 0; bone < a.size(); ++bone) CHECK(glm::length(a[bone] - 2.0 * b[bone] + c[bone]) < 25);
     }
-    // Without a blend there is a jump.
+    // Without a blend, the speed jumps at the seam.
     const LoopedPoses hard = looped(rig, take, {.repeats = 2, .blend = 0, .stays = stays});
     CHECK(hard.haste > 1.5);
   }
@@ -108,7 +109,7 @@ TEST_CASE("looped poses: on the spot the body comes back to its place and headin
     for (std::size_t b = 0; b < rig.bones.size(); ++b)
       CHECK(glm::length(turn_between(first.rotation[b], last.rotation[b])) < 1e-7);
   }
-  // The way along the circle, 780 mm a repeat, is gone; what is left is how far the arc leaves its chord.
+  // The travel along the circle, 780 mm per repeat, is removed. What remains is the distance of the arc from its chord.
   for (const Pose& pose : loop.poses) CHECK(std::hypot(pose.root_translation.x, pose.root_translation.y) < 82);
 }
 

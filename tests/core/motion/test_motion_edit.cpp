@@ -25,7 +25,7 @@ glm::dquat about(int axis, double angle) {
   return glm::angleAxis(angle, unit);
 }
 
-// Largest distance of any joint at any frame.
+// Returns the largest distance between the same joint in two motions over all frames.
 double farthest(const Motion& a, const Motion& b, const std::function<int(int)>& frame_of_b) {
   double most = 0;
   for (int frame = 0; frame < a.frame_count; ++frame) {
@@ -35,7 +35,7 @@ double farthest(const Motion& a, const Motion& b, const std::function<int(int)>&
   return most;
 }
 
-// A chain whose joints use every order, moving smoothly.
+// Makes a smoothly moving chain whose joints use every order of rotation channels.
 Motion swaying(int frames, double rate) {
   using enum BvhChannel;
   Motion motion;
@@ -82,7 +82,7 @@ TEST_CASE("euler angles: every rotation in every order comes back, near the angl
       const glm::dquat back = about(order[0], angles[0]) * about(order[1], angles[1]) * about(order[2], angles[2]);
       CHECK(std::abs(glm::dot(back, rotation)) > 1 - 1e-12);
       for (int a = 0; a < 3; ++a) CHECK(std::abs(angles[a] - near[a]) <= 2 * std::numbers::pi);
-      // What it was made of, when that is asked for.
+      // Asked for angles near those that the rotation was made of, the function returns these.
       const glm::dvec3 own(0.3, middle > 1.5 || middle < -1.5 ? 0.2 : middle, -2.0);
       const glm::dquat made = about(order[0], own[0]) * about(order[1], own[1]) * about(order[2], own[2]);
       CHECK(glm::distance(euler_angles(made, order, own), own) < 1e-9);
@@ -96,7 +96,7 @@ TEST_CASE("resampled: at its own rate a motion stays as it is, at twice the rate
   const Motion doubled = resampled(motion, 60);
   CHECK(doubled.frame_count == 99);
   CHECK(farthest(motion, doubled, [](int frame) { return 2 * frame; }) < 1e-4);
-  // Between the frames it is where the moving joints are, to second order in the step.
+  // Between the original frames, joints are where the exact motion has them, up to the second order in the step.
   const Motion fine = swaying(99, 60);
   CHECK(farthest(fine, doubled, [](int frame) { return frame; }) < 0.1);
 }

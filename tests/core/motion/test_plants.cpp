@@ -37,8 +37,8 @@ TEST_CASE("plants: limbs are found by name, and feet stand where they are low an
   CHECK(plants.size() >= 8);
   for (const Plant& plant : plants) {
     CHECK(limbs[plant.limb].is_leg);
-    CHECK(error_of(plant, rig, limbs, poses).slide > 10);  // they do slide before
-    // In the middle of the stance the foot is not lifted.
+    CHECK(error_of(plant, rig, limbs, poses).slide > 10);  // mm that the feet slide before planting
+    // The stance is found where the foot is down.
     const double lift = std::sin((plant.first + plant.last) / 2.0 * 0.15 + plant.limb * std::numbers::pi);
     CHECK(lift < 0.5);
   }
@@ -72,7 +72,7 @@ TEST_CASE("plants: a hand reaches a target exactly, keeps its direction, and a f
   test::RandomNumbers random(3);
   for (int trial = 0; trial < 40; ++trial) {
     Plant hold{2, PlantPoint::Tip, 40, 60, {}};
-    // Within the arm's reach of the shoulder's places in these frames.
+    // The target lies within the arm's reach in these frames.
     const glm::dvec3 direction =
         glm::normalize(glm::dvec3(random.any(-1, 1), random.any(-1, 0.2), random.any(-1, 1)) + glm::dvec3(1e-3));
     hold.place = glm::dvec3(200, -100, 1400) + direction * random.any(250, 420) - glm::dvec3(0, 0, 90);
@@ -80,7 +80,7 @@ TEST_CASE("plants: a hand reaches a target exactly, keeps its direction, and a f
     CHECK(error_of(hold, rig, limbs, held).from_place < 0.01);
     const auto direction_of_hand = [&](const Pose& pose) { return posed_from_rest(rig, pose)[limbs[2].end].rotation; };
     CHECK(std::abs(glm::dot(direction_of_hand(held[50]), direction_of_hand(poses[50]))) == doctest::Approx(1));
-    CHECK(held[20].rotation == poses[20].rotation);  // far before, nothing changed
+    CHECK(held[20].rotation == poses[20].rotation);  // unchanged far from the hold
     CHECK(held[80].rotation == poses[80].rotation);
   }
   Plant far{2, PlantPoint::Tip, 40, 60, {2000, 0, 1400}};
@@ -93,7 +93,7 @@ TEST_CASE("plants: a body sinks where a straight leg would not reach") {
   const Armature rig = walker();
   const auto limbs = planted_limbs(rig);
   std::vector<Pose> poses(60, rest_pose(rig));
-  for (Pose& pose : poses) pose.root_translation.z = 30;  // the feet hover
+  for (Pose& pose : poses) pose.root_translation.z = 30;  // mm above the ground: the feet hover
   Plant stand{0, PlantPoint::Joint, 20, 40, {100, -200, 80}};
   const auto cleaned = planted(rig, limbs, poses, {stand}, 6);
   CHECK(error_of(stand, rig, limbs, cleaned).from_place < 0.5);
@@ -106,7 +106,8 @@ TEST_CASE("plants: a body sinks where a straight leg would not reach") {
 TEST_CASE("plants: knees that the take bends the wrong way bend the right way where the foot stands, and never jump") {
   const Armature rig = walker();
   const auto limbs = planted_limbs(rig);
-  for (const double degrees : {2.0, 6.0, 12.0}) {  // hyperextension, around the angle at which planes are chance
+  // The knees are bent backwards, near the angle at which the bending plane is ill-defined.
+  for (const double degrees : {2.0, 6.0, 12.0}) {
     CAPTURE(degrees);
     std::vector<Pose> poses;
     for (int f = 0; f < 120; ++f) {
@@ -173,7 +174,7 @@ TEST_CASE("plants: hands that hang idle go with the body, and those that stay wh
   for (int f = 0; f < 120; ++f) idle[f].root_translation = {0.6 * std::sin(f * 0.1), 0, 0};
   CHECK(plants_at_rest(rig, limbs, idle, 60).size() == 6);
   CHECK(hands_of(idle).empty());
-  // A foot is held far aside: the body goes along, and so do the hands, relative to which nothing changes.
+  // Holding a foot far aside moves the body and the hands with it. Relative to the body, the hands do not change.
   std::vector<Plant> plants = held_by_world(plants_at_rest(rig, limbs, idle, 60), rig, limbs, idle, 60);
   const Plant hold{0, PlantPoint::Tip, 40, 80,
                    place_of(limbs[0], PlantPoint::Tip, rig, idle[60]) + glm::dvec3(300, 0, 0)};
@@ -184,7 +185,7 @@ TEST_CASE("plants: hands that hang idle go with the body, and those that stay wh
   for (const int bone : {limbs[2].upper, limbs[2].lower, limbs[3].upper, limbs[3].lower})
     CHECK(std::abs(glm::dot(aside[60].rotation[bone], idle[60].rotation[bone])) == doctest::Approx(1));
 
-  // A hand on a rail while the body sways, and a hand that is put to a place while the body stands.
+  // One hand rests on a rail while the body sways. Another is moved to a position while the body stands.
   std::vector<Pose> sways = idle;
   for (int f = 0; f < 120; ++f) sways[f].root_translation = {15 * std::sin(f * 0.1), 0, 0};
   const glm::dvec3 hip = place_of(limbs[2], PlantPoint::Tip, rig, idle[60]) + glm::dvec3(0, -80, 200);
@@ -212,8 +213,8 @@ TEST_CASE("plants: wrong frames and limbs are refused, and no frames have no pla
 TEST_CASE("pose filter: slow movement stays, fast movement goes, nothing lags") {
   const Armature rig = walker();
   constexpr double kRate = 120;
-  // The gain of two passes of a second-order Butterworth filter at a frequency: 1 / (1 + (tan ratio)^4), where the
-  // cutoff of one pass is raised so that both together halve the power at the cutoff.
+  // Returns the gain at a frequency of two passes of a second-order Butterworth filter: 1 / (1 + (tan ratio)^4). The
+  // cutoff of one pass is raised so that both passes together halve the power at the given cutoff.
   const auto gain_of = [&](double frequency, double cutoff) {
     const double raised = cutoff / std::pow(std::numbers::sqrt2 - 1, 0.25);
     const double ratio = std::tan(std::numbers::pi * frequency / kRate) / std::tan(std::numbers::pi * raised / kRate);
@@ -227,7 +228,7 @@ TEST_CASE("pose filter: slow movement stays, fast movement goes, nothing lags") 
       const double wave = std::sin(2 * std::numbers::pi * frequency * f / kRate);
       pose.root_translation.x = 10 * wave;
       pose.rotation[2] = glm::angleAxis(0.02 * wave, glm::dvec3(1, 0, 0));
-      if (f % 3 == 0) pose.rotation[2] = -pose.rotation[2];  // the same rotation
+      if (f % 3 == 0) pose.rotation[2] = -pose.rotation[2];  // the opposite quaternion is the same rotation
       poses.push_back(pose);
     }
     const auto result = smoothed(poses, kRate, 6);

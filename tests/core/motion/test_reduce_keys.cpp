@@ -27,7 +27,7 @@ glm::dquat turned(const glm::dvec3& v) {
   return angle == 0 ? glm::dquat(1, 0, 0, 0) : glm::angleAxis(angle, v / angle);
 }
 
-// A swing of the upper arm, a wave of the forearm about a turning axis, and a step of the body.
+// Returns poses in which the upper arm swings, the forearm waves about a changing axis, and the body moves.
 std::vector<Pose> recorded(int frames) {
   const Armature armature = arm();
   std::vector<Pose> poses;
@@ -43,14 +43,14 @@ std::vector<Pose> recorded(int frames) {
   return poses;
 }
 
-// The angle between two rotations by their matrices, degrees.
+// Returns the angle between two rotations in degrees, from their matrices.
 double degrees_apart(const glm::dquat& a, const glm::dquat& b) {
   const glm::dmat3 turn = glm::mat3_cast(a) * glm::transpose(glm::mat3_cast(b));
   const glm::dvec3 axis(turn[1][2] - turn[2][1], turn[2][0] - turn[0][2], turn[0][1] - turn[1][0]);
   return glm::degrees(std::atan2(glm::length(axis), turn[0][0] + turn[1][1] + turn[2][2] - 1));
 }
 
-// Is cancelled when it has been asked a number of times.
+// Reports a cancel after `times` queries.
 class CancelledLater final : public Progress {
  public:
   explicit CancelledLater(int times) : left_(times) {}
@@ -132,7 +132,7 @@ TEST_CASE("reducing keys: a curve of few keys is found again with no more of the
 TEST_CASE("reducing keys: frames that are kept closely cost no keys far from them") {
   const Armature armature = arm();
   std::vector<Pose> poses = recorded(361);
-  for (int frame = 0; frame < 361; ++frame)  // a tremble, which differences of frames exaggerate
+  for (int frame = 0; frame < 361; ++frame)  // a tremor, which differences between frames exaggerate
     poses[frame].rotation[0] = turned({0.6 * std::sin(frame / 15.0) + 0.004 * std::sin(frame * 2.1), 0, 0.1});
   AllowedErrors allowed = allowed_everywhere(armature, poses.size(), {.degrees = 0.5, .mm = 1});
   const auto keys_from = [&](int frame) {
@@ -154,7 +154,7 @@ TEST_CASE("reducing keys: fitting again gives what fitting once gives, without a
   for (int frame = 30; frame < 60; ++frame) allowed.degrees[1][frame] = 0.01;
   CHECK(fitter.fitted(allowed, no_progress()).keys ==
         KeyFitter(armature, poses, 0).fitted(allowed, no_progress()).keys);
-  CancelledLater progress(4);  // one look for each bone, none within them
+  CancelledLater progress(4);  // allows one query per bone, and none while a bone is fitted
   CHECK_NOTHROW(fitter.fitted(allowed, progress));
   allowed.mm[7] = 0.01;
   CHECK_THROWS_AS(fitter.fitted(allowed, progress), Cancelled);

@@ -17,7 +17,7 @@ namespace {
 constexpr int kFrames = 120, kStart = 40;
 constexpr double kRate = 60;
 
-// A walker's steps, cleaned, with a hand that is held.
+// A walker's steps, cleaned, with one hand held in place.
 struct CleanWalk {
   const Armature rig = walker();
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
@@ -31,7 +31,7 @@ struct CleanWalk {
     return {2, PlantPoint::Tip, 55, 70, hand + 0.2 * (shoulder + steps[60].root_translation - hand)};
   }
 
-  // Plays keys as the program plays clips.
+  // Plays the keys the same way as the program plays clips.
   std::vector<Pose> played(const Keys& keys) const {
     Clip clip{.name = "keys", .rate = kRate, .start = kStart, .range_start = kStart, .range_end = kStart + kFrames - 1};
     clip.keys = keys;
@@ -74,7 +74,7 @@ TEST_CASE("reduced keys: feet that stand and a hand that is held stay in place, 
     CHECK(off == doctest::Approx(kept.most_off).epsilon(1e-6));
     CHECK(kept.reduced.most_degrees <= settings.degrees);
     CHECK(kept.reduced.most_mm <= settings.mm);
-    // Few keys all the same: fewer than a third of one for each bone that moves and each frame.
+    // The keys are still few: fewer than a third of one for each moving bone and frame.
     CHECK(kept.reduced.count >= plain.count);
     CHECK(kept.reduced.count < std::ssize(kept.reduced.keys.bones) * kFrames / 3);
   }
@@ -100,7 +100,7 @@ TEST_CASE("plants: a limb rests while it is held, and neither where a swing turn
   for (int f = 0; f < kFrames; ++f) {
     drifting[f].root_translation = {0.25 * f, 0, 0};  // 15 mm/s
     swinging[f].rotation[8] = glm::angleAxis(0.6 * std::sin(f * 0.1), glm::dvec3(1, 0, 0));
-    still[f].root_translation = {0.4 * std::sin(f * 1.3), 0, 0};  // a tremble
+    still[f].root_translation = {0.4 * std::sin(f * 1.3), 0, 0};  // mm: a tremor
   }
   CHECK(hands_of(drifting).empty());
   const std::vector<Plant> other_hand = hands_of(swinging);

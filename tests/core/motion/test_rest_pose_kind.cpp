@@ -19,7 +19,7 @@ constexpr const char* kJoints[] = {"Arm", "ForeArm", "Hand", "UpLeg", "Leg"};
 
 const std::vector<std::array<double, 3>> kFrames = {{0, 0, 0}, {10, 20, 30}, {-50, 15, 5}, {40, -40, 60}};
 
-// Arms half way down.
+// Returns the body at rest in an A-pose, with its arms raised by 45 degrees.
 Armature a_posed_body() {
   const Armature rig = hanging_body();
   Pose pose = rest_pose(rig);
@@ -29,7 +29,7 @@ Armature a_posed_body() {
   return with_pose_as_rest(rig, pose);
 }
 
-// Every joint straight above the one before, as far as it was.
+// Returns the motion with a rest pose in which each joint lies straight above its parent, at the same distance.
 Motion as_a_stick(Motion motion) {
   for (BvhJoint& joint : motion.joints) {
     if (joint.parent >= 0) joint.offset = {0, glm::length(joint.offset), 0};
@@ -38,7 +38,7 @@ Motion as_a_stick(Motion motion) {
   return motion;
 }
 
-// Degrees between where limbs of the rig point and where `truth` has them, over all frames: the largest.
+// Returns the largest angle in degrees, over all frames, between the limbs of the rig and those of `truth`.
 double largest_miss(const Motion& truth, const Armature& rig, const Retarget& retarget) {
   double largest = 0;
   for (int frame = 0; frame < truth.frame_count; ++frame) {
@@ -91,12 +91,12 @@ TEST_CASE("rest stance: a stick named a T-pose becomes the T-pose, which stays a
   const auto is = forward_kinematics(straight.motion, 0), was = forward_kinematics(truth, 0);
   for (std::size_t j = 0; j < is.size(); ++j) {
     const int parent = truth.joints[j].parent;
-    // Where the arms begin no name says.
+    // A T-pose does not define where the arms and legs begin.
     if (parent >= 0 && truth.joints[parent].name != "Chest" && truth.joints[parent].name != "Hips")
       CHECK(glm::distance(is[j].translation - is[parent].translation, was[j].translation - was[parent].translation) <
             1e-6);
   }
-  // Taken apart in mid-motion, the same moves the same way.
+  // A motion that is straightened while it moves is unchanged too.
   const Motion moving = t_pose_body({{10, 20, 30}});
   CHECK(straightened(moving, RestStance::TPose, -1).turned.empty());
 }
@@ -112,9 +112,10 @@ TEST_CASE("rest stance: palms that no finger shows face as is said") {
   const glm::dvec3 forward(0, -1, 0), down(0, 0, -1);
   for (const char* hand : {"LeftHand", "RightHand"}) {
     CHECK(glm::degrees(angle_between(palm({RestStance::TPose, RestStance::Anatomical}, forward, hand), down)) < 8);
-    CHECK(glm::degrees(angle_between(palm({}, forward, hand), forward)) < 8);  // as the arm came up
+    // Without stances, the palm keeps the direction to which the arm turns it.
+    CHECK(glm::degrees(angle_between(palm({}, forward, hand), forward)) < 8);
   }
-  const glm::dvec3 inward(-1, 0, 0);  // of the left hand, thumbs forward
+  const glm::dvec3 inward(-1, 0, 0);  // the left palm's direction with thumbs forward
   CHECK(glm::degrees(angle_between(palm({RestStance::TPose, RestStance::APose}, inward, "LeftHand"), down)) < 8);
   CHECK(glm::degrees(angle_between(palm({RestStance::Anatomical, RestStance::TPose}, inward, "LeftHand"), forward)) <
         8);

@@ -32,7 +32,7 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180 / std::numbers::pi;
 }
 
-// Largest angle, degrees, between how a matched bone and its joint have turned since frame 0.
+// Returns the largest angle in degrees between the turns of a matched bone and its joint since frame 0.
 double largest_difference(const Motion& motion, const Armature& rig, int step, const RetargetMap& map,
                           Travel travel = Travel::Locked) {
   const Retarget retarget(motion, rig, map, {.travel = travel});
@@ -57,10 +57,10 @@ double largest_difference(const Motion& motion, const Armature& rig, int step) {
   return largest_difference(motion, rig, step, match_by_names(motion, rig));
 }
 
-// How far a foot strays on the ground from where its stances began: the sum over the stances, which are the source's.
+// How far feet slide on the ground during the source's stances, summed over the stances, mm.
 struct Drift {
   double source = 0, posed = 0;
-  int stances = 0, longer = 0;  // by more than a fiftieth and a millimetre
+  int stances = 0, longer = 0;  // stances in which the body's foot slides more than 2 % and 1 mm further
 };
 Drift drift_of(const Motion& motion, const std::vector<glm::dvec3>& source, const std::vector<glm::dvec3>& posed) {
   constexpr double kStill = 100, kLow = 30, kShortest = 0.1;  // mm/s, mm, s
@@ -180,8 +180,8 @@ TEST_CASE("retarget: a map of one's own is read, written and held to what is the
 
 namespace {
 
-// What a rig of any make is written as and comes back as: the largest differences of bones' turns (degrees) and joints'
-// places (mm).
+// Writes poses of a rig to BVH, changes and reads them back, and returns the largest differences of bones' rotations
+// (degrees) and of joints' positions (mm).
 std::pair<double, double> lost_in_a_file(const Armature& rig, const std::vector<Pose>& poses,
                                          const std::function<Motion(Motion)>& changed) {
   const Motion written =
@@ -310,7 +310,7 @@ TEST_CASE("retarget: feet that stand slide no more than the source's, stance by 
       MESSAGE(names, ": ", all.stances, " stances, mm strayed ", all.posed, ", the source's ", all.source);
       CHECK(all.stances > 2);
       CHECK(all.longer == 0);
-      CHECK(all.posed < 1.01 * all.source + 0.5);  // mm, of the whole take
+      CHECK(all.posed < 1.01 * all.source + 0.5);  // mm, over the whole recording
       CHECK(higher / frames < 15);                 // mm
       CHECK(largest_difference(motion, rig, 7, map, Travel::Free) < 2);
     }

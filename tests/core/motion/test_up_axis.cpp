@@ -20,7 +20,7 @@ namespace {
 
 Motion z_up_from_y_up(const Motion& motion) { return y_up_from_z_up(y_up_from_z_up(y_up_from_z_up(motion))); }
 
-// As files that rest along z and are turned upright by their root in every frame.
+// Returns the motion as files have it that rest along z and whose root turns the body upright in every frame.
 Motion upright_by_its_root(const Motion& z_up) {
   Motion motion = z_up;
   motion.joints.insert(motion.joints.begin(), {.name = "World", .channels = {BvhChannel::Xrotation}});

@@ -43,7 +43,7 @@ LabelVolume empty_volume(const glm::ivec3& size, const glm::dvec3& spacing = glm
   return volume;
 }
 
-// Tissue with round holes in it.
+// Makes tissue with round holes in it.
 LabelVolume cheese(std::mt19937& random, const glm::ivec3& size, const glm::dvec3& spacing, int holes) {
   LabelVolume volume = empty_volume(size, spacing);
   for (auto& label : volume.voxels) label = static_cast<Label>(1 + random() % 3);
@@ -70,7 +70,8 @@ void for_each_voxel(const Grid& grid, const Body& body) {
       for (int x = 0; x < grid.size.x; ++x) body(glm::ivec3(x, y, z));
 }
 
-// Over steps to the 26 neighbours, each of which must be possible through faces of tissue.
+// Returns shortest distances over steps to the 26 neighbours. A diagonal step counts only if single steps through faces
+// of tissue lead to the same voxel.
 Distances shortest_ways(const LabelVolume& volume, const glm::ivec3& start, double from, double radius) {
   const auto passable = [&](const glm::ivec3& v, const glm::ivec3& step) {
     std::array<int, 3> axes{0, 1, 2};
@@ -103,7 +104,7 @@ Distances shortest_ways(const LabelVolume& volume, const glm::ivec3& start, doub
   return done;
 }
 
-// Whether the straight line between two voxels' centres keeps to tissue, a little off the edges of voxels.
+// Returns true if the straight line between two voxels' centres stays in tissue, with a small margin at voxel edges.
 bool is_in_sight(const LabelVolume& volume, const glm::ivec3& from, const glm::ivec3& to) {
   const glm::dvec3 way(to - from);
   const int samples = 24 * (1 + std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), std::abs(to.z - from.z)}));
@@ -159,7 +160,7 @@ TEST_CASE(
     const double radius = 4 + random() % 8;
     const Distances found = distances(
         tissue, reach.dab(world_from_voxel(volume.grid) * glm::dvec3(start), radius, BrushDistance::Geodesic));
-    // Steps in 26 directions are up to 13 % longer than what they stand for.
+    // Paths of steps in 26 directions are up to 13 % longer than the straight line.
     const Distances ways = shortest_ways(volume, start, 0, 1.3 * radius);
     for (const auto& [place, way] : ways) missed += way <= 0.95 * radius && !found.count(place);
     for (const auto& [place, distance] : found) {
@@ -195,7 +196,7 @@ TEST_CASE(
 
 TEST_CASE(
     "brush reach: from a finger nothing is touched on the finger beside it, and around a short gap only the far way") {
-  // Two fingers of 6 x 6 voxels, a voxel of air apart, that meet in a palm.
+  // Two fingers of 6 x 6 voxels, one voxel of air apart, that are joined at a palm.
   LabelVolume volume = empty_volume({40, 12, 80});
   for (int z = 4; z < 76; ++z)
     for (int y = 3; y < 9; ++y)
@@ -213,7 +214,7 @@ TEST_CASE(
     CHECK(across(ways) == 0);
     CHECK(ways.size() + static_cast<std::size_t>(across(ball)) == ball.size());
   }
-  // From near the palm it goes round: along the gap, through (12, 66), and back.
+  // Starting near the palm, the path goes around the gap: along it, through (12, 66), and back.
   const Distances round = distances(tissue, reach.dab({11, 6, 60}, 16, BrushDistance::Geodesic));
   const auto other = round.find({13, 6, 60});
   REQUIRE(other != round.end());
@@ -288,11 +289,11 @@ TEST_CASE(
       const glm::ivec3 start = beside_gap[random() % beside_gap.size()];
       const double radius = body.volume.grid.spacing.x * (4 + random() % 10);
       const glm::dvec3 centre = world * glm::dvec3(start);
-      // Ways of that length may pass voxels whose centres lie a little further.
+      // A path of that length may touch voxels whose centres lie a little further away.
       const double beyond_radius = radius + body.volume.grid.spacing.x;
       const Distances ball = distances(tissue, reach.dab(centre, beyond_radius, BrushDistance::Euclidean));
       const Distances ways = distances(tissue, reach.dab(centre, radius, BrushDistance::Geodesic));
-      Distances joined;  // through faces, inside the ball
+      Distances joined;  // reached through faces inside the ball
       std::vector<glm::ivec3> front{start};
       joined[key(start)] = 0;
       while (!front.empty()) {

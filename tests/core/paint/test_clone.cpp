@@ -10,7 +10,7 @@ using namespace limber::test;
 
 namespace {
 
-// Two bones whose shares change along the bar.
+// A bar with two bones whose weights change linearly along it.
 Painted slope() {
   Painted painted(two_bone_bar(12, 40, 6));
   painted.set([](const glm::ivec3& v) {
@@ -45,7 +45,7 @@ TEST_CASE("clone brush: weights come from as far away as the cross-hair was from
   for (const int step : {-2, 0, 3, 6})
     CHECK(share_of_one(painted, after, to + glm::ivec3(0, 0, step)) ==
           doctest::Approx((from.z + step) / 40.0).epsilon(1e-3));
-  // What the brush did not reach is as it was.
+  // Voxels beyond the brush keep their weights.
   CHECK(share_of_one(painted, after, {2, 2, 12}) == share_of_one(painted, *painted.weights, {2, 2, 12}));
 }
 
@@ -60,7 +60,8 @@ TEST_CASE("clone brush: nothing is copied from air, and a stroke over itself cop
   };
   const SkinWeights none = copied(world * glm::dvec3(200, 2, 20));
   CHECK(share_of_one(painted, none, {2, 2, 20}) == share_of_one(painted, *painted.weights, {2, 2, 20}));
-  // From two voxels below: what the stroke has just painted is not painted on.
+  // Copies from two voxels further down. The stroke reads the weights before the stroke, not those that it has just
+  // painted.
   const SkinWeights shifted = copied(world * glm::dvec3(2, 2, 18));
   CHECK(share_of_one(painted, shifted, {2, 2, 26}) == doctest::Approx(24 / 40.0).epsilon(1e-3));
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An elbow painted by hand: two strokes of the joint capsule, one over the whole joint, one along its outer side.
+// Paints an elbow by hand with two strokes of the joint capsule brush: one over the whole joint, one along its outer
+// side.
 //
-// Why two. A voxel that follows the forearm by w is turned by w times the angle about the joint's axis, so its volume
-// changes by 1 + angle (axis x r) . grad w: what a tissue loses is what of w flows through its surface against the
-// motion. Heat blends the crease as widely as the outer side, so that what is lost inside is not gained outside. A
-// wider blend along the outer side, where the surface moves away from the tissue, gives it back; a blend that is not
-// too narrow inside keeps cells from turning over.
+// Two strokes are needed for this reason. A voxel with the weight w for the forearm turns by w times the angle about
+// the joint's axis, so its volume changes by 1 + angle (axis x r) . grad w. A tissue therefore loses what of w flows
+// through its surface against the motion. Heat weights blend the crease as widely as the outer side, so the loss inside
+// is not gained outside. A wider blend along the outer side, where the surface moves away from the tissue, gives it
+// back. The blend inside must not be too narrow, or cells invert.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -48,7 +49,7 @@ SkinWeights painted(const Arm& arm, const SkinWeights& weights, double radius, d
   return stroke.finish();
 }
 
-// Along the outer side of the joint, from the upper arm down to the forearm.
+// Returns points along the outer side of the joint, from the upper arm to the forearm.
 std::vector<glm::dvec3> outer_way(const Arm& arm, double out, double above, double below) {
   const Bone& fore = arm.rig.bones[arm.forearm];
   const glm::dvec3 joint = fore.head, up = glm::normalize(arm.rig.bones[fore.parent].head - joint),
@@ -62,7 +63,7 @@ std::vector<glm::dvec3> outer_way(const Arm& arm, double out, double above, doub
   return way;
 }
 
-// Cells with a tet turned over, of the five that each cell is.
+// Counts the cells in which one of their five tets is inverted.
 std::int64_t inverted_cells(const Arm& arm, const SkinWeights& weights, const Pose& pose) {
   const PosedLattice lattice(arm.volume, arm.tissue, weights, posed_from_rest(arm.rig, pose), Blend::DualQuaternion,
                              glm::dvec3(1));
@@ -107,8 +108,8 @@ Bent bent(const Arm& arm, const SkinWeights& weights, double degrees) {
   return bent;
 }
 
-// How far along the forearm's bone, near the joint, its weight goes from a twentieth to 19 of them, mm: the least of
-// many ways beside the bone through soft tissue.
+// Returns over what distance the forearm's weight rises from 1/20 to 19/20 along the bone near the joint, mm: the
+// smallest over many lines beside the bone through soft tissue.
 double blend_width(const Arm& arm, const SkinWeights& weights) {
   const Bone& fore = arm.rig.bones[arm.forearm];
   const glm::dvec3 up = glm::normalize(arm.rig.bones[fore.parent].head - fore.head),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Our weights beside an artist's, on a whole body whose bones are drawn as tubes.
+// Compares the program's weights with those of an artist, on a whole body whose bones are drawn as tubes.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -31,7 +31,7 @@ std::vector<glm::dvec3> vertices_of_obj(const Path& path) {
   return vertices;
 }
 
-// The tissue voxel nearest to a point within a few voxels of it.
+// Returns the tissue voxel nearest to a point, searched within three voxels.
 glm::ivec3 nearest_tissue(const LabelVolume& volume, const AffineTransform& from_world, const glm::dvec3& point) {
   const glm::dvec3 at = from_world * point;
   const glm::ivec3 centre(glm::round(at));

@@ -223,7 +223,7 @@ TEST_CASE("stroke: with a mirror both sides of a symmetric body stay mirror imag
       });
       CHECK(worst < 3.0 / kFullWeight);
     }
-  // Across the middle, without accumulation, too.
+  // Tests a dab across the mirror plane, and without accumulation.
   StrokeSettings settings = brush_of(BrushKind::Add, 14, 1);
   settings.brush.falloff = FalloffShape::Linear;
   settings.brush.strength = 0.8;
@@ -365,7 +365,7 @@ TEST_CASE(
   }
   CHECK(*painted.weights == before);
 
-  settings.brush.kind = BrushKind::Subtract;  // of what is not there
+  settings.brush.kind = BrushKind::Subtract;  // subtracts weight where there is none
   Stroke nothing(painted.weighted_body(), painted.weights, settings);
   nothing.to({6, 6, 20});
   CHECK(nothing.empty());
@@ -381,7 +381,7 @@ TEST_CASE(
   CHECK(blocked.blocked_by() == 0);
   const std::int64_t kept = blocked.blocked_count();
   CHECK(kept > 0);
-  // The same voxels again count once.
+  // Repeated dabs on the same voxels count them once.
   settings.brush.accumulate = true;
   Stroke again(painted.weighted_body(), painted.weights, settings);
   for (int i = 0; i < 3; ++i) again.dab({6, 6, 20});

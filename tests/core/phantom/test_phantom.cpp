@@ -15,7 +15,7 @@
 using namespace limber;
 
 namespace {
-// Number of tissue voxels other than skin and nail that touch air, by faces, edges or corners.
+// Counts the tissue voxels other than skin and nail that touch air by a face, an edge or a corner.
 std::int64_t leaks(const Phantom& phantom) {
   const auto kinds = phantom.tissues.kinds();
   const LabelVolume& volume = phantom.volume;
@@ -55,7 +55,7 @@ TEST_CASE("the body phantom is closed by skin, its limbs and fingers do not touc
     const Phantom body = make_body_phantom(spacing);
     CHECK(leaks(body) == 0);
     CHECK_NOTHROW(check_armature(body.armature, "phantom"));
-    // Below the crotch each leg stands alone; at the wrists there are two hands beside the trunk.
+    // Below the crotch the legs are two pieces. At the wrists there are two hands and the trunk.
     const auto pieces_at = [&](double z) {
       Grid grid = body.volume.grid;
       LabelVolume slice{grid, {}};
@@ -83,7 +83,7 @@ TEST_CASE("every bone of the body phantom is a piece of its own, with marrow cor
     const auto sizes = connected_components(volume).voxels;
     return std::count_if(sizes.begin(), sizes.end(), [&](std::int64_t size) { return size >= least; });
   };
-  // Of 118 parts, the smallest toe bones may be lost at 3 mm.
+  // Of 118 parts, the smallest toe bones may vanish at 3 mm.
   CHECK(large(bone, 4) >= 90);
   CHECK(large(marrow, 30) >= 12);  // humeri, radii, ulnae, femora, tibiae, fibulae
 }
@@ -113,7 +113,7 @@ TEST_CASE(
   CHECK(read.joints.size() == rest.size());
   CHECK(worst < 1e-9);
 
-  const auto ahead = [&](int frame) {  // of the left ankle before the right one, mm
+  const auto ahead = [&](int frame) {  // how far the left ankle is in front of the right one, mm
     const auto pose = forward_kinematics(body.motion, frame);
     const auto at = [&](const char* name) { return pose[require_bone(body.armature, name)].translation.z; };
     return at("LeftFoot") - at("RightFoot");

@@ -55,7 +55,7 @@ TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite
   CHECK(why([](const Send&) { return false; }) == "it gave up (exit code 1)");
   CHECK(why([](const Send& send) { return send("01234567890", 11), true; }) == "it answered more than expected");
   CHECK(why([](const Send&) { return ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
-  // One that has said all it has to say and does not end.
+  // This child closes its pipe and does not end.
   CHECK(why([](const Send&) { return ::closefrom(3), ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
   CHECK(why(
             [](const Send&) {
@@ -80,7 +80,8 @@ TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite
 TEST_CASE("child process: a cancel ends the child and the wait within 100 ms") {
   using Clock = std::chrono::steady_clock;
   double waited = 1;
-  for (int attempt = 0; attempt < 5 && waited >= 0.1; ++attempt) {  // a busy machine may wake a thread late
+  // A busy machine may wake a thread late, so the test tries up to five times.
+  for (int attempt = 0; attempt < 5 && waited >= 0.1; ++attempt) {
     struct : Progress {
     } progress;
     Clock::time_point asked;

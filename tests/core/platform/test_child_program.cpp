@@ -21,7 +21,7 @@ struct Shell {
     REQUIRE_FALSE(error);
     out.write_end.close();
   }
-  // Returns everything that the program writes until nobody holds its standard output any more.
+  // Returns all that the program writes until no process holds its standard output open.
   std::string all() {
     std::string text;
     for (char block[256];;) {
@@ -50,7 +50,7 @@ TEST_CASE("child program: its children end with it") {
   Shell shell("sleep 100 & sleep 100");
   shell.program.kill_and_wait();
   CHECK(shell.end().was_killed());
-  CHECK(shell.all().empty());  // else the sleeping children would hold the pipe
+  CHECK(shell.all().empty());  // returns at once only if the sleeping children do not hold the pipe
 }
 
 TEST_CASE("child program: a program that is not there is an error") {

@@ -10,7 +10,7 @@
 using namespace limber;
 
 namespace {
-// Sets an environment variable for as long as this lives; nullptr removes it.
+// Sets an environment variable as long as this object lives; nullptr removes the variable.
 struct Variable {
   const char* name;
   std::optional<std::string> before;

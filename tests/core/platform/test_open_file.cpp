@@ -41,7 +41,7 @@ TEST_CASE("open file: a lock belongs to one open file, and ends when it is close
 TEST_CASE("open file: a nameless file is in no folder until it gets a name, and replaces no file then") {
   const test::TemporaryFolder folder;
   OpenFile file = OpenFile::nameless(folder.path());
-  if (!file.is_open()) return;  // this file system has no nameless files
+  if (!file.is_open()) return;  // this file system does not support files without a name (O_TMPFILE)
   CHECK_FALSE(file.write("bytes"));
   CHECK(std::filesystem::is_empty(folder.path()));
   CHECK_FALSE(file.give_name(folder.path() / "named"));

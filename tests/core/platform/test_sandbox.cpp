@@ -38,13 +38,13 @@ bool can_take(std::size_t bytes) {
 #ifdef LIMBER_ADDRESS_SANITIZER
   if (bytes > 0) return true;  // AddressSanitizer ends the program where malloc would return null
 #endif
-  void* const volatile memory = std::malloc(bytes);  // volatile: or the compiler takes it for taken
+  void* const volatile memory = std::malloc(bytes);  // volatile, or the compiler removes the allocation
   const bool taken = memory != nullptr;
   std::free(memory);
   return taken;
 }
 
-// From within a sandbox, in a child.
+// Enters a sandbox in a child process, and returns what the child could do in it.
 Seen seen_inside(const SandboxSettings& settings) {
   const auto sent = run_in_child(
       [&](const Send& send) {

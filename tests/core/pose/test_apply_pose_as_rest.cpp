@@ -26,7 +26,7 @@ TEST_CASE("apply pose: what is at rest then stands where the pose had it, and hi
   pose.root_translation = {3, -4, 5};
   const Armature at_rest = with_pose_as_rest(rig, pose);
   const auto posed = posed_from_rest(rig, pose);
-  // Bending on from there is the same as having bent so far at once.
+  // Bending a joint further from the new rest pose gives the same as bending it by the sum from the old one.
   Pose further = pose, from_there = rest_pose(at_rest);
   for (int b = 0; b < 5; ++b) {
     const glm::dmat3 axes = glm::mat3_cast(posed[b].rotation) * rest_axes(rig.bones[b]);

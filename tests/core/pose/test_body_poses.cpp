@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Directions of posed limbs against those that clinical definitions demand, written down here by hand for each pose.
+// Compares directions of posed limbs with clinical definitions that are written down by hand for each pose.
 #include "core/pose/body_poses.h"
 
 #include <cmath>
@@ -28,7 +28,7 @@ Pose posed(const Armature& rig, const std::string& name, const std::vector<std::
   return with_request(rig, rest_pose(rig), {name, joints}, warnings);
 }
 
-// Down, then `forward` degrees to the front and `out` degrees aside, as a hip or a shoulder leads a limb.
+// Returns the direction of a limb raised from hanging by `forward` degrees to the front, then `out` degrees aside.
 glm::dvec3 hanging(double forward, double out, double side) {
   const double f = glm::radians(forward), a = glm::radians(out);
   return side * std::sin(a) * kLeft + std::cos(a) * (std::sin(f) * kFront - std::cos(f) * kUpwards);
@@ -43,7 +43,7 @@ glm::dvec3 between(const Armature& rig, const Pose& pose, const std::string& fro
 struct Body {
   RigNames names;
   Armature rig;
-  glm::dquat lies{1, 0, 0, 0};  // as a whole, from upright
+  glm::dquat lies{1, 0, 0, 0};  // rotation of the whole body from upright
 
   std::string sided(const std::string& name, double side) const {
     return all_replaced(name, "@", side > 0 ? names.left : names.right);
@@ -53,7 +53,7 @@ struct Body {
   }
 };
 
-// The four long limbs and the hand in each pose: what the words mean, side by side.
+// Checks the direction of each limb in each named pose.
 void check_poses(const Body& body, double tolerance = 0.1) {
   for (const double side : {1.0, -1.0}) {
     const auto thigh = [&](const Pose& pose) { return body.along(pose, body.names.thigh, body.names.shank, side); };
@@ -71,12 +71,10 @@ void check_poses(const Body& body, double tolerance = 0.1) {
     near(upper(sit), hanging(10, 10, side), "sit, upper arm");
     CHECK(degrees_between(upper(sit), fore(sit)) == doctest::Approx(80));
     CHECK(glm::dot(fore(sit), kFront) > 0.9);
-
     const Pose squat = posed(body.rig, "squat");
     near(thigh(squat), hanging(110, 15, side), "squat, thigh");
     CHECK(degrees_between(thigh(squat), shank(squat)) == doctest::Approx(120));
     CHECK(glm::dot(shank(squat), kUpwards) < -0.9);
-
     const Pose walk = posed(body.rig, "walk");
     near(thigh(walk), hanging(side > 0 ? -12 : 25, 0, side), "walk, thigh");
     near(shank(walk), hanging(side > 0 ? -27 : 20, 0, side), "walk, shank");
@@ -97,7 +95,7 @@ Body body_of(const RigNames& names, const std::vector<HandTurn>& turns = {}) {
   return {names, rested(body_rig(names), turns)};
 }
 
-// Names of kAnatomistsNames: how a rig may rest.
+// Turns of bones of kAnatomistsNames that give the rig another rest pose.
 std::vector<HandTurn> t_pose(double abduction, double palms) {
   return {{"LeftUpperArm", {0, 1, 0}, -abduction},
           {"RightUpperArm", {0, 1, 0}, abduction},
@@ -169,7 +167,7 @@ TEST_CASE("body poses: palms, soles and knees face the same way from every rest"
     for (const auto& [what, direction] : facing(seated, name))
       CHECK_MESSAGE(degrees_between(direction, expected.at(what)) < 0.1, name, what);
   }
-  // What the words say: palms down, forward, to the body.
+  // The palms face as the pose names say: down, forward, towards the body.
   const auto t = facing({}, "T"), supine = facing({}, "supine");
   CHECK(degrees_between(t.at("Left palm"), -kFront) < 0.1);
   CHECK(degrees_between(t.at("Right palm"), -kFront) < 0.1);
@@ -192,7 +190,7 @@ TEST_CASE(
     "body poses: joints that are a little off do not turn an upright body, one that lies askew keeps its own axes") {
   Body leaning{kAnatomistsNames, body_rig()};
   for (Bone& bone : leaning.rig.bones) {
-    // A neck too far back, a left hip too far in front.
+    // Moves the neck back and the left hip forward.
     const bool neck = bone.name == "Neck" || bone.name == "Head", hip = bone.name == "LeftThigh";
     if (neck) bone.head.y += 35, bone.tail.y += 35;
     if (hip) bone.head.y -= 12;
@@ -233,14 +231,14 @@ TEST_CASE("body poses: joints bend the way that their words say, on both sides, 
     near(at(word + "index flexion=90", s + "HandIndex2", s + "HandIndex3"), kUpwards);
     near(at(word + "forearm pronation=90", s + "HandIndex1", s + "HandLittle1"), -kFront);
     near(at(word + "forearm pronation=180", s + "HandIndex1", s + "HandLittle1"), out);
-    // Rotation about a limb leaves it and turns what is bent from it.
+    // A rotation about a limb's own axis does not move that limb, but turns the limbs that bend from it.
     const Pose turned =
         posed(rig, "",
               {word + "hip internal rotation=30", word + "shoulder external rotation=90", word + "elbow flexion=90"});
     near(between(rig, turned, s + "Thigh", s + "Shank"), -kUpwards);
     CHECK(glm::dot(between(rig, turned, s + "Foot", s + "Toes"), out) < -0.4);
     near(between(rig, turned, s + "Forearm", s + "Hand"), out);
-    // The foot lies 25 degrees below the level where it stands.
+    // At rest the foot points 25 degrees below level.
     const glm::dvec3 up = at(word + "ankle dorsiflexion=20", s + "Foot", s + "Toes"),
                      flat = at(word + "ankle dorsiflexion=0", s + "Foot", s + "Toes");
     CHECK(degrees_between(up, flat) == doctest::Approx(20));
@@ -272,7 +270,7 @@ TEST_CASE(
   CHECK(degrees(turned({"left shoulder abduction=30"}, "LeftClavicle")) < 1e-6);
   CHECK(degrees(turned({"left shoulder abduction=120", "left shoulder girdle elevation=0"}, "LeftClavicle")) < 1e-6);
   CHECK(degrees(turned({"left shoulder abduction=120"}, "RightClavicle")) < 1e-6);
-  // The arm itself ends where it was asked to, and the blade glides: what lies in its plane stays in it.
+  // The arm ends where it was asked to. The shoulder blade glides: the normal of its plane does not change.
   for (const auto& [word, s, side] :
        {std::tuple{std::string("left "), std::string("Left"), 1.0}, {"right ", "Right", -1.0}}) {
     const Pose pose = posed(rig, "", {word + "shoulder abduction=120"});
@@ -299,7 +297,7 @@ TEST_CASE("body poses: spine and neck share their turn, and the head ends where 
   const glm::dvec3 nose =
       posed_from_rest(rig, turned)[static_cast<std::size_t>(require_bone(rig, "Head"))].rotation * kFront;
   CHECK(degrees_between(nose, glm::dvec3(std::sin(glm::radians(60.0)), -0.5, 0)) < 0.01);
-  // Arms go with the trunk, and count from it.
+  // The arms move with the trunk, and their angles are relative to it.
   const Pose bent =
       posed(rig, "", {"spine flexion=40", "left shoulder flexion=40", "left shoulder girdle elevation=15"});
   CHECK(degrees_between(between(rig, bent, "LeftUpperArm", "LeftForearm"), -kUpwards) < 0.01);
@@ -338,7 +336,7 @@ TEST_CASE("body poses: elbow and forearm are joints of one bone, each keeps the 
   const Pose turned = posed(rig, "", {"left forearm pronation=0"});
   CHECK(degrees_between(between(rig, turned, "LeftForearm", "LeftHand"), kLeft) < 0.01);
   CHECK(degrees_between(between(rig, turned, "LeftHandIndex1", "LeftHandLittle1"), -kUpwards) < 0.01);
-  // Half of the turn is the forearm's.
+  // The forearm bone takes half of the pronation.
   CHECK(2 * std::acos(std::min(
                 1.0, std::abs(turned.rotation[static_cast<std::size_t>(require_bone(rig, "LeftForearm"))].w))) ==
         doctest::Approx(glm::radians(45.0)));
@@ -358,7 +356,7 @@ TEST_CASE("body poses: what a rig lacks or cannot tell is refused in one line") 
   for (const Bone& bone : body_rig().bones)
     if (bone.name == "LeftThigh" || bone.name == "LeftShank") legs.bones.push_back(bone);
   legs.bones[0].parent = -1, legs.bones[1].parent = 0;
-  // The root carries all: what turns it would turn the whole.
+  // The root carries the whole body, so turning it would turn everything: the request is refused.
   CHECK(refusal(legs, "", {"left hip flexion=20"}).find("use what it has: left knee") != std::string::npos);
   CHECK(refusal(legs, "", {"right knee flexion=20"}).find("no right knee") != std::string::npos);
   CHECK(refusal(legs, "", {"knee flexion=20"}).empty());
@@ -429,7 +427,7 @@ TEST_CASE("body poses: with the telephone the right palm is beside the right ear
     const auto b = static_cast<std::size_t>(require_bone(rig, bone));
     return world[b] * rig.bones[b].head;
   };
-  // The ear's opening lies beside the joint between head and neck and a little above it.
+  // The opening of the ear lies beside the joint between head and neck, a little above it.
   const glm::dvec3 ear = head_of("Head") + glm::dvec3(-78, 0, 15);
   const glm::dvec3 palm = (head_of("RightHand") + head_of("RightMiddleProximal")) / 2.0;
   CHECK(glm::distance(palm, ear) < 60);
@@ -466,7 +464,7 @@ TEST_CASE("body poses: the rigs that come with the program, hinges and all, take
 TEST_CASE("body poses: a hand whose names say no side curls its fingers into its palm") {
   const Armature hand = read_armature(LIMBER_SOURCE_DIR "/assets/rigs/hand.json");
   const Pose straight = posed(hand, "", {"hand curl=0"}), fist = posed(hand, "", {"hand curl=80"});
-  // It is a right one: its palm faces along these two.
+  // It is a right hand: its palm faces along the cross product of these two directions.
   const auto place = [&](const char* bone) {
     return hand.bones[static_cast<std::size_t>(require_bone(hand, bone))].head;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Properties that clinical angles must have whatever the rig is: reading is the inverse of setting, a mirrored body
-// reads mirrored angles, and neither place nor size of a body matters. Directions are checked against definitions that
+// Tests properties that clinical angles must have for every rig: reading is the inverse of setting, a mirrored body
+// reads mirrored angles, and position and size of a body do not matter. Directions are compared with definitions that
 // are written down by hand.
 #include "core/pose/clinical_angles.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 using enum BodyJoint;
 
-// Body rigs that rest in different ways: hanging, spread and seated, with crooked knees and elbows.
+// Returns body rigs with different rest poses: hanging, spread and seated, with crooked knees and elbows.
 std::vector<Armature> rigs() {
   const std::vector<std::vector<HandTurn>> rests = {
       {},
@@ -36,7 +36,7 @@ std::vector<Armature> rigs() {
   return all;
 }
 
-// Angles inside the usual ranges, away from the gimbal lock, for every motion that each joint has at rest.
+// Returns random angles inside the usual ranges, away from gimbal lock, for every motion that a joint has at rest.
 JointAngles random_angles(const Armature& rig, const BodyFrames& frames, std::mt19937& random) {
   JointAngles angles = clinical_angles(rig, frames, rest_pose(rig));
   for (auto& [joint, motions] : angles)
@@ -83,7 +83,7 @@ TEST_CASE("clinical angles: a body in the anatomical position reads zero, a body
   const Armature straight = body_rig();
   for (const auto& [joint, motions] : clinical_angles(straight, body_frames(straight), rest_pose(straight)))
     for (std::size_t i = 0; i < motions.size(); ++i)
-      // Thumbs and toes of this rig are not in line with the bones before them.
+      // This rig's thumbs and toes do not lie in line with the bones before them.
       if (motions[i] && joint.joint != Thumb && !is_finger(joint.joint) && joint.joint != Ankle)
         CHECK_MESSAGE(std::abs(*motions[i]) < 1e-9, name_of(joint), i);
   const Armature bent = rested(straight, {{"LeftUpperArm", {0, 1, 0}, -60},
@@ -156,7 +156,7 @@ TEST_CASE(
 
 namespace {
 
-// Returns what a pose of the rig reads after rig and pose were turned, moved and made smaller, with other rolls.
+// Returns the angles of a pose after the rig and the pose were turned, moved and scaled, and the bones' rolls changed.
 JointAngles read_moved(const Armature& rig, const Pose& pose, const glm::dquat& turn) {
   Armature other = moved(rig, turn, {300, -40, 7});
   Pose turned = pose;
@@ -182,8 +182,8 @@ TEST_CASE("clinical angles: neither place, direction, size nor the rolls of bone
     const JointAngles read = clinical_angles(rig, frames, pose);
     CHECK(largest_difference(read, read_moved(rig, pose, {1, 0, 0, 0})) < 1e-6);
     CHECK(largest_difference(read, read_moved(rig, pose, quarter)) < 1e-6);
-    // A body that is upright to within 7.5 degrees takes the axes of the world, one that lies askew its own: only
-    // bodies that both lie askew read equal angles.
+    // A body that is upright within 7.5 degrees is measured in the world's axes, a tilted one in its own. So only two
+    // tilted bodies read equal angles.
     CHECK(largest_difference(read_moved(rig, pose, askew), read_moved(rig, pose, more * askew)) < 1e-6);
   }
 }
@@ -204,7 +204,7 @@ TEST_CASE("clinical angles: one angle changes alone, and a shoulder leads its co
       if (joint.joint == Shoulder)
         *expected[{Girdle, joint.side}][2] +=
             (std::max(0.0, raise_of_arm(expected[joint]) - 30) - std::max(0.0, raise_of_arm(motions) - 30)) / 6;
-      // A shoulder's angles are relative to the trunk, but a girdle carries the arm with it.
+      // Shoulder angles are relative to the trunk, but a motion of the girdle moves the arm.
       const Pose changed = with_clinical_angle(rig, frames, pose, joint, i, asked);
       JointAngles read = clinical_angles(rig, frames, changed);
       if (joint.joint == Girdle) read[{Shoulder, joint.side}] = expected[{Shoulder, joint.side}];
@@ -253,7 +253,7 @@ TEST_CASE("clinical angles: a joint that is a hinge has one angle about its own 
   const AngleRange range = range_of_motion(rig, frames, knee, 0);
   CHECK(range.low == doctest::Approx(*at_rest[0] - glm::degrees(0.4)));
   CHECK(range.high == doctest::Approx(*at_rest[0] + glm::degrees(2.0)));
-  // Turned across the axis, it is read by all of its angles, which set it again.
+  // Once the knee turns across its hinge, all of its angles are read, and they reproduce the pose.
   pose.rotation[shank] = glm::angleAxis(0.2, glm::dvec3(0, 1, 0)) * pose.rotation[shank];
   const JointMotions across = angles_of_joint(rig, frames, pose, knee);
   REQUIRE(across[1].has_value());
@@ -270,7 +270,7 @@ TEST_CASE("clinical angles: knees and elbows lean aside, and feet turn, as their
       return out * glm::dot(posed_direction(rig, with(rig, {{joint, {0.0, 10.0, 0.0}}}), bone), left);
     };
     CHECK(aside({Knee, side}, s + "Shank") == doctest::Approx(-std::sin(glm::radians(10.0))));    // varus
-    CHECK(aside({Elbow, side}, s + "Forearm") == doctest::Approx(std::sin(glm::radians(10.0))));  // valgus
+    CHECK(aside({Elbow, side}, s + "Forearm") == doctest::Approx(std::sin(glm::radians(10.0))));  // outwards: valgus
     const Pose turned = with(rig, {{{Knee, side}, {0.0, 0.0, 20.0}}});
     const glm::dvec3 toes =
         posed_from_rest(rig, turned)[static_cast<std::size_t>(require_bone(rig, s + "Foot"))].rotation * front;
@@ -287,7 +287,7 @@ TEST_CASE("clinical angles: spread fingers leave the middle finger within the pa
     add_joint_request(angles, out > 0 ? "left hand spread=15" : "right hand spread=15", "");
     const Pose pose = with(rig, angles);
     const double wide = glm::radians(15.0);
-    // The palm faces forward (-y), the thumb is lateral.
+    // The palm faces forward (-y), with the thumb on the outer side.
     for (const auto& [finger, towards] : {std::pair{"Index1", out}, {"Ring1", -out}, {"Little1", -out}}) {
       const BodyFrames frames = body_frames(rig);
       const SidedJoint joint{finger[0] == 'I' ? Index : finger[0] == 'R' ? Ring : Little, side};
@@ -301,7 +301,7 @@ TEST_CASE("clinical angles: spread fingers leave the middle finger within the pa
     const SidedJoint thumb{Thumb, side};
     const Pose out_of_palm = with(rig, {{thumb, {std::nullopt, std::nullopt, std::nullopt, 40.0}}});
     CHECK(-posed_direction(rig, out_of_palm, hand + "Thumb1").y == doctest::Approx(std::sin(glm::radians(40.0))));
-    // A finger that is bent keeps its spread, and a spread finger its bend.
+    // Bending a finger keeps its spread, and spreading it keeps its bend.
     const Pose both = with_clinical_angle(rig, body_frames(rig), pose, {Index, side}, 0, 50);
     CHECK(angle_of(rig, both, {Index, side}, kSpread) == doctest::Approx(15));
     CHECK(angle_of(rig, both, {Index, side}, 0) == doctest::Approx(50));

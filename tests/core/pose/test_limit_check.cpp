@@ -25,7 +25,7 @@ TEST_CASE("limit check: joints without limits are never called within") {
   };
   hinge(1);
   CHECK(words() == "1 within, 1 without limits");
-  hinge(2);  // a root without limits moves the body, and is no joint
+  hinge(2);  // bone 2 is the root: without limits it does not count as a joint
   CHECK(words() == "all within");
   pose.rotation[2] = glm::angleAxis(1.5, glm::dvec3(1, 0, 0));
   CHECK(words() == "C is beyond");

@@ -25,7 +25,7 @@ TEST_CASE(
   CHECK(curled.rotation[0] == glm::dquat(1, 0, 0, 0));
   CHECK(curled.root_translation == glm::dvec3(0));
 
-  // Another rig takes what it has by its name.
+  // On another rig, bones take the rotations that the pose has for their names.
   const Armature other{{{"Lower", -1, {0, 0, 0}, {0, 0, 10}}}};
   CHECK(taken_from(all, other, rest_pose(other), {0}).rotation[0] == pose.rotation[2]);
 

@@ -50,8 +50,8 @@ void for_each_voxel(const glm::ivec3& size, const Body& body) {
       for (v.x = 0; v.x < size.x; ++v.x) body(v);
 }
 
-// A limb along z on slices of 6 mm whose thickness changes from slice to slice; every slice has its own ring of skin,
-// and its steps have none. Two bones and a hollow of air within.
+// Makes a limb along z in slices of 6 mm whose thickness changes from slice to slice. Each slice has its own ring of
+// skin, but the steps between slices have none. Inside are two bones and a hollow of air.
 LabelVolume sliced_limb() {
   LabelVolume limb{{{60, 60, 40}, {2, 2, 6}, {-60, -60, 0}, glm::dmat3(1)}, {}};
   limb.voxels = ZeroedVector<Label>(limb.grid.voxel_count());
@@ -80,8 +80,8 @@ std::int64_t count(const LabelVolume& volume, Label label) {
   return std::count(volume.voxels.begin(), volume.voxels.end(), label);
 }
 
-// Faces of flesh or bone towards outside air, told by the definition alone: air that a way through faces joins to the
-// border.
+// Counts the faces of flesh, bone and skin towards outside air, directly by the definition: air that is connected
+// through faces to the volume's border.
 struct Bare {
   std::int64_t flesh = 0, bone = 0, skin = 0;
 };
@@ -116,7 +116,7 @@ TEST_CASE("outside air: a hollow is inside, and so is a pipe that a side of the 
   CHECK(outside[volume.grid.index({0, 4, 4})]);
   CHECK_FALSE(outside[volume.grid.index({4, 4, 8})]);
   CHECK_FALSE(outside[volume.grid.index({4, 4, 4})]);
-  volume.at({4, 4, 3}) = 0;  // the pipe's other end opens
+  volume.at({4, 4, 3}) = 0;  // opens the other end of the pipe
   CHECK(outside_air(volume)[volume.grid.index({4, 4, 8})]);
 }
 
@@ -169,7 +169,7 @@ TEST_CASE("close skin: a closed skin stays closed when the limb bends, and an op
 }
 
 TEST_CASE("close skin: at the volume's border a cut stays open, and what only touches it is closed in a grown volume") {
-  // A ball that touches the low side of z, beside a post that goes through from side to side, neither with any skin.
+  // A ball touches the low side of z. Beside it a post passes through the whole volume. Neither has skin.
   LabelVolume volume{{{40, 20, 20}, glm::dvec3(2), glm::dvec3(5, 6, 7), glm::dmat3(1)}, {}};
   volume.voxels = ZeroedVector<Label>(volume.grid.voxel_count());
   for_each_voxel(volume.grid.size, [&](const glm::ivec3& v) {
@@ -190,11 +190,11 @@ TEST_CASE("close skin: at the volume's border a cut stays open, and what only to
   CHECK_FALSE(inward.is_padded);
   CHECK(inward.volume.at({10, 10, 0}) == kSkin);
   CHECK(inward.volume.at({30, 10, 0}) == kFlesh);
-  // Air around it says that the post ends.
+  // With air added around it, the post counts as ending there and is closed.
   const ClosedSkin padded = close_skin(pad(volume, 1), table(), SkinGrowth::Inward);
   CHECK(padded.volume.at({31, 11, 1}) == kSkin);
   CHECK(padded.cut == std::array<std::int64_t, 6>{});
-  // Bone at the border is a cut, whatever its shape.
+  // Bone at the border always counts as a cut.
   volume.at({10, 10, 0}) = kUpper;
   CHECK_FALSE(close_skin(volume, table(), SkinGrowth::Outward).is_padded);
 }
@@ -232,7 +232,7 @@ TEST_CASE("close skin: new skin is like the skin nearest to it, or as it is told
     });
     CHECK(wrong == 0);
     const ClosedSkin told = close_skin(limb, table(true), growth, Label{9});
-    CHECK(count(told.volume, 9) == closed.changed_voxels);  // the skins that are there stay
+    CHECK(count(told.volume, 9) == closed.changed_voxels);  // skin that was there before keeps its label
   }
   TissueTable without = table();
   std::erase_if(without.tissues, [](const Tissue& tissue) { return tissue.kind == TissueKind::Skin; });

@@ -17,8 +17,8 @@ enum class Truth { Air, Table, Fat, Soft, Lung, Gas, Bone };
 
 constexpr std::array<double, 7> kDensity = {-1000, -150, -100, 50, -750, -1000, 700};
 
-// A CT of a trunk with an arm at each side, on a thin table: fat around flesh, two lungs whose windpipe is open to the
-// outside at the neck, gas in the bowel, a spine, and an arm bone with marrow as dense as flesh.
+// A CT of a trunk with two arms on a thin table: fat around flesh, two lungs whose windpipe is open to the outside at
+// the neck, gas in the bowel, a spine, and arm bones whose marrow is as dense as flesh.
 struct Scan {
   Grid grid{{110, 80, 90}, {4, 4, 4}, {-218, -158, -178}, glm::dmat3(1)};
   std::vector<Truth> truth;
@@ -51,14 +51,16 @@ struct Scan {
     if (glm::length(glm::dvec2(p.x, p.y - 50)) < 20) return Truth::Bone;
     for (const double side : {-1.0, 1.0})
       if (ellipse(p.x - side * 55, p.y + 10, 42, 45) + (p.z - 60) * (p.z - 60) / (70.0 * 70) < 1) return Truth::Lung;
-    if (std::abs(p.x) < 20 && std::abs(p.y + 40) < 8 && p.z > 55 && p.z < 64) return Truth::Air;  // to the lungs
+    // This air connects the windpipe to the lungs.
+    if (std::abs(p.x) < 20 && std::abs(p.y + 40) < 8 && p.z > 55 && p.z < 64) return Truth::Air;
     if (glm::length(p - glm::dvec3(30, 0, -80)) < 22) return Truth::Gas;
     return Truth::Soft;
   }
   GreyLevels image() const { return grey_levels(grid, values); }
 };
 
-// Share of the voxels with this truth whose label has the name, and share of the label's voxels with this truth.
+// Returns two shares: of the voxels with this truth, those that have the named label (recall), and of the voxels with
+// this label, those that have the truth (precision).
 std::pair<double, double> found(const Scan& scan, const CtLabels& labels, Truth truth, const std::string& name) {
   double both = 0, true_ones = 0, named = 0;
   for (std::size_t i = 0; i < scan.truth.size(); ++i) {
@@ -84,7 +86,7 @@ TEST_CASE("labels of a CT: bone, lung, gas and fat are found, and the table is n
     CHECK(recall > least);
     CHECK(precision > 0.8);
   }
-  // Fat lies under the skin, which takes its outermost voxels.
+  // Fat lies under the skin, which takes the outermost voxels.
   CHECK(found(scan, labels, Truth::Fat, "Fat").first + found(scan, labels, Truth::Fat, "Skin").first > 0.9);
   double table = 0, wrong = 0, bare = 0, surface = 0;
   for (std::size_t i = 0; i < scan.truth.size(); ++i) {
@@ -93,9 +95,9 @@ TEST_CASE("labels of a CT: bone, lung, gas and fat are found, and the table is n
   }
   CHECK(wrong == 0);
   CHECK(table > 1000);
-  // The marrow of the arm is bone, although it is as dense as flesh.
+  // The marrow of the arm is labelled as bone, although it is as dense as flesh.
   CHECK(labels.tissues.find(labels.volume.at({9, 39, 45}))->name == "Bone");
-  // Skin closes the body below the windpipe: no other tissue has air at a face.
+  // Skin closes the body below the windpipe: only skin has a face towards air.
   const glm::ivec3 size = scan.grid.size;
   for (int z = 20; z < 56; ++z)
     for (int y = 1; y + 1 < size.y; ++y)
@@ -123,7 +125,7 @@ TEST_CASE("labels of a CT: what is no CT, no body or no order of thresholds is r
   const Grid grid{{20, 20, 20}, glm::dvec3(2), glm::dvec3(0), glm::dmat3(1)};
   const std::vector<float> air(8000, -1000);
   CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, air)), doctest::Contains("no body was found"), Error);
-  std::vector<float> sheet = air;  // 4 mm thick: a blanket
+  std::vector<float> sheet = air;  // 4 mm thick, like a blanket
   for (std::size_t i = 0; i < 800; ++i) sheet[3200 + i] = 40;
   CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, sheet)), doctest::Contains("no body was found"), Error);
   CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, air), {.soft = 300}), doctest::Contains("must rise"), Error);
@@ -141,8 +143,8 @@ TEST_CASE("labels of a CT: a body that reaches the borders of the image is label
 
 namespace {
 
-// An MR of a leg along z, as its magnitude shows it: bright fat around muscle of a quarter of its signal, cortical bone
-// without a signal around bright marrow, and the noise of a magnitude image (Rician) everywhere.
+// A magnitude MR image of a leg along z: bright fat around muscle with a quarter of its signal, cortical bone without
+// signal around bright marrow, and Rician noise everywhere.
 struct LegMr {
   Grid grid{{64, 64, 40}, glm::dvec3(2), glm::dvec3(0), glm::dmat3(1)};
   std::vector<float> values;
@@ -170,14 +172,14 @@ TEST_CASE("labels of a body: the histogram of an MR gives a threshold that parts
   const GreyLevels image = grey_levels(leg.grid, leg.values);
   const double threshold = body_threshold(image);
   CHECK(threshold > 40);   // the noise has a mean of 15
-  CHECK(threshold < 130);  // muscle has 150
+  CHECK(threshold < 130);  // muscle has a value of 150
   const CtLabels labels = labels_of_body(image, threshold);
   double wrong = 0;
   for (std::size_t i = 0; i < leg.is_body.size(); ++i) wrong += leg.is_body[i] != (labels.volume.voxels[i] != 0);
   CHECK(wrong < 0.01 * double(leg.is_body.size()));
-  REQUIRE(labels.tissues.tissues.size() == 2);  // skin and soft tissue: dark bone is no air
+  REQUIRE(labels.tissues.tissues.size() == 2);  // skin and soft tissue; dark bone must not become air
   CHECK(labels.tissues.find(labels.volume.at({32, 31, 20}))->name == "Soft tissue");
-  CHECK(labels.tissues.find(labels.volume.at({37, 31, 20}))->name == "Soft tissue");  // in cortical bone
+  CHECK(labels.tissues.find(labels.volume.at({37, 31, 20}))->name == "Soft tissue");  // this voxel is cortical bone
   CHECK(labels.tissues.find(labels.volume.at({54, 31, 20}))->name == "Skin");
   const ThreadCount one(1);
   CHECK(labels_of_body(image, threshold).volume.voxels == labels.volume.voxels);

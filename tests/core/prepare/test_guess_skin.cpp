@@ -9,7 +9,7 @@ namespace {
 
 constexpr Label kSheet = 1, kFlesh = 2;
 
-// A ball of flesh under a sheet, with a hollow in its middle.
+// A ball of flesh with a hollow in its middle, below a sheet.
 LabelVolume ball(double sheet) {
   LabelVolume volume;
   volume.grid.size = {40, 40, 40};

@@ -33,7 +33,7 @@ LabelVolume noise(const glm::ivec3& size, int labels, unsigned seed) {
   return volume;
 }
 
-// Concentric balls: marrow 3 inside cortex 2 inside fat 4 inside skin 1, with thin shells.
+// Makes concentric balls: marrow (3) inside cortex (2) inside fat (4) inside skin (1). Skin and cortex are thin.
 LabelVolume onion(double spacing, double skin, double cortex) {
   const int n = static_cast<int>(64 / spacing);
   LabelVolume volume = empty_volume(glm::ivec3(n), glm::dvec3(spacing));
@@ -46,7 +46,7 @@ LabelVolume onion(double spacing, double skin, double cortex) {
   return volume;
 }
 
-// Pairs of neighbours with labels a and b; by faces, or by edges and corners too.
+// Counts pairs of neighbouring voxels with labels a and b, by faces only or also by edges and corners.
 std::int64_t contacts(const LabelVolume& volume, auto is_a, auto is_b, bool corners) {
   const glm::ivec3 size = volume.grid.size;
   std::int64_t count = 0;
@@ -70,7 +70,7 @@ std::int64_t count_of(const LabelVolume& volume, Label label) {
   return std::count(volume.voxels.begin(), volume.voxels.end(), label);
 }
 
-// The share of every label in a box of old voxels, by plain integration over each of them.
+// Returns the share of each label in a box, integrated over the original voxels.
 std::map<Label, double> shares_in_box(const LabelVolume& volume, const glm::dvec3& low, const glm::dvec3& high) {
   std::map<Label, double> shares;
   const glm::ivec3 first = glm::floor(low), last = glm::ceil(high);
@@ -84,7 +84,7 @@ std::map<Label, double> shares_in_box(const LabelVolume& volume, const glm::dvec
   return shares;
 }
 
-// Every label of a volume by its world place, to compare volumes on different grids.
+// Returns each voxel's label by its world position, to compare volumes on different grids.
 std::map<std::array<long, 3>, Label> labels_by_place(const LabelVolume& volume) {
   std::map<std::array<long, 3>, Label> labels;
   const auto world = world_from_voxel(volume.grid);
@@ -100,7 +100,7 @@ std::map<std::array<long, 3>, Label> labels_by_place(const LabelVolume& volume) 
 }  // namespace
 
 TEST_CASE("regrid: where nothing thin is at stake each voxel has the label with the largest share of its box") {
-  // Two half spaces and a slab, all thicker than a voxel: nothing to close, so the vote alone decides.
+  // Two half spaces and a slab, all thicker than a voxel. No layer can tear, so the majority vote alone decides.
   LabelVolume volume = empty_volume({37, 29, 31}, {1, 1, 1});
   for (int z = 0; z < 31; ++z)
     for (int y = 0; y < 29; ++y)
@@ -155,7 +155,8 @@ TEST_CASE("regrid: layers thinner than a voxel stay closed") {
     for (const double spacing : {2.0, 2.6, 3.0, 4.0, 5.5}) {
       CAPTURE(skin);
       CAPTURE(spacing);
-      // A skin of 2 mm parts air from all else by corners too, one of 1.2 mm by faces; cortex parts marrow from fat.
+      // Skin of 2 mm separates air from the tissue also at corners, skin of 1.2 mm only at faces. Cortex separates
+      // marrow from fat.
       const LabelVolume fine = onion(1, skin, 1.2), coarse = regrid(fine, glm::dvec3(spacing));
       const bool corners = skin == 2;
       REQUIRE(contacts(fine, label_is(0), below_skin, corners) == 0);
@@ -172,7 +173,7 @@ TEST_CASE("regrid: layers thinner than a voxel stay closed") {
 }
 
 TEST_CASE("regrid: tissue that lies open in the volume stays open") {
-  // Fat 4 under skin 1, cut through: on the face of the cut fat meets air and may go on doing so.
+  // Fat (4) under skin (1) is cut through. On the cut, fat touches air, and this stays allowed.
   LabelVolume volume = empty_volume({24, 24, 24});
   for (int z = 4; z < 12; ++z)
     for (int y = 4; y < 20; ++y)
@@ -286,9 +287,9 @@ TEST_CASE("specks take the label around them, pieces that are large enough stay"
     for (int y = 2; y < 18; ++y)
       for (int x = 2; x < 18; ++x) volume.at({x, y, z}) = 1;
   volume.at({5, 5, 5}) = 2;                               // alone
-  volume.at({9, 9, 9}) = 3, volume.at({10, 10, 10}) = 3;  // two that meet at a corner
+  volume.at({9, 9, 9}) = 3, volume.at({10, 10, 10}) = 3;  // two voxels that touch at a corner
   volume.at({13, 9, 9}) = 4, volume.at({14, 9, 9}) = 4, volume.at({15, 9, 9}) = 4;
-  volume.at({0, 0, 0}) = 1;  // in air
+  volume.at({0, 0, 0}) = 1;  // a voxel in air
   const LabelVolume result = drop_specks(volume, 3);
   CHECK(result.at({5, 5, 5}) == 1);
   CHECK(count_of(result, 3) == 0);

@@ -24,7 +24,7 @@ void rename(Document& document, const std::string& bone, const std::string& name
   follow_names(document, *before, *document.armature);
 }
 
-// The largest difference of two clips' poses, over all frames of their motion.
+// Returns the largest difference between two clips' poses over all frames of their motion.
 double largest_difference(const ClipOnRig& a, const ClipOnRig& b) {
   double largest = 0;
   for (int frame = 0; frame < a.clip()->motion->frame_count; ++frame) {
@@ -54,7 +54,7 @@ TEST_CASE(
     rename(document, "LeftForearm", "lower_arm.L");
     CHECK(document.clips[0]->map.sources.empty());
     CHECK(largest_difference(before, ClipOnRig(document.clips[0], document.armature)) < 1e-12);
-    // Names that say nothing, and one that says something else.
+    // Some of the new names mean nothing, others mean another bone.
     for (const auto& [bone, name] : {std::pair{"LeftThigh", "a"},
                                      {"RightFoot", "b"},
                                      {"SpineMiddle", "c"},
@@ -97,9 +97,9 @@ TEST_CASE("bone names: keys, maps, poses of the library and pins go with their b
   CHECK(document.anchors->pins == std::set<std::string>{"Upper", "gone \xff"});
   CHECK(document.anchors->poles.begin()->first == "Upper");
   CHECK(document.locks->bones == std::set<std::string>{"Upper", "gone \xff"});
-  CHECK(document.clips[1] == before.clips[1]);  // what names no bone stays the same part
+  CHECK(document.clips[1] == before.clips[1]);  // a clip that names no bone is not copied
 
-  // And back again.
+  // The same works in the other direction.
   follow_names(document, swapped, *before.armature);
   CHECK(document.poses[0]->rotation == before.poses[0]->rotation);
   CHECK(*document.anchors == *before.anchors);
@@ -181,7 +181,7 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
   rename(renamed, "Trunk", "Chest");
   CHECK(renamed.clips[0]->constraints->list[0].target == "Chest");
   CHECK(renamed.clips[0]->constraints->list.size() == 3);
-  rename(renamed, "Chest", "Arm.R");  // the name that a constraint of no bone has
+  rename(renamed, "Chest", "Arm.R");  // a bone takes the name that a constraint without a bone refers to
   CHECK(renamed.clips[0]->constraints->list.size() == 2);
   CHECK(!renamed.clips[0]->keys.weights.contains("Old"));
 
@@ -193,7 +193,7 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
   follow_mirrored(document, rig, mirrored, {1});
   CHECK(document.clips[0]->constraints->list.size() == 2);
   CHECK(document.clips[0]->keys.weights == std::map<std::string, std::map<int, double>>{{"Aim", {{0, 0.5}, {20, 1}}}});
-  // A place goes over with the bone that it is fixed to, and stays on a bone of the other side that does not.
+  // A target position moves to the other side with the bone that it is fixed to. It stays if that bone stays.
   Document targets = before;
   Constraint from_trunk{
       .name = "A", .kind = ConstraintKind::Aim, .bone = "Trunk", .target = "Arm.L", .place{60, 5, 90}},
@@ -209,7 +209,8 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
   CHECK(over[0].axes == from_trunk.axes);
   CHECK(over[1].bone == "Arm.R");
   CHECK(over[1].place == to_leg.place);
-  // Names that say kind and bone say the new bone, with the keys of their weights. Names of the user stay.
+  // Constraint names that contain kind and bone get the new bone's name, and so do the keys of their weights. Names
+  // that the user chose stay.
   Constraint first = to_leg, second = to_leg, own = to_leg;
   first.name = "Plant Arm.L";
   second.name = "Plant Arm.L 2";
@@ -230,7 +231,7 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
     CHECK(now.clips[0]->keys.weights ==
           std::map<std::string, std::map<int, double>>{{name, {{1, 0.25}}}, {name + " 2", {{2, 0.5}}}});
   }
-  // The constraints of a trunk that does not move do the same in the mirror.
+  // Constraints of a trunk that stays work the same way in the mirror image.
   const auto after = std::make_shared<const Armature>(mirrored);
   for (const int frame : {0, 9, 20}) {
     const glm::dquat was = ClipOnRig(before.clips[0], before.armature).at(frame).rotation[1];

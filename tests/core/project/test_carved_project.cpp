@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What comes back of a project whose pages are lost. Which chunks were hit is SQLite's own word: its table `dbstat`
-// says on which pages each row lies.
+// Tests what is recovered of a project that has lost pages. SQLite's table `dbstat` tells on which page each row lies,
+// and so which chunks were hit.
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kPage = 8192;
 
-// SQLite's rows of text and blobs, without any code of ours.
+// Reads rows of text and blobs by plain SQLite, without the program's own code.
 std::vector<std::vector<std::string>> rows(const Path& path, const char* sql) {
   sqlite3* handle = nullptr;
   REQUIRE(sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK);
@@ -44,8 +44,9 @@ std::vector<std::vector<std::string>> rows(const Path& path, const char* sql) {
   return all;
 }
 
-// The pages of each chunk, by its hash: the leaf with its cell and the cell's overflow pages. A path such as
-// "/001/003+000002" is an overflow page of cell 3 of the leaf "/001/"; the cells of all leaves are the rows in order.
+// Returns the pages of each chunk by its hash: the leaf page with the chunk's cell, and the cell's overflow pages. The
+// path "/001/003+000002" names an overflow page of cell 3 in the leaf "/001/". The cells of all leaves have the order
+// of the rows.
 std::map<std::string, std::set<int>> pages_of_chunks(const Path& path) {
   const auto hashes = rows(path, "SELECT hash FROM chunk ORDER BY rowid");
   std::map<std::string, std::pair<int, int>> leaves;  // path -> page, cells
@@ -62,7 +63,7 @@ std::map<std::string, std::set<int>> pages_of_chunks(const Path& path) {
   std::map<std::string, std::set<int>> pages;
   std::size_t next = 0;
   for (const auto& [leaf, page_and_cells] : leaves) {
-    // A table that is one leaf has no slash behind its cells.
+    // If the table is a single leaf, its path does not end with a slash.
     const std::string prefix = leaf.ends_with('/') ? leaf : leaf + "/";
     for (int cell = 0; cell < page_and_cells.second; ++cell) {
       auto& of_chunk = pages[hashes.at(next++)[0]];
@@ -76,7 +77,7 @@ std::map<std::string, std::set<int>> pages_of_chunks(const Path& path) {
 
 void put_bytes(const Path& path, const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; }
 
-// A copy whose random tenth of all pages, at least one, is zeros.
+// Copies the file with a random tenth of its pages, at least one, set to zero.
 std::set<int> zero_pages(const Path& from, const Path& to, std::mt19937& random, const std::set<int>& also = {}) {
   std::string bytes = read_file(from);
   std::vector<int> all(bytes.size() / kPage);
@@ -90,8 +91,7 @@ std::set<int> zero_pages(const Path& from, const Path& to, std::mt19937& random,
   return zeroed;
 }
 
-// A body whose labels change after `run` voxels on average, so that each of its chunks of 32 slices takes several
-// pages.
+// Makes a body whose labels change after `run` voxels on average, so that each chunk of 32 slices takes several pages.
 Document rich_document(int chunks, unsigned run) {
   Document document = large_document(1);
   auto volume = std::make_shared<LabelVolume>(*document.volume);
@@ -107,7 +107,7 @@ Document rich_document(int chunks, unsigned run) {
     }
     voxel = label;
   }
-  document.weights = nullptr;  // of another volume
+  document.weights = nullptr;  // they belong to another volume
   document.seams = nullptr;
   document.volume = volume;
   const Document small = small_document();
@@ -150,7 +150,7 @@ TEST_CASE("carved project: with a tenth of its pages lost, every chunk none of w
   }
   MESSAGE(untouched, " chunks untouched, ", back, " carved, ", in_file, " in recovered projects; ", runs,
           " of 20 runs");
-  CHECK(runs >= 18);  // in the others not one chunk is whole
+  CHECK(runs >= 18);  // the other files have no whole chunk left
   CHECK(untouched > 200);
   CHECK(back == untouched);
   CHECK(static_cast<double>(in_file) >= 0.85 * static_cast<double>(untouched));
@@ -163,7 +163,7 @@ TEST_CASE("carved project: blocks of voxels that are whole come back in their pl
   const Document document = rich_document(3, 1);
   create_project({.document = document}, whole, writer);
   constexpr std::size_t kBlock = (std::size_t{1} << 20) / sizeof(Label);  // voxels of a chunk
-  // One leaf's page and one overflow page of the volume: of three blocks, one is lost.
+  // Loses one overflow page of the volume's second block, so that one of three blocks is lost.
   std::string bytes = read_file(whole);
   const auto pages = pages_of_chunks(whole);
   ChunkHash second =
@@ -202,7 +202,7 @@ TEST_CASE(
   const Document document = small_document();
   create_project({.document = document, .editor = "{}"}, whole, writer);
   const SaveMark mark = read_mark(whole);
-  // The root's own bytes are bent: where it lies, SQLite finds it by its packed beginning.
+  // Damages the root chunk. Its packed beginning tells where it lies in the file.
   const auto packed = rows(whole, "SELECT packed FROM chunk ORDER BY rowid DESC LIMIT 1");
   std::string bytes = read_file(whole);
   const std::size_t at = bytes.find(packed.at(0).at(0));
@@ -242,7 +242,7 @@ TEST_CASE("carved project: the volume it was made from, or an earlier copy, give
   const ChunkHash first = hash_of(
       {reinterpret_cast<const char*>(document.volume->voxels.data()), std::min<std::size_t>(bytes_of_volume, 1 << 20)});
   std::string bytes = read_file(whole);
-  // The beginning of the packed volume is bent.
+  // Damages the beginning of the packed volume.
   for (const auto& row : rows(whole, "SELECT hash, packed FROM chunk"))
     if (std::equal(row[0].begin(), row[0].end(), reinterpret_cast<const char*>(first.bytes.data()))) {
       const std::size_t at = bytes.find(row[1].substr(0, 200));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projects of earlier versions.
+// Tests that projects of earlier versions open.
 #include <cmath>
 #include <random>
 #include <unordered_map>
@@ -42,7 +42,7 @@ class Chunks final : public ChunkSink, public ChunkSource {
 
 namespace {
 
-// What layout 8 does not have, of the document and of its results.
+// Removes the parts of the document and of its results that layout 8 does not have.
 void drop_parts_after_8(Document& document) {
   document.measurements = nullptr;
   document.seams = nullptr;
@@ -95,8 +95,8 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // The same, without the count of poses and the flags of anchors, locks, layers, seams, bone map and measurements at
-  // its end.
+  // Layout 2 is the same without the number of poses and the flags of anchors, locks, layers, seams, bone map and
+  // measurements at its end.
   node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 6);
   node.bytes[0] = 2;
   std::vector<std::string> warnings;
@@ -246,7 +246,7 @@ TEST_CASE("project: wrong constraints are refused, far ones brought near, and we
   aim.place.x = 1e7;
   CHECK(back.constraints->list == std::vector<Constraint>{aim});
   CHECK(back.keys.weights == std::map<std::string, std::map<int, double>>{{"Aim", {{3, 0}}}});
-  // A constraint alone, with the shortest names there are.
+  // Tests a single constraint with empty names, the shortest possible.
   const Constraints shortest{{Constraint{}}};
   CHECK(*read({.name = "c", .constraints = std::make_shared<const Constraints>(shortest)}).constraints == shortest);
   const auto refused = [&](const auto& change) {
@@ -323,7 +323,7 @@ TEST_CASE("project: seams of another volume, or beside air, are left out and sai
     Document now = small_document();
     REQUIRE(now.seams);
     Seams wrong(other_grid ? now.volume->grid.size + 1 : now.volume->grid.size);
-    wrong.cut({0, 4, 4}, 0);  // air is there
+    wrong.cut({0, 4, 4}, 0);  // this face lies beside air
     now.seams = std::make_shared<const Seams>(wrong);
     Chunks chunks;
     DocumentWriter writer;

@@ -72,7 +72,7 @@ TEST_CASE("history: what is saved follows the state, not the count of edits") {
   CHECK_FALSE(history.unsaved());
   history.undo();
   CHECK(history.unsaved());
-  history.commit("c", with_pose(first, 3));  // in the saved state's place, but another one
+  history.commit("c", with_pose(first, 3));  // a new state at the saved state's position
   CHECK(history.unsaved());
   history.redo();
   CHECK(history.unsaved());
@@ -103,7 +103,7 @@ TEST_CASE("history: parts that steps share are counted once, weights by brick") 
   history.undo();
   Document named = first;
   named.tissues = std::make_shared<const TissueTable>();
-  history.commit("names", named);  // the stroke is forgotten, and its brick
+  history.commit("names", named);  // drops the stroke, and so its brick
   CHECK(history.bytes() - alone < 2048);
 }
 
@@ -112,7 +112,7 @@ TEST_CASE("history: over the limit the oldest states go, the memory stays under 
   History history(large_document(0), "Open", kLimit);
   std::mt19937 random(3);
   for (int i = 1; i <= 1000; ++i) {
-    // Mostly small edits of one volume, now and then all weights anew.
+    // Most edits are small changes of one volume; every tenth replaces all weights.
     if (i % 10 == 0) {
       Document next = history.current();
       next.weights = large_document(static_cast<std::uint32_t>(i)).weights;
@@ -132,7 +132,7 @@ TEST_CASE("history: over the limit the oldest states go, the memory stays under 
         "The " + std::to_string(history.dropped()) + " oldest steps were dropped to keep undo within 16 MB.");
   CHECK(history.steps().size() > 300);
 
-  // Adding up again what is left gives the same sum.
+  // A history made of the remaining steps counts the same memory.
   History again(history.steps()[0].document, "", std::int64_t{1} << 40);
   for (std::size_t i = 1; i < history.steps().size(); ++i) again.commit("", history.steps()[i].document);
   CHECK(again.bytes() == history.bytes());

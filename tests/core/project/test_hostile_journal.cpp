@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What may lie beside a project: journals that name other files, links, pipes; and the honest journal of a save that
-// was cut off.
+// Tests files that may lie beside a project: journals that name other files, links and pipes, and the valid journal of
+// an interrupted save.
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -40,7 +40,7 @@ std::string journal_header(std::uint32_t records, std::uint32_t pages) {
   return header;
 }
 
-// One page as it was, with SQLite's sum of every 200th byte from the end.
+// Returns the journal record of a page's old content, with SQLite's checksum: the sum of every 200th byte from the end.
 std::string journal_record(std::uint32_t page, const std::string& bytes) {
   std::uint32_t sum = 0;
   for (std::size_t at = bytes.size() - 200; at > 0 && at < bytes.size(); at -= 200)
@@ -76,7 +76,7 @@ void make_project(const Path& path, const Document& document = {}) {
   create_project({.document = document}, path, writer);
 }
 
-// A second process's connection, without any of our guards.
+// Connects like another process, without the program's own checks.
 struct PlainConnection {
   sqlite3* handle = nullptr;
   explicit PlainConnection(const Path& path) { REQUIRE(sqlite3_open(path.c_str(), &handle) == SQLITE_OK); }

@@ -19,7 +19,7 @@ using Clock = std::chrono::steady_clock;
 
 void nap() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
 
-// Until the condition holds, a minute at most.
+// Waits until the condition holds, for a minute at most.
 template <class Condition>
 bool wait_for(Jobs& jobs, History& history, const Condition& condition) {
   for (const auto start = Clock::now(); Clock::now() - start < std::chrono::minutes(1); nap()) {
@@ -169,7 +169,7 @@ TEST_CASE("job: progress tells the stage, the fraction and, when it can, the tim
   CHECK(*status.seconds_left > 2 * status.seconds);
   go = true;
   REQUIRE(finish(jobs, history));
-  CHECK_FALSE(history.can_undo());  // an empty edit
+  CHECK_FALSE(history.can_undo());  // the job's edit changed nothing
 }
 
 TEST_CASE("job: many at once, in few threads, all come to their end") {

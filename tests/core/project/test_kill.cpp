@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A session is killed at random moments, again and again, and each time goes on from what it finds.
-// LIMBER_KILLS sets how often (default 12); LIMBER_KILL_PAUSE the pause between two edits in seconds (default 0.003).
+// Kills a session at random moments, again and again, and continues each time from what is left. LIMBER_KILLS sets how
+// often (default 12), LIMBER_KILL_PAUSE the pause between two edits in seconds (default 0.003).
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -31,7 +31,7 @@ double number_from(const char* variable, double otherwise) {
   return text ? std::atof(text) : otherwise;
 }
 
-// One line an edit, written in one piece: what the user saw done, and when.
+// A line of the log, written at once for each edit: what the user saw done, and when.
 struct Done {
   int edit = 0;
   std::int64_t nanoseconds = 0;
@@ -97,7 +97,7 @@ TEST_CASE("kill: killed at any moment, a project opens whole, with all edits but
       REQUIRE(::waitpid(child, &status, 0) == child);
       if (!WIFSIGNALED(status)) {
         CHECK(status == 0);
-        break;  // it came to its end before
+        break;  // it ended before the kill
       }
 
       for (const std::string& wrong : verify_project(path)) FAIL_CHECK(wrong);

@@ -25,7 +25,7 @@ LabelVolume block(unsigned seed, const glm::ivec3& size = glm::ivec3(128, 128, 6
   return volume;
 }
 
-// The document with other labels in a small box.
+// Returns the document with other labels in a small box.
 Document painted(Document document, std::mt19937& random) {
   auto volume = std::make_shared<LabelVolume>(*document.volume);
   const glm::ivec3 low(random() % 100, random() % 100, random() % 50);
@@ -53,7 +53,7 @@ TEST_CASE("packed volumes: a hundred strokes fit in the memory of a few volumes,
   History history(now, "Open", 12 * kMb);
   std::vector<LabelVolume> expected = {*now.volume};
   for (int i = 0; i < 100; ++i) {
-    // Every third edit leaves the labels alone.
+    // Every third edit does not change the labels.
     now = i % 3 == 2 ? with_pose(now, i) : painted(now, random);
     CHECK(history.commit("edit", now));
     expected.push_back(*now.volume);
@@ -145,8 +145,8 @@ TEST_CASE("packed volumes: two long groups of strokes with a new grid between th
              history.current().volume->voxels == expected[static_cast<std::size_t>(history.position())].voxels;
     };
     int wrong = 0;
-    // From one end to the other in one jump, then step by step: what lies on the other side of the new grid is packed
-    // from both sides.
+    // Jumps from one end to the other, then steps. States on either side of the change of grid are packed relative to
+    // different volumes.
     for (const std::int64_t start : {0, 30, 5, 29, 0}) {
       history.jump(start);
       wrong += !is_expected();
@@ -169,7 +169,7 @@ TEST_CASE("packed volumes: where the changes alone fill the memory, only the old
   History history(now, "Open", 6 * kMb);
   std::vector<std::pair<std::int64_t, LabelVolume>> expected;
   for (int i = 0; i < 60; ++i) {
-    // A change of a fiftieth of the voxels, scattered, so that its record is large.
+    // Changes 2 % of the voxels, scattered, so that the record of the change is large.
     auto volume = std::make_shared<LabelVolume>(*now.volume);
     for (int k = 0; k < 20'000; ++k)
       volume->voxels[random() % volume->voxels.size()] = static_cast<Label>(random() % 9);
@@ -194,11 +194,11 @@ TEST_CASE("packed volumes: a volume that something still holds comes back as the
   std::mt19937 random(3);
   Document first;
   first.volume = std::make_shared<const LabelVolume>(block(9));
-  const auto held = first.volume;  // as a result holds what it was made from
+  const auto held = first.volume;  // a result holds the volume that it was made from
   History history(first, "Open", 6 * kMb);
   Document now = first;
   for (int i = 0; i < 20; ++i) history.commit("stroke", now = painted(now, random));
-  CHECK_FALSE(history.steps().front().document.volume);  // packed
+  CHECK_FALSE(history.steps().front().document.volume);  // it exists only in packed form
   history.jump(0);
   CHECK(history.current().volume == held);
 }

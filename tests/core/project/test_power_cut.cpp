@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The machine loses power at random moments while someone works. LIMBER_POWER_CUTS sets how often (default 20).
+// Simulates power cuts at random moments while someone works. LIMBER_POWER_CUTS sets how many (default 20).
 #include <algorithm>
 #include <cstdlib>
 #include <random>
@@ -18,7 +18,7 @@ namespace {
 
 struct PowerGone {};
 
-// The last edit that was on the disk for sure when the power went.
+// Works until the power cut. Returns the last edit that was certainly on the disk.
 int work_until_the_cut(const TemporaryFolder& folder, PowerCut& power, std::uint32_t seed) {
   int kept = 0;
   EditScript script{.edits = 60, .pause = 0.001, .seed = seed};
@@ -73,10 +73,9 @@ TEST_CASE(
                      random());
       kept = work_until_the_cut(folder, power, static_cast<std::uint32_t>(round));
       happened = power.happened();
+      // How often files are synced depends on the speed of the machine.
       if (happened) power.restore();
-      else
-        operations =
-            std::min(operations, power.operations());  // how often is synced depends on how fast the machine is
+      else operations = std::min(operations, power.operations());
     }
     if (!happened) continue;
     ++struck;
@@ -88,7 +87,7 @@ TEST_CASE(
     const Document back = list.empty() ? read_project(folder / "a.limber").document : recover(list[0].journal).document;
     CHECK(edit_of(back) >= kept);
 
-    // And one goes on from there.
+    // Work continues from the recovered project.
     run_edit_script(folder / "a.limber", {.edits_folder = folder / "state"}, {.edits = edit_of(back) + 2, .pause = 0});
     CHECK(verify_project(folder / "a.limber").empty());
   }

@@ -75,7 +75,7 @@ TEST_CASE("project: a result's overlap comes back, with a mesh or without") {
   CHECK(*back.results[0]->overlap == *result->overlap);
   CHECK_FALSE(back.results[0]->solved);
 
-  // Voxels that the posed volume lacks are no overlap of it.
+  // An overlap of voxels that the posed volume does not have is refused.
   auto beyond = std::make_shared<Result>(*result);
   beyond->overlap = std::make_shared<const Overlap>(Overlap{{std::ssize(result->volume->voxels)}, {}});
   project.document.results = {beyond};
@@ -174,7 +174,7 @@ TEST_CASE("project: what is none, is newer, cut or damaged is refused in one lin
 
   std::string newer = whole, foreign = whole;
   newer[63] = 2;      // user_version
-  foreign[71] = 'c';  // application_id
+  foreign[71] = 'c';  // a byte of application_id
   CHECK(read_copy(newer).find("newer version") != std::string::npos);
   CHECK(read_copy(foreign).find("not a Limber project") != std::string::npos);
 
@@ -187,7 +187,7 @@ TEST_CASE("project: what is none, is newer, cut or damaged is refused in one lin
     refused += !message.empty();
     CHECK(message.find('\n') == std::string::npos);
   }
-  CHECK(refused > 20);  // much of a small file is free room
+  CHECK(refused > 20);  // changes in unused parts of a small file have no effect
 }
 
 TEST_CASE("project: of a damaged one the parts that are whole can be kept, and verify names the others") {
@@ -197,7 +197,8 @@ TEST_CASE("project: of a damaged one the parts that are whole can be kept, and v
   const Project project{.document = large_document(1)};
   create_project(project, path, writer);
   std::string bytes = bytes_of_file(path);
-  for (std::size_t at = bytes.size() / 2; at < bytes.size() / 2 + 64; ++at) bytes[at] ^= 0x55;  // amid the weights
+  // These bytes lie in the middle of the weights.
+  for (std::size_t at = bytes.size() / 2; at < bytes.size() / 2 + 64; ++at) bytes[at] ^= 0x55;
   write_bytes(path, bytes);
   CHECK(message_of([&] { read_project(path); }).starts_with("the weights in the project cannot be read"));
   ReadLimits limits;
@@ -209,7 +210,7 @@ TEST_CASE("project: of a damaged one the parts that are whole can be kept, and v
   std::int64_t same = 0;
   for (std::int64_t brick = 0; brick < back.document.weights->chunk_count(); ++brick)
     same += back.document.weights->chunk(brick) == project.document.weights->chunk(brick);
-  CHECK(same >= back.document.weights->chunk_count() - 32);  // all but one group of bricks
+  CHECK(same >= back.document.weights->chunk_count() - 32);  // all but one group of 32 bricks
   CHECK(same < back.document.weights->chunk_count());
   REQUIRE(back.warnings.size() == 1);
   CHECK(back.warnings[0].find("blocks of the weights are lost: their voxels follow the bones of a block beside them") !=
@@ -282,7 +283,7 @@ TEST_CASE("project: where there is no room, and in a folder that is read-only, a
   CHECK(bytes_of_file(path) == before);
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);
 
-  // As someone who may not write there; root may write anywhere.
+  // Acts as a user who may not write there. Root may write anywhere.
   fs::permissions(folder.path(), fs::perms(0555));
   const bool root = ::geteuid() == 0;
   if (root) REQUIRE(::seteuid(65534) == 0);

@@ -43,7 +43,7 @@ std::string message_of(const std::function<void()>& work) {
   return "";
 }
 
-// What a session leaves when its process dies: its files, without the locks.
+// Copies the files that a session leaves when its process dies. The copies hold no locks.
 void copy_as_after_a_crash(const TemporaryFolder& from, const TemporaryFolder& to) {
   fs::copy(from.path(), to.path(),
            fs::copy_options::recursive | fs::copy_options::copy_symlinks | fs::copy_options::overwrite_existing);
@@ -78,14 +78,14 @@ TEST_CASE("session: what was kept is there after a crash, on top of the saved pr
     REQUIRE(session->flush(kLong));
     CHECK(session->status().kept);
     CHECK(session->status().message.empty());
-    CHECK(all_recoverable(folder / "state").empty());  // it lives
+    CHECK(all_recoverable(folder / "state").empty());  // a session that still runs is not offered
     copy_as_after_a_crash(folder, crashed);
     session->discard();
   }
   CHECK_FALSE(fs::exists(journal_path(path)));
   CHECK(fs::is_empty(folder / "state"));
 
-  // The journal names the project by its path, so the copy goes where the original was.
+  // The journal names its project by path, so the copy replaces the original files.
   fs::remove_all(folder / "state");
   copy_as_after_a_crash(crashed, folder);
   const auto list = all_recoverable(folder / "state");
@@ -116,7 +116,7 @@ TEST_CASE("session: a project that was never saved is kept too, and offered by t
     session->keep(document, "Open arm.nrrd");
     REQUIRE(session->flush(kLong));
     CHECK_FALSE(message_of([&] { session->save({.document = document}); }).empty());
-  }  // ends with unsaved edits, as after a crash
+  }  // the session ends with unsaved edits, as after a crash
   const auto list = all_recoverable(folder / "state");
   REQUIRE(list.size() == 1);
   CHECK(list[0].project.empty());
@@ -154,7 +154,7 @@ TEST_CASE(
   {
     const auto session = Session::open(path, project, no_progress(), settings_in(folder));
     session->keep(second, "Pose");
-    // Undone just before the save is done: what the first document needs is no longer in the project.
+    // The undo comes just before the save ends. The save has removed what the first document needs from the project.
     session->keep(first, "Undo");
     session->save({.document = second});
     REQUIRE(session->flush(kLong));
@@ -239,13 +239,13 @@ TEST_CASE(
   fs::remove(path);
   REQUIRE(soon([&] { return !session->status().message.empty(); }));
   CHECK(session->status().message.find("removed or replaced") != std::string::npos);
-  CHECK(same_contents(recover(journal_path(path)).document, edited));  // without the project
+  CHECK(same_contents(recover(journal_path(path)).document, edited));  // although the project is gone
 
   CHECK(session->save({.document = edited}) == "The project's file had been removed. It was written anew.");
   CHECK(session->status().message.empty());
   CHECK(same_contents(read_project(path).document, edited));
 
-  // Replaced by another: not overwritten by a save, only by save as.
+  // Another project at this path is not overwritten by a save, only by save as.
   fs::remove(path);
   DocumentWriter writer;
   create_project({}, path, writer);
@@ -353,7 +353,7 @@ TEST_CASE("session: of a project in a folder that may not be written the edits a
   create_project({.document = small_document()}, path, writer);
   for (const Path& place : {folder.path(), folder / "state"}) fs::permissions(place, fs::perms(0777));
   fs::permissions(folder / "shared", fs::perms(0555));
-  const bool root = ::geteuid() == 0;  // root may write anywhere
+  const bool root = ::geteuid() == 0;  // root may write anywhere, so nothing fails
   if (root) REQUIRE(::seteuid(65534) == 0);
   {
     Project project;

@@ -23,7 +23,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A program that stands in for the worker.
+// Writes a shell script that stands in for the worker program.
 Path script(const TemporaryFolder& folder, const std::string& text) {
   const Path path = folder / "worker";
   std::ofstream(path) << "#!/bin/sh\n" << text;
@@ -51,7 +51,7 @@ struct Seen final : Progress {
   }
 };
 
-// Running, and not merely unburied.
+// Returns true if the process runs and is not a zombie.
 bool alive(const Path& pid_file) {
   std::ifstream in(pid_file);
   pid_t id = 0;
@@ -61,7 +61,7 @@ bool alive(const Path& pid_file) {
   return stat >> number >> name >> state && state != "Z" && state != "X";
 }
 
-// An arm to be bent; at 0.8 mm that takes long and needs much memory.
+// Writes a job that bends an arm. At 0.8 mm it takes long and needs much memory.
 void write_job(const TemporaryFolder& folder, const std::string& spacing = "8") {
   REQUIRE(run_limber({"phantom", "arm", "--spacing", "8", "-o", folder.path()}).exit_code == 0);
   std::ofstream(folder / "job.json")
@@ -214,7 +214,7 @@ sleep 0.1)";
   CHECK(stages == std::vector<std::string>{"solve", kNotAnswering, "solve"});
   const std::string works = R"(for i in 1 2 3 4 5 6 7; do echo "{\"processor_seconds\": $i}" >&2; sleep 0.2; done)";
   CHECK(message_of(folder, works, {.silence_limit = 1}).empty());
-  // Beats without work are no sign of it.
+  // Repeated messages with the same processor time are no sign of work.
   const std::string waits = R"(while true; do echo '{"processor_seconds": 1.0}' >&2; sleep 0.1; done)";
   CHECK(message_of(folder, waits, {.silence_limit = 0.5}).starts_with("the worker stopped answering"));
 }
@@ -267,14 +267,14 @@ TEST_CASE("worker: a cancel ends it within a moment, also when it does not liste
   const auto asked = Clock::now();
   progress.cancel();
   waiting.join();
-  CHECK(Clock::now() - asked < std::chrono::seconds(2));  // a tenth of one on a quiet machine
+  CHECK(Clock::now() - asked < std::chrono::seconds(2));  // 0.1 s on an idle machine
   CHECK(cancelled);
   CHECK_FALSE(alive(pid));
   for (int i = 0; i < 200 && alive(child); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   CHECK_FALSE(alive(child));
   for (int i = 0; i < 200 && ::waitpid(-1, nullptr, WNOHANG) != -1; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);  // nothing unburied
+  CHECK(::waitpid(-1, nullptr, WNOHANG) == -1);  // no zombie is left
 }
 
 TEST_CASE("worker: a cancel does not wait until a busy machine has time to end one that yields" *
@@ -298,7 +298,8 @@ TEST_CASE("worker: a cancel does not wait until a busy machine has time to end o
   const auto asked = Clock::now();
   progress.cancel();
   waiting.join();
-  CHECK(Clock::now() - asked < std::chrono::milliseconds(700));  // 75 where there is room; it takes seconds to die
+  // On an idle machine this takes 75 ms. The worker itself takes seconds to end.
+  CHECK(Clock::now() - asked < std::chrono::milliseconds(700));
   over = true;
   for (std::thread& each : busy) each.join();
 }

@@ -6,7 +6,7 @@
 using namespace limber;
 
 TEST_CASE("bounded minimum: a quadratic function's minimum is found, on the bounds where it lies outside") {
-  // sum a_i (x_i - c_i)^2: each variable has its own minimum, clamped to [0, 1].
+  // Minimizes sum a_i (x_i - c_i)^2: each variable has its own minimum, clamped to [0, 1].
   const std::vector<double> a{1, 50, 3, 7, 400}, c{0.3, 1.4, -0.2, 0.999, 0.5};
   const auto function = [&](std::span<const double> x, std::span<double> gradient) {
     double sum = 0;
@@ -25,7 +25,7 @@ TEST_CASE("bounded minimum: a quadratic function's minimum is found, on the boun
 }
 
 TEST_CASE("bounded minimum: Rosenbrock's curved valley is followed to its end, or to the bound across it") {
-  // (1 - u)^2 + 100 (v - u^2)^2 with u = scale x, v = scale y: the minimum is at u = v = 1.
+  // Minimizes (1 - u)^2 + 100 (v - u^2)^2 with u = scale x, v = scale y. The minimum is at u = v = 1.
   const auto rosenbrock = [](double scale) {
     return [scale](std::span<const double> x, std::span<double> gradient) {
       const double u = scale * x[0], v = scale * x[1], bend = v - u * u;
@@ -37,7 +37,7 @@ TEST_CASE("bounded minimum: Rosenbrock's curved valley is followed to its end, o
   const BoundedMinimum inside = bounded_minimum(rosenbrock(2), {0.05, 0.9}, 500, 0, [](int) {});
   CHECK(inside.x[0] == doctest::Approx(0.5).epsilon(1e-3));
   CHECK(inside.x[1] == doctest::Approx(0.5).epsilon(1e-3));
-  // With u and v at most 0.8, v = 0.64 follows from u = 0.8.
+  // With u and v bounded by 0.8, the minimum is at u = 0.8, v = 0.64.
   const BoundedMinimum bounded = bounded_minimum(rosenbrock(0.8), {0.1, 0.9}, 500, 0, [](int) {});
   CHECK(bounded.x[0] == doctest::Approx(1).epsilon(1e-3));
   CHECK(bounded.x[1] == doctest::Approx(0.8).epsilon(1e-3));

@@ -56,7 +56,7 @@ TEST_CASE("joint motion: hips and shoulders that names tell flex, extend and abd
     REQUIRE(bone);
     const JointMotion motion = joint_motion(rig, *bone, {});
     CHECK(motion.turns.size() >= 5);
-    // The turns are about more than one axis, and none is the rest pose.
+    // The turns have different axes, and none is the rest pose.
     CHECK(std::any_of(motion.turns.begin(), motion.turns.end(), [&](const JointTurn& turn) {
       return std::abs(glm::dot(turn.axis, motion.turns[0].axis)) < 0.5;
     }));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The volumes that these tests judge are counted in resampled bodies, also at angles between those that the repair
-// itself has looked at, and never predicted.
+// Judges a repair by the voxels of resampled bodies, also at angles that the repair has not used, never by its own
+// prediction.
 #include "core/prepare/prepare.h"
 #include "core/repair/repair_joint.h"
 
@@ -47,7 +47,8 @@ Limb phantom_arm(double spacing) {
   return {std::move(phantom.volume), std::move(phantom.tissues), std::move(phantom.armature), "Forearm"};
 }
 
-//   spacing  of the volume that is used, mm; none: the file's
+// Reads a limb.
+//   spacing  resamples the volume to this spacing, mm; none: the file's spacing
 Limb shared_limb(const std::string& volume, const std::string& rig, const std::string& tissues, const std::string& bone,
                  std::optional<double> spacing = {}) {
   VolumeFile file = read_volume(shared_path(volume));
@@ -59,7 +60,7 @@ Limb shared_limb(const std::string& volume, const std::string& rig, const std::s
 }
 
 struct Counted {
-  double sum = 0;  // |skin| + |fat| + |muscle| volume change, % of the body's, by counts of voxels
+  double sum = 0;  // |skin| + |fat| + |muscle| volume change in %, by counts of voxels
   std::int64_t overlap = 0, muscle_overlap = 0;
 };
 
@@ -84,7 +85,7 @@ Counted counted(const Limb& limb, const SkinWeights& weights, double degrees, Bl
   return counted(limb, weights, pose, blend);
 }
 
-// The means over the joint's own turns.
+// Returns the means over the turns that joint_motion gives for this joint.
 Counted mean_counted(const Limb& limb, const SkinWeights& weights, Blend blend) {
   const JointMotion motion = joint_motion(limb.rig, limb.bone, {});
   Counted mean;
@@ -128,7 +129,7 @@ TEST_CASE("repair joint: a phantom's elbow keeps more of its volume, also betwee
       before += heat.sum, after += repaired.sum;
       overlap_before += heat.overlap, overlap_after += repaired.overlap;
     }
-    // The mixed blend gives flesh its volume back by itself, so that little is left to gain.
+    // The mixed blend preserves the volume of flesh by itself, so a repair gains little.
     CHECK(after < (blend == Blend::Mixed ? 1.0 : blend == Blend::Linear ? 0.8 : 0.6) * before);
     CHECK(overlap_after <= overlap_before);
   }
@@ -164,7 +165,7 @@ TEST_CASE("repair joint: one thread gives what two give, bit for bit") {
 TEST_CASE("repair joint: where nothing may change the weights come back as they were, and the sentence says so") {
   const Limb arm = phantom_arm(8);
   BoneSet others(arm.rig.bones.size(), 1);
-  others[arm.bone] = 0;  // with all others locked there is no bone that could give it weight
+  others[arm.bone] = 0;  // only the joint's bone is not locked: no other can exchange weight with it
   const JointRepair repair =
       repair_joint(arm.body(), arm.heat, arm.bone, {.range = TurnRange{0, 45}, .locked = others});
   CHECK_FALSE(repair.is_better);
@@ -200,7 +201,7 @@ TEST_CASE("repair joint: a locked bone keeps every bit of its weights") {
 
 TEST_CASE(
     "repair joint: a locked bone that holds half of the moving share leaves room, and its own bone may not be locked") {
-  // The hand takes half of the forearm's weight everywhere, so the moving share stays what it was.
+  // Gives the hand half of the forearm's weight everywhere, so the weight that moves with the joint does not change.
   Limb arm = phantom_arm(6);
   const JointRepairSettings settings{.range = TurnRange{0, 60}, .blend = Blend::DualQuaternion};
   const int hand = require_bone(arm.rig, "Hand");

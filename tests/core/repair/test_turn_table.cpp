@@ -12,10 +12,10 @@ using namespace limber;
 
 namespace {
 
-// A share that varies in all directions.
+// Returns a bone's share of the weight that varies in all directions.
 double share_at(const glm::dvec3& p) { return 0.5 + 0.3 * std::sin(0.02 * p.x + 0.01 * p.y) + 0.002 * p.z; }
 
-// The determinant of the posed point's derivatives by the rest point, by central differences of the blend itself.
+// Returns det F of the blend, by central differences.
 double volume_ratio(Blend blend, double angle, const glm::dvec3& axis, const glm::dvec3& p) {
   const std::array<RigidTransform, 2> motions{RigidTransform{}, RigidTransform{glm::angleAxis(angle, axis), {}}};
   const std::array<SkinTransform, 2> bones{skin_transform(motions[0]), skin_transform(motions[1])};

@@ -32,14 +32,14 @@ TEST_CASE("volume model: the gradient of what is minimized is that of finite dif
   const Elbow elbow;
   for (const Blend blend : {Blend::DualQuaternion, Blend::Linear, Blend::Mixed}) {
     const VolumeModel model(elbow.body, elbow.field, elbow.motion, blend, no_progress());
-    // A narrow capsule folds and overlaps, so that every part of the total has a slope.
+    // A narrow capsule folds and overlaps, so that every term of the total has a gradient.
     const std::vector<double> at =
         CapsuleShape(elbow.body, elbow.field, elbow.motion).shares({.flexor = 30, .extensor = 90});
     std::vector<double> gradient(at.size());
     const VolumeModel::Value value = model.evaluate(at, gradient);
     CHECK(value.folded > 0);
     CHECK(value.overlap > 0);
-    // Along directions that change all nodes by their place, and along the gradient.
+    // Tests directions that change all nodes by their position, and the direction of the gradient.
     for (int direction = 0; direction < 3; ++direction) {
       std::vector<double> way(at.size());
       for (std::size_t n = 0; n < way.size(); ++n) {
@@ -82,7 +82,7 @@ TEST_CASE("joint field: shares are the weights far from the joint and in bone, a
 }
 
 TEST_CASE("joint gaps: two plates that stand at an angle touch when the turn closes the angle") {
-  // Two plates of skin along rays from the joint, 60 degrees apart, 10 voxels along the axis.
+  // Makes two plates of skin along rays from the joint, 60 degrees apart, 10 voxels deep along the axis.
   LabelVolume volume;
   volume.grid.size = {90, 90, 10};
   volume.voxels.assign(volume.grid.voxel_count(), 0);
@@ -110,17 +110,18 @@ TEST_CASE("joint gaps: two plates that stand at an angle touch when the turn clo
     weights.set_chunk(b, chunk);
   }
   const WeightedBody body{volume, tissue, tissues, rig};
-  // The second plate turns towards the first one: clockwise seen from +z.
+  // Turns the second plate towards the first: clockwise, seen from +z.
   JointMotion motion{.bone = 1, .centre = centre, .turns = {{{0, 0, -1}, 0.5}}, .moving = {1}};
   const JointField field(body, weights, motion, no_progress());
   const JointGaps gaps = joint_gaps(body, field, motion, {0, 0, -1});
-  // A circle of radius r has a gap of 60 degrees less half of each plate.
+  // Along a circle of radius r the gap is 60 degrees less half of each plate's thickness.
   int between = 0;
   for (const JointGap& gap : gaps.gaps) {
     if (gap.radius < 15 || gap.radius > 35 || gap.width > 2 * gap.radius) continue;
     const double expected = gap.radius * (1.0472 - 2 * std::asin(3.0 / gap.radius));
-    CHECK(std::abs(gap.width - expected) <= gaps.step + 1);  // samples are a step apart, plates are whole voxels
-    // The moving plate comes before the gap in the sense of the turn, the still one after it.
+    // Samples are one step apart, and plates consist of whole voxels.
+    CHECK(std::abs(gap.width - expected) <= gaps.step + 1);
+    // Along the direction of the turn, the moving plate comes before the gap and the fixed plate after it.
     CHECK(field.value(gap.before, field.initial()) > 0.5);
     CHECK(field.value(gap.after, field.initial()) < 0.5);
     ++between;

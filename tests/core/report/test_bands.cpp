@@ -14,8 +14,7 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// A bar of muscle of which a part between two heights is pulled out along z by a factor; the map is known in closed
-// form.
+// A bar of muscle of which one part is stretched along z by a factor. The map is known analytically.
 struct PulledBar {
   LabelVolume rest, posed;
   ZeroedVector<glm::vec3> displacement;
@@ -30,7 +29,8 @@ struct PulledBar {
   }
 };
 
-//   begin, length  of the part, mm; what lies above moves up as a whole
+// Makes the bar.
+//   begin, length  start and length of the stretched part along z, mm; all above it moves up rigidly
 PulledBar pulled_bar(double begin, double length, double factor, const glm::dvec3& joint) {
   PulledBar bar;
   const double lift = length * (factor - 1);
@@ -81,8 +81,8 @@ TEST_CASE(
   const auto bands = bands_of(pulled_bar(140, 16, 3, {15, 15, 20}));
   REQUIRE(bands.size() == 1);
   CHECK(bands[0].stretch == doctest::Approx(3).epsilon(0.01));
-  CHECK(std::abs(bands[0].voxels - 24 * 100) <=
-        2 * 100);  // 48 mm of 2 mm slices of 10 x 10; at its ends half the steps count
+  // The band has 24 slices of 10 x 10 voxels. At its ends the stretch is only partly seen.
+  CHECK(std::abs(bands[0].voxels - 24 * 100) <= 2 * 100);
   CHECK(bands[0].mm3 == doctest::Approx(8.0 * double(bands[0].voxels)));
   CHECK(bands[0].place.z == doctest::Approx(164).epsilon(0.03));
   CHECK(std::set<std::string>{bands[0].between[0], bands[0].between[1]} == std::set<std::string>{"Lower", "Upper"});
@@ -92,7 +92,7 @@ TEST_CASE("bands: a bone far away is none of the two, though it moves as the pul
   PulledBar bar = pulled_bar(140, 16, 3, {15, 15, 20});
   const glm::dvec3 far(15, 1500, 20);
   bar.armature.bones.push_back(bone_between("Far", 0, far, far + glm::dvec3(0, 0, 40)));
-  bar.motions.push_back({{1, 0, 0, 0}, {0, 0, 16}});  // half of Upper's: half of the band moves more like it
+  bar.motions.push_back({{1, 0, 0, 0}, {0, 0, 16}});  // half of Upper's motion, so half of the band moves more like it
   const auto bands = bands_of(bar);
   REQUIRE(bands.size() == 1);
   CHECK(std::set<std::string>{bands[0].between[0], bands[0].between[1]} == std::set<std::string>{"Lower", "Upper"});
@@ -106,9 +106,9 @@ TEST_CASE("bands: the same pull around the joint that makes it is none, and neit
 
 TEST_CASE("bands: two skins that met in the pose are no band, however far apart they lay at rest") {
   PulledBar bar = pulled_bar(140, 16, 1, {15, 15, 20});
+  // All above comes from a position 40 mm aside, so that the map jumps between two slices.
   for (std::int64_t at = 0; at < std::ssize(bar.posed.voxels); ++at)
-    if (at / 256 >= 60)
-      bar.displacement[at].x += 40;  // what lies above came from elsewhere, with a jump between two slices
+    if (at / 256 >= 60) bar.displacement[at].x += 40;
   bar.motions[1].translation.x = 40;
   CHECK(bands_of(bar).empty());
 }

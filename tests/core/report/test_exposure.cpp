@@ -32,7 +32,8 @@ LabelVolume block(const glm::dvec3& spacing) {
   return volume;
 }
 
-// Distance of every voxel to the nearest outside air, asked of each, air by flooding from all faces.
+// Returns the distance from every voxel to the nearest outside air, by brute force. Outside air is flooded from all
+// faces.
 std::vector<double> depth_by_asking(const LabelVolume& volume) {
   const glm::ivec3 size = volume.grid.size;
   std::vector<char> outside(volume.voxels.size(), 0);
@@ -124,7 +125,7 @@ TEST_CASE(
 TEST_CASE("exposure: where tissue lay at rest is read from the displacement, on another grid as well") {
   const TissueTable tissues = skin_flesh_bone();
   const LabelVolume rest = block(glm::dvec3(2));
-  // A slice of the posed body that shows, as its own surface, flesh from the surface or from the middle.
+  // The posed body has two voxels of flesh at its surface, which come from the surface at rest or from its middle.
   for (const bool from_the_middle : {false, true}) {
     LabelVolume posed{{.size = {6, 6, 6}, .spacing = glm::dvec3(2)}, ZeroedVector<Label>(216)};
     ZeroedVector<glm::vec3> moved(216);
@@ -153,7 +154,7 @@ TEST_CASE("exposure: the largest pocket of air is found, and air that a channel 
   CHECK(pocket->voxels == 3);
   CHECK(pocket->place == world_from_voxel(posed.grid) * glm::dvec3(16, 13, 15));
 
-  // What was closed in at rest already is not new, also where it went along with the tissue around it.
+  // Air that was enclosed at rest is not new, even if it moved with the tissue around it.
   const JudgedPose twice{posed, posed, tissues};
   CHECK_FALSE(largest_air_pocket(twice, air_around(twice)));
   LabelVolume shifted = posed;

@@ -19,7 +19,7 @@ FemMesh flesh(TetMesh tets, const TetMaterial& material) {
   return mesh;
 }
 
-// Of a box under x -> F x + t, where every tet has the same.
+// Volume ratio and energy density of a box under x -> F x + t. They are the same in all tets.
 struct Measured {
   double J, W;
 };
@@ -30,7 +30,7 @@ Measured measured(const Eigen::Matrix3d& F, const TetMaterial& material) {
   REQUIRE(std::ssize(J) == mesh.tets.T.rows());
   for (std::size_t t = 0; t < J.size(); ++t) {
     CHECK(J[t] == doctest::Approx(J[0]).epsilon(1e-6));
-    CHECK((W[t] == W[0] || W[t] == doctest::Approx(W[0]).epsilon(1e-5)));  // infinite of inverted ones
+    CHECK((W[t] == W[0] || W[t] == doctest::Approx(W[0]).epsilon(1e-5)));  // both are infinite if tets are inverted
   }
   return {J[0], W[0]};
 }
@@ -48,7 +48,7 @@ TEST_CASE("fem measures: stretch, shear and turn have the volume ratio and the e
   shear(0, 1) = 0.7;
   const Measured sheared = measured(shear, muscle);
   CHECK(sheared.J == doctest::Approx(1));
-  CHECK(sheared.W == doctest::Approx(0.5 * 5 * 0.49).epsilon(1e-5));  // whatever the Poisson ratio
+  CHECK(sheared.W == doctest::Approx(0.5 * 5 * 0.49).epsilon(1e-5));  // independent of the Poisson ratio
   const Measured turned =
       measured(Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), muscle);
   CHECK(turned.J == doctest::Approx(1));
@@ -69,7 +69,7 @@ TEST_CASE("fem measures: tets between bones have none, and tissue outside the me
 }
 
 TEST_CASE("fem measures: the gap is the air between skins that were apart at rest, and of no tet inside") {
-  // Two boxes of 8 mm cubes, far apart at rest, then 1.5 mm.
+  // Two boxes of 8 mm cubes are far apart at rest, and 1.5 mm apart in the pose.
   const TetMesh box = kuhn_box(3, 3, 3, {0, 0, 0}, {24, 24, 24});
   TetMesh two = box;
   two.V.resize(2 * box.V.rows(), 3);
@@ -97,7 +97,7 @@ TEST_CASE("fem measures: each voxel lies in the tet whose corners are around it,
   volume.voxels.assign(volume.grid.voxel_count(), 1);
   volume.at({10, 9, 12}) = 0;
   const TissueVoxels tissue(volume);
-  // In a part of the volume, bent.
+  // The mesh fills a part of the volume and is bent.
   TetMesh mesh = test::kuhn_mesh(volume.grid, {3.2, 4.1, 5.3}, {15.7, 14.6, 20.2}, {3, 3, 4});
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) mesh.V(v, 0) += 0.01 * (mesh.V(v, 2) - 20) * (mesh.V(v, 2) - 20);
   const auto tets = tets_of_voxels(mesh.T, mesh.V, volume.grid, tissue);

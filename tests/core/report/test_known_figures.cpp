@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Figures of reports against what is known by hand, and against numpy and scipy.
+// Checks the numbers in reports against results worked out by hand, and against numpy and scipy.
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -25,8 +25,8 @@ namespace {
 constexpr Label kStays = 2, kTurns = 3;
 constexpr double kHalfTurn = std::numbers::pi;
 
-// Two boxes of 8 x 8 x 8 voxels of 1 mm, each on a bone of its own. Half a turn about z at x = `axis` takes the second,
-// at x = 24 .. 31, to x = 2 axis - 31 .. 2 axis - 24; the first lies at x = 4 .. 11.
+// Two boxes of 8 x 8 x 8 voxels of 1 mm, each on its own bone. The first lies at x = 4 to 11, the second at x = 24 to
+// 31. Half a turn about z at x = `axis` takes the second to x = 2 axis - 31 to 2 axis - 24.
 struct TwoBoxes {
   LabelVolume volume{{.size = {40, 12, 12}}, ZeroedVector<Label>(40 * 12 * 12)};
   TissueTable tissues;
@@ -86,7 +86,7 @@ TEST_CASE(
     CHECK(count(posed.overlap, 1) == 64 * slices);
     const Grid& grid = posed.volume.grid;
     for (std::int64_t i = 0; i < grid.voxel_count(); ++i) {
-      const double x = grid.origin.x + double(i % grid.size.x);  // of the voxel's centre; the grid is straight
+      const double x = grid.origin.x + double(i % grid.size.x);  // x of the voxel's centre; the grid is axis-aligned
       if (posed.overlap[i]) CHECK((x >= 12 - slices && x <= 11));
     }
   }
@@ -120,7 +120,7 @@ TEST_CASE("known figures: a torn-off piece is one more component, a hole inside 
   LabelVolume after = boxes.volume;
   for (int y = 2; y < 10; ++y)
     for (int z = 2; z < 10; ++z)
-      for (const int x : {27, 28}) after.at({x, y, z}) = 0;  // the second box in two, of 3 and 3 slices
+      for (const int x : {27, 28}) after.at({x, y, z}) = 0;  // cuts the second box into two parts of 3 slices each
   after.at({8, 5, 5}) = after.at({8, 6, 5}) = 0;             // a hole in the first
   const VolumeMetrics metrics = compare(boxes.volume, after, boxes.tissues);
   REQUIRE(metrics.tissues.size() == 2);

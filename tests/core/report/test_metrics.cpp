@@ -18,7 +18,7 @@ LabelVolume random_volume(const glm::ivec3& size, int labels, double air, unsign
   return volume;
 }
 
-// Voxels reached from `start` over voxels of its label, across faces (6) or also edges and corners (26).
+// Counts voxels of one label that steps from `start` reach, across faces (6) or also across edges and corners (26).
 std::int64_t flood(const LabelVolume& volume, std::vector<char>& seen, const glm::ivec3& start, int connectivity,
                    bool* reaches_border) {
   const Label label = volume.at(start);

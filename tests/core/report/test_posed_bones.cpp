@@ -12,8 +12,8 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// The figure's bones in a pose, each posed voxel read from where its own motion says; what moves with what is the
-// test's to say.
+// The bones of the figure in a pose. The test chooses which rig bone each part of a bone moves with, and reads each
+// posed voxel back along that motion.
 struct PosedFigure {
   Figure figure = block_figure();
   LabelVolume posed;
@@ -82,8 +82,8 @@ const WholeBone& of(const PosedBoneMeasures& bones, Label label) {
 }  // namespace
 
 TEST_CASE("posed bones: bones that went with their own rig bones are whole, and each limb points where it was asked") {
-  const PosedFigure body =
-      pose_figure({{"LeftThigh", -60}, {"LeftShank", 60}}, own_bone);  // the shank hangs as at rest
+  // The thigh turns up and the shank back, so the shank hangs as at rest.
+  const PosedFigure body = pose_figure({{"LeftThigh", -60}, {"LeftShank", 60}}, own_bone);
   const PosedBoneMeasures bones = measure_posed_bones(body.judged());
   CHECK(bones.whole.size() == 11);
   for (const WholeBone& one : bones.whole) {
@@ -93,7 +93,7 @@ TEST_CASE("posed bones: bones that went with their own rig bones are whole, and 
     CHECK(one.went_with.empty());
   }
   CHECK(of(bones, kLeftTibia).belongs_to == "LeftShank");
-  REQUIRE(bones.limbs.size() == 2);  // what does not turn is not asked
+  REQUIRE(bones.limbs.size() == 2);  // limbs that do not turn are not measured
   for (const LimbDirection& limb : bones.limbs) {
     CHECK(limb.by_name);
     CHECK(limb.direction_degrees < 1e-3);
@@ -108,7 +108,7 @@ TEST_CASE("posed bones: a bone that went whole with another rig bone is rigid, a
   const PosedBoneMeasures bones = measure_posed_bones(body.judged());
   const WholeBone& hip = of(bones, kLeftHip);
   CHECK(hip.residual_mm < 1e-3);
-  CHECK(double(hip.wrong_voxels) > 0.8 * double(hip.voxels));  // what lies at the hip's axis hardly moves
+  CHECK(double(hip.wrong_voxels) > 0.8 * double(hip.voxels));  // voxels near the hip's axis hardly move
   CHECK(hip.belongs_to == "Pelvis");
   CHECK(hip.went_with == "LeftThigh");
   CHECK(of(bones, kLeftFemur).wrong_voxels == 0);
@@ -148,7 +148,7 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
   CHECK_FALSE(bones.limbs[0].by_name);
   CHECK(bones.limbs[0].direction_degrees < 1e-3);
 
-  // The forearm's bone stayed behind.
+  // Here the forearm's bone stays behind.
   PosedFigure left = pose_figure({{"RightForearm", -40}}, [](Label label, const glm::ivec3& v) {
     return label == kRightUlna ? 4 : own_bone(label, v);
   });
@@ -159,7 +159,7 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
 TEST_CASE(
     "posed bones: where no label has a name, another bone that passes beside a limb's shaft does not turn the limb") {
   PosedFigure body = pose_figure({{"LeftThigh", -60}}, [](Label label, const glm::ivec3& v) {
-    return label == kLeftFemur && (v.x + v.y) % 3 == 0 ? 0 : own_bone(label, v);  // a third stays
+    return label == kLeftFemur && (v.x + v.y) % 3 == 0 ? 0 : own_bone(label, v);  // a third of the voxels stay
   });
   for (Tissue& tissue : body.figure.tissues.tissues) tissue.name = "bone";
   const PosedBoneMeasures bones = measure_posed_bones(body.judged());

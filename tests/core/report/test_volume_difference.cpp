@@ -29,7 +29,8 @@ TEST_CASE("volume difference: voxels with another tissue and with none there are
   fill(b, {4, 2, 2}, {6, 12, 12}, 2);
   const TissueVoxels in_a(a), in_b(b);
   const DifferingSide from_a = differing(a, in_a, b), from_b = differing(b, in_b, a);
-  CHECK(from_a.counts.at(1) == DifferingSide::Count{200, 200});  // 2 layers of 100 became tissue 2, and 2 nothing
+  // Of four layers of 100 voxels, two became tissue 2, and two became air.
+  CHECK(from_a.counts.at(1) == DifferingSide::Count{200, 200});
   CHECK(from_b.counts.at(1) == DifferingSide::Count{0, 200});
   CHECK(from_b.counts.at(2) == DifferingSide::Count{200, 0});
   CHECK(from_a.total.both() == 400);
@@ -44,7 +45,7 @@ TEST_CASE("volume difference: voxels with another tissue and with none there are
 TEST_CASE("volume difference: volumes are held against one another in the world, whatever their grids") {
   LabelVolume a = volume_of({24, 24, 24});
   fill(a, {4, 4, 4}, {12, 12, 12}, 3);
-  // The same body in a grid that begins elsewhere and runs backwards along x.
+  // The same body on a grid with another origin, whose x axis is reversed.
   LabelVolume shifted = volume_of({30, 26, 24});
   shifted.grid.origin = {26, -2, 0};
   shifted.grid.direction[0] = {-1, 0, 0};
@@ -53,12 +54,12 @@ TEST_CASE("volume difference: volumes are held against one another in the world,
       for (int x = 4; x < 12; ++x) shifted.at({26 - x, y + 2, z}) = 3;
   CHECK(differing(a, TissueVoxels(a), shifted).total.both() == 0);
   CHECK(differing(shifted, TissueVoxels(shifted), a).total.both() == 0);
-  // In voxels twice as wide: 4 of them along each axis, that cover the same box.
+  // The same box in voxels twice as wide, 4 along each axis.
   LabelVolume coarse = volume_of({12, 12, 12}, 2);
   coarse.grid.origin = glm::dvec3(0.5);
   fill(coarse, {2, 2, 2}, {6, 6, 6}, 3);
   CHECK(differing(a, TissueVoxels(a), coarse).total.both() == 0);
-  // Beyond the other grid there is air.
+  // Outside the other grid, voxels count as air.
   const LabelVolume small = volume_of({4, 4, 4});
   CHECK(differing(a, TissueVoxels(a), small).counts.at(3) == DifferingSide::Count{0, 512});
 }

@@ -13,7 +13,7 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-// The bar of two bones as a thigh and a shank whose labels name them.
+// Makes the bar with two bones as a thigh and a shank, with labels that name them.
 SmallBody named_bar() {
   SmallBody body = two_bone_bar();
   const int middle = body.volume.grid.size.z / 2;
@@ -57,7 +57,7 @@ TEST_CASE("whole bones: bones that follow their own rig bones are whole and none
 TEST_CASE("whole bones: a bone that went whole with the wrong rig bone is caught, though it is rigid") {
   const SmallBody body = named_bar();
   SmallBody swapped = body;
-  swapped.tissues.tissues[2].name = "Left femur";  // the shank's bone is bound to the thigh
+  swapped.tissues.tissues[2].name = "Left femur";  // binds the shank's bone to the thigh
   const auto bones = judged(body, swapped, 90);
   CHECK(bones[1].wrong_voxels == bones[1].voxels);
   CHECK(bones[1].went_with == "LeftThigh");

@@ -43,7 +43,7 @@ TEST_CASE("air pockets: a hollow is one, a shaft to the outside is none, and hol
   LabelVolume volume = block();
   CHECK(air_pockets(volume).empty());
   for (int x = 4; x < 7; ++x) volume.at({x, 5, 5}) = 0;
-  volume.at({7, 6, 5}) = 0;  // along an edge
+  volume.at({7, 6, 5}) = 0;  // touches the hollow by an edge only
   for (int z = 0; z < 6; ++z) volume.at({10, 8, z}) = 0;
   const auto pockets = air_pockets(volume);
   REQUIRE(pockets.size() == 2);
@@ -89,9 +89,9 @@ TEST_CASE(
   CHECK(fill_grown(posed, rest, flesh, soft).empty());
   CHECK(posed.voxels == rest.voxels);
 
-  posed.at({9, 8, 6}) = 0;  // new
+  posed.at({9, 8, 6}) = 0;  // a new pocket
   posed.at({10, 8, 6}) = 0;
-  for (int x = 3; x < 6; ++x) posed.at({x, 5, 4}) = 0;  // twice the hollow
+  for (int x = 3; x < 6; ++x) posed.at({x, 5, 4}) = 0;  // makes the hollow twice as large
   CHECK(fill_grown(posed, rest, flesh, soft).size() == 5);
   CHECK(posed.at({9, 8, 6}) == 2);
   std::int64_t hollow = 0;

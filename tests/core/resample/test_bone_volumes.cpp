@@ -15,7 +15,7 @@ namespace {
 
 constexpr Label kSpongy = 4, kMarrow = 5;
 
-// Thick bones: marrow in a layer of spongy bone, one voxel thick, in a shell of two.
+// Makes a limb with thick bones: marrow inside spongy bone of one voxel inside a shell of two voxels.
 test::BentTube layered_tube() {
   test::BentTube tube = test::bent_tube({}, 80);
   for (const auto& [label, name] : {std::pair{kSpongy, "spongy bone"}, {kMarrow, "marrow"}}) {
@@ -44,7 +44,7 @@ test::BentTube layered_tube() {
   return tube;
 }
 
-// Of the voxels of bone, those of each tissue of bone.
+// Returns the share of each bone tissue in all bone voxels.
 std::map<Label, double> shares(const LabelVolume& volume) {
   std::map<Label, double> count;
   double all = 0;
@@ -88,7 +88,7 @@ TEST_CASE(
   CHECK(keep_bone_volumes(posed, bones, rest, bones, soft, still) == 0);
   CHECK(posed.voxels == rest.voxels);
 
-  // As if moved by 0.4 of a voxel: the same voxels are nearest, but one beyond the border was read wrongly.
+  // A motion by 0.4 of a voxel keeps the nearest voxels. One voxel beyond the border is set to the wrong label.
   const RestPoint moved = [](const glm::ivec3& v) { return glm::dvec3(v) + glm::dvec3(0, 0, 0.4); };
   CHECK(keep_bone_volumes(posed, bones, rest, bones, soft, moved) == 0);
   posed.at({3, 4, 5}) = kSpongy;

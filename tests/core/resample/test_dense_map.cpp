@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What is previewed is what is resampled: the labels that the editor reads through its dense map are those that the
-// program writes.
+// Checks that the editor's preview agrees with the program's output: labels read through the dense map equal those that
+// `limber resample` writes.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -20,7 +20,7 @@ using limber::test::TemporaryFolder;
 
 namespace {
 
-// The arm with its weights, in memory and in files.
+// The phantom arm with its weights, in memory and in files.
 struct Arm {
   Phantom phantom = make_arm_phantom(3);
   TissueVoxels tissue{phantom.volume};
@@ -42,7 +42,7 @@ struct Arm {
     return pose;
   }
 
-  // What `limber resample` writes.
+  // Returns the volume that `limber resample` writes.
   LabelVolume resampled_by_program(const Pose& pose, const std::string& method, bool nearest) const {
     write_pose(pose, phantom.armature, folder / "pose.json");
     std::vector<std::string> words{"resample", folder / "volume.nrrd", "--tissues", folder / "tissues.json",
@@ -61,7 +61,7 @@ struct Arm {
     return std::move(file.volume);
   }
 
-  // How many voxels of `posed` differ from the label at the rest point that the dense map tells.
+  // Counts the voxels of `posed` whose label differs from the one at the rest point that the dense map gives.
   std::int64_t differing(const LabelVolume& posed, const Pose& pose, Blend blend, bool nearest) const {
     LabelSet bone(65536, 0), soft(65536, 1);
     std::vector<int> priority(65536, 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Posing by finite elements from a volume to a volume.
+// Tests posing by finite elements from volume to volume.
 #include "core/resample/fem_shape.h"
 
 #include <map>
@@ -31,7 +31,7 @@ struct Arm {
   }
 };
 
-// In percent, of soft tissues of at least so many voxels.
+// Returns the sum of |volume change| in %, over soft tissues of at least `voxels` voxels.
 double summed_change(const VolumeMetrics& metrics, const TissueTable& tissues, std::int64_t voxels) {
   double sum = 0;
   for (const TissueChange& change : metrics.tissues)
@@ -79,7 +79,7 @@ TEST_CASE(
   CHECK(report.dropped_voxels == 0);
   for (const auto& bone : report.bones) CHECK(bone.rigid_residual_mm < 0.01);
 
-  // By the mesh, all soft tissue: what keeps its volume is a patch of some eight tets, here of 10 mm, which spans
+  // Measures all soft tissue by the mesh. Volume is kept for each patch of about eight tets of 10 mm, which spans
   // several muscles.
   double voxels = 0, gained = 0;
   for (const Tissue& tissue : arm.phantom.tissues.tissues) {
@@ -92,7 +92,7 @@ TEST_CASE(
   }
   CHECK(std::abs(gained / voxels) < 0.5);
 
-  // By voxels.
+  // Measures each tissue by voxels.
   const double fem =
       summed_change(compare(arm.phantom.volume, by_fem.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
   const double dqs =
@@ -138,7 +138,7 @@ TEST_CASE("fem: the result is the same for 1 and 2 threads, bit for bit, of one 
 
 namespace {
 
-// A tube of 1 mm voxels, long enough to be folded onto itself.
+// Bends a tube of 1 mm voxels that is long enough to fold onto itself.
 Posed folded(double degrees, const Fem& fem) {
   const test::BentTube tube = test::bent_tube({}, 84);
   return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(degrees), fem);
@@ -198,7 +198,7 @@ TEST_CASE("fem: fingers close onto each other and the palm, and pass through nei
   CHECK(posed.report.mesh->min_det_f > 0.02);
   REQUIRE(posed.report.mesh->self_intersections);
   CHECK(*posed.report.mesh->self_intersections == 0);
-  REQUIRE(posed.report.mesh->min_gap_mm);  // they do touch
+  REQUIRE(posed.report.mesh->min_gap_mm);  // set only if parts touch
   CHECK(*posed.report.mesh->min_gap_mm < 2);
   CHECK(posed.report.new_hole_voxels == 0);
   const auto all = [](const LabelVolume& volume) {
@@ -228,10 +228,11 @@ TEST_CASE(
     CHECK(frame.report.mesh->self_intersections == 0);
     CHECK(frame.shape->model.fem.mesh.V == frames[0].shape->model.fem.mesh.V);
   }
-  CHECK((frames[2].shape->V - frames[1].shape->V).rowwise().norm().maxCoeff() < 0.6);  // two tolerances
+  // The limit in mm is twice the solver's tolerance.
+  CHECK((frames[2].shape->V - frames[1].shape->V).rowwise().norm().maxCoeff() < 0.6);
   CHECK(frames[2].report.solve->iterations <= 3);
 
-  // The last one from rest.
+  // Solves the last pose from rest, for comparison.
   const Posed direct = resample(tube.volume, tube.tissues, tube.rig, tube.weights, poses[3], fem);
   CHECK(frames[3].report.solve->iterations < direct.report.solve->iterations);
   const auto soft = [](const LabelVolume& volume) {
@@ -248,7 +249,7 @@ TEST_CASE("fem: what a later frame of a sequence presses waits for it") {
   is_bone[test::kBone] = 1;
   FemSequence sequence(tube.volume, tissue, tube.tissues, is_bone, tube.weights, tube.rig,
                        {tube.pose(55), tube.pose(110), tube.pose(165)}, {.contact = true, .spacing_mm = 6});
-  std::vector<std::map<int, double>> waiting;  // by node
+  std::vector<std::map<int, double>> waiting;  // by node: the position on the path until which it waits
   for (int leg = 0; leg < 3; ++leg) {
     const auto shape = sequence.next();
     REQUIRE(shape);

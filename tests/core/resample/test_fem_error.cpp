@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The estimated error of a solve, against solves with tets of half the edge.
+// Compares the estimated error of a solve with the difference from a solve with tets of half the edge length.
 #include "core/resample/fem_error.h"
 
 #include <cmath>
@@ -21,8 +21,8 @@ struct Case {
   double degrees, twist, tet_mm;
 };
 
-// A limb along z of 48 mm across, with a bone of 18 mm that has a gap at the joint. Normal quality has tets of 4.1 mm
-// in it, draft quality such of 6.2 mm.
+// A limb along z, 48 mm across, with two bones of 18 mm and a gap between them at the joint. Tets have 4.1 mm at normal
+// quality, 6.2 mm at draft quality.
 struct Limb {
   static constexpr int kMiddle = 14, kJoint = 35, kLength = 70;
   LabelVolume volume;
@@ -76,7 +76,7 @@ struct Limb {
   }
 };
 
-// Returns the root of the mean square of the differences over the volume at rest, mm.
+// Returns the root mean square of the differences, weighted by the volume at rest, mm.
 double rms(const FemShape& shape, const ShapeDifference& difference) {
   double squares = 0, whole = 0;
   for (std::size_t i = 0; i < difference.tet.size(); ++i) {

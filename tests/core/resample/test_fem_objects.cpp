@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rigid objects that press on an arm: a block, a table that carries the arm's weight, a cuff.
+// Tests rigid objects that press on an arm: a block, a table that carries the arm's weight, and a cuff.
 #include "core/resample/fem_objects.h"
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 struct Arm {
   Phantom phantom = make_arm_phantom(4);
   SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
-  glm::dvec3 low{INFINITY}, high{-INFINITY};  // of the tissue around the middle of the forearm, world, mm
+  glm::dvec3 low{INFINITY}, high{-INFINITY};  // bounds of the tissue around the middle of the forearm, world, mm
 
   Arm() {
     const Bone& forearm = phantom.armature.bones[require_bone(phantom.armature, "Forearm")];
@@ -54,7 +54,7 @@ TriangleMesh placed(TriangleMesh surface, const glm::dvec3& at) {
   return surface;
 }
 
-// A block that comes from the side of x and ends `depth` mm under the skin of the forearm.
+// Returns a block that comes from the side of +x and ends `depth` mm under the skin of the forearm.
 FemObject block(double depth, double newton = 0) {
   FemObject object{"block", {}, glm::dvec3(1, 0, 0)};
   const glm::dvec3 middle = (arm().low + arm().high) / 2.0;
@@ -112,7 +112,7 @@ TEST_CASE("objects: a block presses with the force that was asked for, and the p
     const ObjectReport& report = posed.report.objects.at(0);
     CHECK(posed.report.solve->converged);
     CHECK(report.pressing_n == doctest::Approx(newton).epsilon(0.01));
-    CHECK(sum_of(posed.shape->pressed) >= report.pressing_n * 0.999);  // pressures at slopes push sideways, too
+    CHECK(sum_of(posed.shape->pressed) >= report.pressing_n * 0.999);  // N; pressures on slopes also push sideways
     CHECK(sum_of(posed.shape->pressed) < report.pressing_n * 1.1);
     CHECK(report.crossings == 0);
   }
@@ -148,7 +148,7 @@ TEST_CASE("objects: a table carries the weight of the arm") {
 TEST_CASE("objects: a cuff of nine tenths of the girth tightens around the upper arm") {
   const Armature& rig = arm().phantom.armature;
   const Bone& bone = rig.bones[require_bone(rig, "UpperArm")];
-  // The cuff's axis is that of the upper arm; its radius nine tenths of the mean radius there.
+  // The cuff lies around the axis of the upper arm. Its radius is nine tenths of the arm's mean radius there.
   const glm::dvec3 middle = bone.head + 0.55 * (bone.tail - bone.head), axis = glm::normalize(bone.tail - bone.head);
   double area = 0;
   const LabelVolume& volume = arm().phantom.volume;

@@ -39,12 +39,12 @@ TEST_CASE("steps of finite elements: what is left in files is read as it was, si
   const FemStep step = small_step(mesh);
   write_fem_mesh(mesh, name);
   write_fem_step({.V = mesh.tets.V}, name);
-  write_fem_step(step, name);  // takes the former's place
+  write_fem_step(step, name);  // replaces the step before
   const auto mesh_back = read_fem_mesh(name);
   const auto step_back = read_fem_step(name);
   REQUIRE(mesh_back);
   REQUIRE(step_back);
-  CHECK(mesh_back->tets.V == mesh.tets.V);  // halves
+  CHECK(mesh_back->tets.V == mesh.tets.V);  // exact, since all coordinates are multiples of a half
   CHECK(mesh_back->tets.T == mesh.tets.T);
   CHECK(mesh_back->tets.region == mesh.tets.region);
   CHECK(mesh_back->joint == mesh.joint);
@@ -59,7 +59,7 @@ TEST_CASE("steps of finite elements: what is left in files is read as it was, si
   REQUIRE(step_back->motions.size() == 2);
   CHECK(step_back->motions[1].rotation == step.motions[1].rotation);
   CHECK(step_back->motions[1].translation == step.motions[1].translation);
-  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 2);  // nothing else is left
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 2);  // no other files are left
 }
 
 TEST_CASE("steps of finite elements: files that end early, or tell of nodes that are not there, are refused") {

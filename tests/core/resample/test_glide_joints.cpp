@@ -16,8 +16,9 @@ namespace {
 
 constexpr Label kBone = 1, kFlesh = 2;
 
-// Two bars of bone in flesh, 2 mm voxels, that meet end to end at x = 0 with a thin joint between, and a hinge in the
-// middle of their section: bending drives a corner of one into the other. A tip hangs on the second.
+// Two bars of bone in flesh, in voxels of 2 mm, that meet end to end at x = 0 with a thin joint between them. The hinge
+// lies in the middle of their section, so bending drives a corner of one bar into the other. A third bone hangs on the
+// second.
 struct Bars {
   LabelVolume volume{{.size = {61, 61, 20}, .spacing = {2, 2, 2}, .origin = {-60, -60, -20}},
                      ZeroedVector<Label>(61 * 61 * 20)};
@@ -85,7 +86,7 @@ TEST_CASE("glide: bones that a pose drives into each other come apart, and keep 
   const auto asked = posed_from_rest(bars.armature, pose), shifted = posed_from_rest(bars.armature, glided.pose);
   for (int bone = 0; bone < 3; ++bone) {
     CHECK(std::abs(glm::dot(asked[bone].rotation, shifted[bone].rotation)) == doctest::Approx(1).epsilon(1e-12));
-    // The whole chain goes along.
+    // All bones below the joint move with it.
     const glm::dvec3 expected = bone == 0 ? glm::dvec3(0) : joint.shift;
     CHECK(glm::distance(shifted[bone].translation - asked[bone].translation, expected) < 1e-9);
   }
@@ -95,7 +96,7 @@ TEST_CASE("glide: bones that a pose drives into each other come apart, and keep 
 }
 
 TEST_CASE("glide: a joint whose bones do not overlap stays as it is, bit for bit") {
-  const Bars bars(12);  // hinged at the edge that the bars bend towards
+  const Bars bars(12);  // the hinge lies at the edge towards which the bars bend
   const Pose pose = bars.bent(60);
   const GlidedPose glided = bars.glide(pose);
   CHECK(glided.joints.empty());
@@ -113,7 +114,7 @@ TEST_CASE("glide: the bound is kept, and what would need more is said to overlap
   CHECK(glm::length(glided.joints[0].shift) <= 2 + 1e-9);
   CHECK(glided.joints[0].depth_after < glided.joints[0].depth_before);
   CHECK(glided.joints[0].depth_after > 1);
-  // Without a bound in mm it is a share of the shorter bone, here that which turns.
+  // Without a bound in mm, the bound is a share of the shorter bone, here the turning one.
   CHECK(bars.glide(bars.bent(80), {.most_share = 0.1}).joints.at(0).most_mm == doctest::Approx(3));
 }
 

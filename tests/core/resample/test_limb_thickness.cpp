@@ -13,7 +13,7 @@ using namespace limber;
 
 namespace {
 
-// A straight limb along z, thick above its middle and thin below.
+// Makes a straight limb along z that is thick above its middle and thin below.
 LabelVolume two_rods(double spacing, double thick, double thin) {
   LabelVolume volume;
   volume.grid.spacing = glm::dvec3(spacing);
@@ -26,7 +26,7 @@ LabelVolume two_rods(double spacing, double thick, double thin) {
   return volume;
 }
 
-// The tube with every length times `factor`.
+// Returns the tube with every length multiplied by `factor`.
 test::BentTube scaled_tube(double factor) {
   test::BentTube tube = test::bent_tube();
   tube.volume.grid.spacing *= factor;
@@ -75,11 +75,10 @@ TEST_CASE("fem: a body of another size is meshed and posed alike") {
       differ += usual.volume.voxels[i] != other.volume.voxels[i];
     return double(differ) / double(usual.report.tissue_voxels);
   };
-  // By powers of two nothing is rounded otherwise.
+  // A scale by a power of two does not change any rounding.
   CHECK(share_that_differs(0.125) == 0);
   CHECK(share_that_differs(8) == 0);
-  // By others, points of the mesher's lattice that lie just between two voxels of this symmetric body may take the
-  // other.
+  // With other factors, a point of the mesher's lattice halfway between two voxels may be assigned to the other one.
   CHECK(share_that_differs(0.1) < 0.03);
   CHECK(share_that_differs(10) < 0.03);
 }

@@ -60,15 +60,16 @@ TEST_CASE("organ volumes: what is within its bounds stays as it is, and nobody g
   CHECK(keep_organ_volumes(block.posed, {{kOrganLabel, organ * 103 / 100}, {kMuscle, muscle}}, block.soft, block.skin)
             .empty());
   CHECK(block.posed.voxels == before.voxels);
-  // Muscle is short itself: it gives nothing.
+  // Muscle itself is below its volume, so it gives no voxels.
   keep_organ_volumes(block.posed, {{kOrganLabel, organ * 2}, {kMuscle, muscle * 100 / 95}}, block.soft, block.skin);
   CHECK(block.count(kMuscle) >= muscle - 1);
 }
 
 TEST_CASE("organ volumes: a crumb stays a crumb") {
   Block block(6);
+  // These 8 voxels are not connected to the rest of the organ.
   for (int x = 8; x < 12; ++x)
-    for (int y = 8; y < 10; ++y) block.posed.at({x, y, 8}) = kOrganLabel;  // 8 voxels apart from the rest
+    for (int y = 8; y < 10; ++y) block.posed.at({x, y, 8}) = kOrganLabel;
   const std::int64_t organ = block.count(kOrganLabel), muscle = block.count(kMuscle);
   keep_organ_volumes(block.posed, {{kOrganLabel, organ * 2}, {kMuscle, muscle}}, block.soft, block.skin);
   std::int64_t near = 0;

@@ -25,7 +25,7 @@ struct Arm {
   }
 };
 
-// Of the voxels that hold tissue, some dozens.
+// Returns every 37th voxel centre that holds tissue as a landmark.
 std::vector<Landmark> points_in(const VolumeFile& file) {
   const AffineTransform to_world = world_from_voxel(file.volume.grid);
   std::vector<Landmark> points;
@@ -82,10 +82,11 @@ TEST_CASE(
     for (size_t i = 1; i < 5; ++i)
       CHECK(glm::distance(posed[order[0]].position, posed[order[i]].position) ==
             doctest::Approx(glm::distance(points[order[0]].position, points[order[i]].position)).epsilon(1e-6));
-    CHECK(at_home > 0.8 * double(points.size()));  // in the tissue that it was in; voxels are coarse
+    // Most landmarks lie in the tissue that they were in at rest; the voxels are coarse.
+    CHECK(at_home > 0.8 * double(points.size()));
   }
 
-  // The mesh has organ numbers that its list of materials explains, element by element.
+  // The tets have organ numbers that the list of materials explains.
   std::ifstream tets(arm.folder / "tets.ele"), materials(arm.folder / "tets.material"), nodes(arm.folder / "tets.node");
   int count = 0, four = 0, one = 0, index = 0, corner = 0, organ = 0;
   std::vector<int> organs;

@@ -34,7 +34,7 @@ LabelVolume block_with_strand() {
   return volume;
 }
 
-// The strand's slices first .. last become `label`.
+// Sets the slices `first` to `last` of the strand to `label`.
 void cut(LabelVolume& volume, int first, int last, Label label) {
   for (int z = first; z <= last; ++z)
     for (int y = 5; y <= 7; ++y)
@@ -85,7 +85,7 @@ TEST_CASE("connectivity: pieces that were apart at rest, or lie too far apart, s
   };
   CHECK(preserve_connectivity(posed, rest, soft(), carried_apart) == 0);
 
-  // Two strands at rest, and one piece more that comes from elsewhere.
+  // At rest there are two strands. The posed volume has one more piece, which comes from elsewhere.
   cut(rest, 11, 11, kFlesh);
   posed = rest;
   for (int z = 3; z < 10; ++z)
@@ -101,7 +101,7 @@ TEST_CASE("connectivity: a strand that fell between the voxels' centres is trace
   const LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   cut(posed, 9, 14, kFlesh);
-  // It came to lie a voxel beside the centres: they all come from what is right beside it.
+  // The strand lies a voxel beside the voxels' centres, so all of them read what is beside it.
   const auto beside = [](const glm::ivec3& v) {
     return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 14 ? 2 : 0, 0, 0);
   };
@@ -118,14 +118,14 @@ TEST_CASE("connectivity: bridges take neither bone, nor what lies beside air, no
   CHECK(mend_in_place(posed, rest) == 0);
   CHECK(posed.voxels == walled.voxels);
 
-  // The wall leaves only the outermost layer, which lies beside air.
+  // Only the outermost layer is not bone, but it lies beside air.
   for (int y = 1; y < 12; ++y)
     for (int x = 1; x < 12; ++x)
       if (x == 1 || x == 11 || y == 1 || y == 11) walled.at({x, y, 11}) = kFlesh;
   posed = walled;
   CHECK(mend_in_place(posed, rest) == 0);
 
-  // The only way is a hole in the wall, filled by a thin thread of another tissue that crosses it.
+  // Now a hole in the wall is open, but it is filled by a thin thread of another tissue, which a bridge would split.
   constexpr Label kThread = 4;
   for (int z = 8; z < 15; ++z) walled.at({6, 6, z}) = kThread;
   posed = walled;
@@ -160,7 +160,7 @@ TEST_CASE(
 
 namespace {
 
-// Two marrows in one block of hard bone, a wall of one voxel between them, flesh around.
+// Two pieces of marrow in one block of hard bone, with a wall of one voxel between them and flesh around.
 constexpr Label kShell = 3, kMarrow = 5;
 
 LabelVolume bone_with_two_marrows() {
@@ -215,7 +215,7 @@ TEST_CASE(
   for (int z = 13; z < 15; ++z)
     for (int y = 5; y < 10; ++y)
       for (int x = 5; x < 10; ++x) rest.at({x, y, z}) = kShell;
-  REQUIRE(parts(rest, kMarrow) == 2);  // of 125 and 50
+  REQUIRE(parts(rest, kMarrow) == 2);  // of 125 and 50 voxels
   for (const int rows : {1, 4}) {
     LabelVolume posed = rest;
     for (int y = 5; y < 5 + rows; ++y)
@@ -234,7 +234,7 @@ TEST_CASE("connectivity: bone tissue that the grid made large enough to count gi
     for (int y = 5; y < 10; ++y)
       for (int x = 5; x < 10; ++x) rest.at({x, y, z}) = kShell;
   for (int x = 5; x < 8; ++x) rest.at({x, 5, 12}) = kShell;
-  REQUIRE(parts(rest, kMarrow) == 1);  // of 125 and 47
+  REQUIRE(parts(rest, kMarrow) == 1);  // of 125 voxels; the other piece, of 47, is too small to count
   LabelVolume posed = rest;
   for (int x = 5; x < 10; ++x) posed.at({x, 5, 12}) = kMarrow;
   REQUIRE(parts(posed, kMarrow) == 2);
@@ -248,7 +248,7 @@ TEST_CASE("connectivity: a small bone that lost a few voxels takes them back fro
   LabelVolume rest = tissue;
   for (Label& label : rest.voxels) label = 0;
   cut(tissue, 8, 13, kHard);
-  cut(rest, 8, 13, 9);  // 54 voxels
+  cut(rest, 8, 13, 9);  // a small bone of 54 voxels
   LabelVolume posed = rest;
   cut(tissue, 13, 13, kFlesh);
   cut(posed, 13, 13, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Poses that no one asked for, of bodies that no one has: nothing may crash, hang, or come out inverted or without a
-// number, and what cannot be reached says why. LIMBER_RANDOM_POSES=300 runs so many; LIMBER_RANDOM_POSE=7 that one
-// alone, with both from it on.
+// Solves random poses of random bodies. Nothing may crash, hang, invert or yield numbers that are not finite, and a
+// pose that is not reached must state a reason. LIMBER_RANDOM_POSES=300 runs 300 poses, LIMBER_RANDOM_POSE=7 runs pose
+// 7 only, and with both the run starts at 7.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -44,7 +44,7 @@ struct Case {
   Fem fem;
 };
 
-// Of ten: six trees of tubes, two of the procedural arm with its hand, two of the whole body.
+// Of ten cases, six are trees of tubes, two the procedural arm with its hand, two the whole body.
 class Cases {
  public:
   Case at(unsigned seed) {
@@ -93,7 +93,7 @@ void check_shape(const FemShape& shape, const Fem& fem) {
   CHECK(solve.converged == solve.blocked_by.empty());
   CHECK(solve.bone_drift_mm <= std::max(2.0, *fem.spacing_mm / 2) + 1e-9);
   if (solve.converged)
-    CHECK(solve.residual_mm < 0.9);  // of the few nodes that have not settled; all others are below 0.3
+    CHECK(solve.residual_mm < 0.9);  // mm, of the few nodes that still move; all others are below 0.3
 }
 
 void check_volume(const Posed& posed, const Body& body) {
@@ -131,7 +131,7 @@ TEST_CASE("random poses: finite elements never crash, hang or invert, and say wh
       posed = resample(random.body->volume, random.body->tissues, random.body->rig, random.body->weights, random.pose,
                        random.fem);
     } catch (const Error& error) {
-      // Tets larger than all that moves: the one thing that is refused.
+      // The only refusal: tets larger than all that moves.
       CHECK(std::string(error.what()).find("no bone that moves is as large") != std::string::npos);
       ++refused;
       continue;

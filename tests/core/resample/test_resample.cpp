@@ -57,7 +57,7 @@ TEST_CASE("resample: a bent limb keeps every voxel, has no holes, and its bones 
 
 TEST_CASE("resample: skin of one voxel stays closed over a bent limb, and bare tissue stays bare") {
   test::BentTube tube = test::bent_tube();
-  for (glm::ivec3 v(0); v.z < tube.volume.grid.size.z; ++v.z)  // cut open on one side
+  for (glm::ivec3 v(0); v.z < tube.volume.grid.size.z; ++v.z)  // removes the skin on one side
     for (v.x = 0, v.y = 12; v.x < 11; ++v.x)
       if (tube.volume.at(v) == test::kSkin) tube.volume.at(v) = test::kFat;
   for (const Method& method : kMethods)
@@ -166,7 +166,8 @@ TEST_CASE("resample: a hollow that a bend would enlarge keeps its size, and what
         if (result.volume.at(v) == 0) continue;
         const glm::dvec3 rest = voxel_from_world(tube.volume.grid) * (world_from_voxel(grid) * glm::dvec3(v) -
                                                                       glm::dvec3(result.displacement[grid.index(v)]));
-        bool near_tissue = false;  // rest points on the tissue's border round to either side
+        // A rest point on the tissue's border may round to either side.
+        bool near_tissue = false;
         for (int corner = 0; corner < 8; ++corner)
           near_tissue |= tube.volume.at_or_air(glm::ivec3(glm::floor(rest)) +
                                                glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)) != 0;

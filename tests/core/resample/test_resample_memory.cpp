@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How much memory `limber resample` takes. The body is a plate that lies across the rows of a wide grid, mostly air. In
-// rows, its few voxels fill all pages of a volume; in tiles, hardly more pages than tissue.
+// Measures the memory of `limber resample`. The body is a plate across the rows of a wide grid that is mostly air.
+// Stored by rows, its few voxels would touch every page of a volume; stored by tiles, hardly more pages than it fills.
 #include <algorithm>
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr glm::ivec3 kSize{1600, 150, 150};
 constexpr int kJoint = kSize.z / 2;
 
-// A plate of flesh in skin around a core of bone, which is interrupted at the joint.
+// Makes a plate of flesh in skin around a core of bone that is interrupted at the joint.
 LabelVolume plate() {
   LabelVolume volume{{.size = kSize}, ZeroedVector<Label>(std::size_t(kSize.x) * kSize.y * kSize.z)};
   constexpr int kMiddle = kSize.x / 2, kHalf = 12, kHalfBone = 4;
@@ -44,7 +44,7 @@ Armature two_bones() {
   return rig;
 }
 
-// Weights that pass from one bone to the other within some voxels of the joint.
+// Returns weights that change from one bone to the other within some voxels of the joint.
 SkinWeights weights_of(const TissueVoxels& tissue) {
   SkinWeights weights({"Lower", "Upper"}, tissue);
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
@@ -86,6 +86,6 @@ TEST_CASE("resample: of a volume's size, only the rest volume and the posed volu
   REQUIRE(run.exit_code == 0);
   const LabelVolume posed = read_volume(folder / "posed.nrrd").volume;
   const auto voxels = double(volume.grid.voxel_count() + posed.grid.voxel_count());
-  // The labels of both volumes take two bytes a voxel; the rest of the program takes the other half byte.
+  // The labels of both volumes take two bytes a voxel, all other memory at most 0.6 bytes.
   CHECK(run.peak_mb * 1048576 / voxels < 2.6);
 }

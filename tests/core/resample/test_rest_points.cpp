@@ -11,7 +11,7 @@ namespace {
 
 const VoxelRange kOutput{{-5, 3, 10}, {94, 82, 59}};  // two tiles along each axis
 
-// Every third voxel is tissue, every seventh of those bone alone; a slab of tiles has none.
+// Fills the map: every third voxel is tissue, every seventh of those bone; the tiles from z = 55 on hold none.
 void trace(InverseMap& map, const VoxelRange& range) {
   map.reset(range);
   glm::ivec3 v;
@@ -28,7 +28,7 @@ void trace(InverseMap& map, const VoxelRange& range) {
       }
 }
 
-// Of all voxels of the output.
+// Returns the rest points of all voxels of the output.
 std::vector<glm::dvec3> all_of(RestPoints& points) {
   std::vector<glm::dvec3> all;
   const glm::ivec3 size = kOutput.high - kOutput.low + 1;

@@ -17,8 +17,8 @@ LabelSet set_of(std::initializer_list<Label> labels) {
   return set;
 }
 
-// A pole of bone in flesh on slices of 6 mm; each slice has skin around it but for one side, where flesh is bare, and
-// in the outermost corner bone is.
+// A bar of bone in flesh, in slices of 6 mm. Each slice has skin on three sides. On the fourth side flesh is bare, with
+// one voxel of bone at the surface.
 LabelVolume open_body() {
   LabelVolume volume;
   volume.grid.size = {24, 24, 10};
@@ -52,7 +52,7 @@ TEST_CASE("skin at rest: of a body with open skin bone that lay deep inside was 
 TEST_CASE("posed skin: bone that came to the air gets skin over it where skin is near, walls of enclosed air stay") {
   LabelVolume posed = open_body();
   const LabelSet flesh = set_of({kFlesh}), bone = set_of({kBone}), skin = set_of({kSkin});
-  posed.at({2, 10, 4}) = kBone;  // through the skin
+  posed.at({2, 10, 4}) = kBone;  // bone that breaks through the skin
   posed.at({12, 17, 4}) = 0;     // air that the body encloses
   std::vector<UnderSkin> under{{posed.grid.index({2, 10, 4}), 0}, {posed.grid.index({12, 18, 4}), 0}};
   std::vector<glm::ivec3> was_air;

@@ -58,7 +58,7 @@ std::map<Label, std::int64_t> soft_counts(const LabelVolume& volume) {
           {kVessel, count(volume, kVessel)}};
 }
 
-// Every voxel at a border may change; that of a pair (x + y) % 4 costs as much.
+// Returns a move for every voxel at a border, with a cost that depends on (x + y) % 4.
 std::vector<BorderMove> border_moves(const LabelVolume& volume) {
   const Sets sets;
   std::vector<BorderMove> moves;
@@ -82,7 +82,8 @@ std::vector<BorderMove> border_moves(const LabelVolume& volume) {
   return moves;
 }
 
-// Nothing but air and skin at the surface, whole tissues, no air inside, and the bone as it was.
+// Checks that only skin touches air, that tissues keep their number of parts, that no air is enclosed, and that bone is
+// unchanged.
 void check_sound(const LabelVolume& before, const LabelVolume& after) {
   const LabelCensus was = take_census(before), is = take_census(after);
   for (Label label = 1; label <= kBone; ++label) {
@@ -129,7 +130,7 @@ TEST_CASE("tissue volumes: tissues that do not touch exchange through the one be
   wanted[kMuscle] += 40;
   wanted[kFat] -= 10;
   LabelVolume after = before;
-  CHECK(keep(after, wanted).missing.empty());  // 30 come from air, through skin and fat
+  CHECK(keep(after, wanted).missing.empty());  // 30 voxels come from air, handed on through skin and fat
   CHECK(soft_counts(after) == wanted);
   check_sound(before, after);
 }
@@ -208,7 +209,7 @@ TEST_CASE("mass-exact: the same for 1 and 2 threads, nothing at rest, refused wh
   };
   CHECK(posed(25, 1) == posed(25, 2));
   CHECK(posed(0, 1) == tube.volume.voxels);
-  // A body that turns as a whole loses nothing but what the grid takes, and gets that back.
+  // A body that turns as a whole only loses voxels by the grid's rounding, and gets them back.
   Pose turned = rest_pose(tube.rig);
   turned.rotation[0] = glm::angleAxis(0.5, glm::normalize(glm::dvec3(1, 2, 3)));
   const LabelVolume whole =

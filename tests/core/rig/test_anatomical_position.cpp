@@ -19,7 +19,7 @@ int joint(const std::string& name) {
   return static_cast<int>(std::find(all.begin(), all.end(), name) - all.begin());
 }
 
-// An arm in any orientation whose elbow rests bent by so many degrees.
+// Makes an arm in any orientation whose elbow rests bent by `degrees`.
 Armature bent_arm(double degrees, const glm::dquat& turned) {
   const glm::dvec3 elbow = turned * glm::dvec3(0, 0, -300);
   const glm::dvec3 wrist =
@@ -43,7 +43,7 @@ TEST_CASE("anatomical zero: an elbow that rests bent straightens to 0 and bends 
   std::normal_distribution<double> normal;
   for (const double rest : {0.0, 20.0, 61.5, 120.0})
     for (int i = 0; i < 10; ++i) {
-      // Straight, only an arm that hangs tells where its elbow bends to.
+      // A straight elbow shows its bending direction only if the arm hangs.
       const glm::dquat turned =
           rest == 0 ? glm::dquat(1, 0, 0, 0)
                     : glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
@@ -73,7 +73,7 @@ TEST_CASE("anatomical zero: a hinge whose axis runs the other way round is turne
   rig.bones[1].limits = usual;
   rig.bones[1].limits.axis = -usual.axis;
   CHECK(usual_limits(rig, 1, joint("Elbow")).axis == usual.axis);
-  // Rest beyond the range stays allowed.
+  // If the rest pose lies beyond the range, the range is extended to it.
   rig = bent_arm(160, {1, 0, 0, 0});
   CHECK(usual_limits(rig, 1, joint("Elbow")).maximum == 0);
 }
@@ -91,7 +91,7 @@ TEST_CASE("anatomical zero: hinges of the procedural rigs reach from straight to
       if (limits.type != JointLimits::Type::Hinge || usual_joints()[*joints[b]] == "Toes") continue;
       INFO(rig.bones[b].name);
       ++hinges;
-      // Seen along the axis, straightened by what the rig rests at, the bone goes on where its parent points.
+      // Projected along the axis and turned back by its rest angle, the bone continues the direction of its parent.
       const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, limits.axis) * limits.axis; };
       const double at_rest = hinge_angle_at_rest(with, b, limits.axis);
       const glm::dvec3 straight = across(glm::angleAxis(-at_rest, limits.axis) * along(rig.bones[b]));
@@ -108,12 +108,13 @@ TEST_CASE(
   rig.bones.push_back({"Hips", -1, {0, 0, 0}, {0, 0, 100}, 0, {}});
   rig.bones.push_back({"Spine", 0, {0, 0, 100}, {0, 0, 400}, 0, {}});
   rig.bones.push_back({"Neck", 1, {0, 0, 400}, {0, -30, 480}, 0, {}});
-  rig.bones.push_back({"LeftArm", 1, {150, 0, 380}, {450, 0, 380}, 0, {}});  // a T pose
+  rig.bones.push_back({"LeftArm", 1, {150, 0, 380}, {450, 0, 380}, 0, {}});  // T-pose
   rig.bones.push_back({"LeftForeArm", 3, {450, 0, 380}, {700, 0, 380}, 0, {}});
   rig.bones.push_back({"LeftHand", 4, {700, 0, 380}, {790, 0, 330}, 0, {}});
-  rig.bones.push_back({"LeftUpLeg", 0, {90, 0, 0}, {90, -400, 0}, 0, {}});  // sits
+  rig.bones.push_back({"LeftUpLeg", 0, {90, 0, 0}, {90, -400, 0}, 0, {}});  // sitting
   rig.bones.push_back({"LeftLeg", 6, {90, -400, 0}, {90, -400, -400}, 0, {}});
-  rig.bones.push_back({"LeftFoot", 7, {90, -400, -400}, {90, -520, -440}, 0, {}});  // slopes to the toes by 18 degrees
+  // This foot slopes down to the toes by 18 degrees.
+  rig.bones.push_back({"LeftFoot", 7, {90, -400, -400}, {90, -520, -440}, 0, {}});
   const auto swing = [&](const std::string& name, BodyPart part) {
     return glm::degrees(ball_swing_at_rest(rig, *rig.find(name), part));
   };
@@ -122,14 +123,14 @@ TEST_CASE(
   CHECK(glm::length(swing("LeftHand", BodyPart::Hand)) == doctest::Approx(glm::degrees(std::atan2(50.0, 90.0))));
   CHECK(swing("LeftFoot", BodyPart::Foot) == glm::dvec3(0));
   CHECK(swing("Neck", BodyPart::Neck) == glm::dvec3(0));
-  // Of 180 degrees of lifting the arm 90 are left upwards, and it may hang.
+  // Of the 180 degrees by which an arm can be raised, 90 are left upwards, and 90 lead down to hanging.
   CHECK(glm::degrees(usual_limits(rig, 3, joint("Shoulder")).cone) == doctest::Approx(90));
-  // Of 120 of the hip 30 are left, but the thigh may be straightened.
+  // Of the hip's 120 degrees, 30 are left, but the 90 that straighten the thigh need a cone of 90.
   CHECK(glm::degrees(usual_limits(rig, 6, joint("Hip")).cone) == doctest::Approx(90));
   CHECK(glm::degrees(usual_limits(rig, 7, joint("Knee")).minimum) == doctest::Approx(-90));
   rig.bones[8].tail = {90, -480, -540};  // on tiptoe
   CHECK(glm::length(swing("LeftFoot", BodyPart::Foot)) == doctest::Approx(glm::degrees(std::atan2(140.0, 80.0))));
-  // Without a trunk nothing tells where an arm hangs.
+  // Without a trunk, the direction of a hanging arm is unknown.
   CHECK(ball_swing_at_rest(bent_arm(60, {1, 0, 0, 0}), 0, BodyPart::UpperArm) == glm::dvec3(0));
 }
 

@@ -58,7 +58,7 @@ TEST_CASE("edited rigs: a turned bone takes its axes and its hinge along") {
   const glm::dvec3 along = glm::normalize(next.bones[2].tail - head);
   CHECK(std::abs(glm::dot(next.bones[2].limits.axis, along) -
                  glm::dot(rig.bones[2].limits.axis, glm::normalize(rig.bones[2].tail - head))) < 1e-12);
-  // A shift turns nothing.
+  // A translation does not turn the axes.
   const Armature shifted =
       with_moved_ends(rig, {{2, false}, {2, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(1, 2, 3); });
   CHECK(shifted.bones[2].limits == rig.bones[2].limits);
@@ -86,13 +86,12 @@ TEST_CASE("edited rigs: a gap is filled by a bone that hangs on the first and ca
   CHECK(parent_of(chain, "Hand") == "Fore.L.001");
   CHECK(is_connected(chain, require_bone(chain, "Hand")));
   CHECK(is_connected(chain, require_bone(chain, "Fore.L.001")));
-  // Between two bones of one tree, tail to tail, nobody hangs on the new one; from a head it hangs where that one
-  // hangs.
+  // A bone from tail to tail within one tree gets no children. A bone that starts at a head gets that bone's parent.
   const Armature across = filled(rig, {2, true}, {4, true});
   CHECK(across.bones.back().tail == rig.bones[4].tail);
   CHECK(parent_of(across, "Fore.R") == "Arm.R");
   CHECK(parent_of(filled(rig, {5, false}, {2, true}), "Hand.001").empty());
-  // A root is not hung on its own child.
+  // A root does not become the child of its own child.
   CHECK(parent_of(filled(rig, {2, true}, {0, false}), "Trunk").empty());
   CHECK_THROWS_AS(filled(rig, {1, true}, {2, false}), Error);
 }
@@ -112,11 +111,11 @@ TEST_CASE("edited rigs: a dissolved bone leaves the chain whole") {
   const Armature next = dissolved(rig, {2});
   CHECK(next.bones.size() == 4);
   CHECK(named(next, "Arm.L").tail == named(rig, "Fore.L").tail);
-  // The trunk's end stays, where the other arm hangs on it.
+  // The trunk's tail stays, since the other arm is attached to it.
   const Armature shoulder = dissolved(rig, {1});
   CHECK(named(shoulder, "Trunk").tail == named(rig, "Trunk").tail);
   CHECK(parent_of(shoulder, "Fore.L") == "Trunk");
-  // A run of bones hands on its last end.
+  // When several bones are dissolved, the tail of the last one remains.
   const Armature longer = extruded(rig, {2, true}, {150, -10, 80});
   CHECK(named(dissolved(longer, {2, 5}), "Arm.L").tail == glm::dvec3(150, -10, 80));
 }
@@ -192,12 +191,12 @@ TEST_CASE("edited rigs: what is done on one side happens on the other in the mir
   const Armature both = with_mirrored_changes(rig, after);
   CHECK(glm::distance(named(both, "Fore.R").tail, named(both, "Fore.L").tail * glm::dvec3(-1, 1, 1)) < 1e-9);
   CHECK(named(both, "Arm.R") == named(rig, "Arm.R"));
-  // What was moved on both sides keeps what was done there.
+  // Bones that were moved on both sides keep both changes.
   const Armature own =
       with_moved_ends(rig, {{2, true}, {4, true}}, [](const glm::dvec3& p) { return p + glm::dvec3(5, 6, 7); });
   CHECK(with_mirrored_changes(rig, own) == own);
 
-  // What grows on one side grows on the other.
+  // A bone that is added on one side is added on the other.
   const Armature grown = with_mirrored_changes(rig, extruded(rig, {2, true}, {130, -10, 80}));
   CHECK(parent_of(grown, "Fore.R.001") == "Fore.R");
   CHECK(glm::distance(named(grown, "Fore.R.001").tail, {-130, -10, 80}) < 1e-9);
@@ -243,7 +242,7 @@ TEST_CASE("edited rigs: a thousand edits by chance leave a rig that is one") {
         case 10: rig = with_moved_ends(rig, {{some[0], true}}, [&](const glm::dvec3&) { return place; }); break;
       }
     } catch (const Error&) {
-      // Refused: the rig is as it was.
+      // The edit was refused, so the rig is unchanged.
     }
     REQUIRE_NOTHROW(check_armature(rig, "test"));
   }

@@ -13,7 +13,7 @@ namespace {
 using P = BodyPart;
 constexpr BodySide L = BodySide::Left, R = BodySide::Right, M = BodySide::Middle;
 
-// Names in order; "<" before a name hangs it from the root instead of from the name before.
+// Names in order, each the child of the one before. "<" in front of a name makes it a child of the root.
 struct Named {
   std::vector<std::string> names;
   std::vector<int> parents;

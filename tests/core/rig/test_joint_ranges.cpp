@@ -30,7 +30,7 @@ TEST_CASE("ranges of motion: joints of the adult template are known by their nam
     known += joints[b].has_value();
     if (!joints[b]) continue;
     const JointLimits limits = usual_limits(adult, static_cast<int>(b), *joints[b]);
-    // Rest is always allowed, and a range is never inside out.
+    // The rest pose is always allowed, and minimum <= maximum.
     Bone bone = adult.bones[b];
     bone.limits = limits;
     CHECK(limit_excess(bone, glm::dquat(1, 0, 0, 0)) == 0);
@@ -63,8 +63,8 @@ TEST_CASE("ranges of motion: a straight elbow bends forward, a straight knee bac
   }
   rig.bones[1].tail = {200, 0, -450};
   const JointLimits bent = usual_limits(rig, 1, joint("Elbow"));
-  CHECK((glm::angleAxis(0.5, bent.axis) * glm::dvec3(200, 0, -150)).z > -50);  // further the way it is bent
-  // A hinge that was set by hand keeps its axis.
+  CHECK((glm::angleAxis(0.5, bent.axis) * glm::dvec3(200, 0, -150)).z > -50);  // it bends further in the same direction
+  // A hinge whose axis was set by hand keeps it.
   rig.bones[1].limits = bent;
   rig.bones[1].limits.axis = {1, 0, 0};
   CHECK(usual_limits(rig, 1, joint("Elbow")).axis == glm::dvec3(1, 0, 0));

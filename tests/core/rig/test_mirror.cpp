@@ -11,7 +11,7 @@ using namespace limber;
 
 namespace {
 
-// A trunk with two arms, turned about z by `turn` and moved.
+// Makes a trunk with two arms, turned about z by `turn` and moved.
 Armature two_arms(double turn) {
   const RigidTransform place{glm::angleAxis(turn, glm::dvec3(0, 0, 1)), {30, -70, 5}};
   Armature armature;
@@ -99,7 +99,7 @@ TEST_CASE(
     CHECK(glm::distance(plane.place(bone.tail), image.tail) < 1e-9);
     CHECK(glm::distance(-plane.direction(rest_axes(bone)[0]), rest_axes(image)[0]) < 1e-9);
   }
-  // What one side may do the other may do in the mirror.
+  // The mirrored joint has the mirrored limits.
   const Bone &upper = both.bones[require_bone(both, "LeftArm")], &elbow = both.bones[require_bone(both, "LeftForearm")];
   const Bone &other_upper = both.bones[require_bone(both, "RightArm")],
              &other_elbow = both.bones[require_bone(both, "RightForearm")];

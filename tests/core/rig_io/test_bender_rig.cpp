@@ -19,7 +19,7 @@ bool is_near(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - 
 }  // namespace
 
 TEST_CASE("bender armature: an .arm gives heads and tails from the parent's tail in the parent's axes") {
-  // A bone up the z axis, from it a bone along its own y, from that one to its x.
+  // The first bone points along z, the second along the first one's own y, the third along the second one's x.
   const Armature rig = parse_bender_arm(R"(<?xml version="1.0"?><armature name="a" orientation="0 0 0 1">
     <bone name="first &amp; last" head="1 2 3" tail="1 2 13" orientation="0.70710678 0 0 0.70710678">
       <pose rotation="0 0 0 1"/>
@@ -41,7 +41,7 @@ TEST_CASE("bender armature: the roll is the one that gives the bone's own axes")
   const Armature rig = parse_bender_arm(
       R"(<armature><bone name="b" head="0 0 0" tail="0 3 0" orientation="0 0.38268343 0 0.92387953"/></armature>)",
       "test");
-  // A quarter about y by half: x turns to (1, 0, -1) in RAS, which is (-1, 0, -1) in LPS.
+  // The file's quarter turn about y is applied by half: x turns to (1, 0, -1) in RAS, which is (-1, 0, -1) in LPS.
   const glm::dvec3 x = rest_axes(rig.bones[0])[0];
   CHECK(is_near(x, glm::normalize(glm::dvec3(-1, 0, -1))));
 }

@@ -25,7 +25,7 @@ struct Agreement {
   std::int64_t found = 0, glued = 0, near_glued = 0;  // faces below the shoulder
 };
 
-// Of the faces found, how many lie at most one voxel beside a glued one.
+// Counts the faces found, and those among them that lie at most one voxel from a glued face.
 Agreement agreement(const test::GluedArm& body, const Seams& seams) {
   const auto height = [&](const glm::ivec3& v) { return (world_from_voxel(body.volume.grid) * glm::dvec3(v)).z; };
   std::vector<bool> is_near(body.volume.grid.voxel_count(), false);
@@ -53,8 +53,8 @@ Pose arm_raised(const Armature& rig, double degrees) {
 
 struct Raised {
   Posed posed;
-  std::int64_t trunk_moved = 0, trunk = 0, arm_left = 0,
-               arm = 0;  // posed voxels from below the shoulder, away from where the two touch
+  // These count posed voxels that lay below the shoulder, away from the contact of arm and trunk.
+  std::int64_t trunk_moved = 0, trunk = 0, arm_left = 0, arm = 0;
 };
 
 Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, double degrees) {
@@ -87,10 +87,10 @@ Raised raise(const test::GluedArm& body, std::shared_ptr<const Seams> seams, dou
   return raised;
 }
 
-// Two fingers along z, of bone, fat and skin, and a palm above. Between their skins, one of which is a voxel thicker,
-// four voxels of flesh join them from z 12 to 17.
+// Two fingers along z, of bone, fat and skin, with a palm above. Flesh four voxels wide joins their skins from z = 12
+// to 17. One of the skins is a voxel thicker.
 struct WebbedFingers {
-  static constexpr int kFirst = 16, kWide = 4;  // of the bridge, along x
+  static constexpr int kFirst = 16, kWide = 4;  // the bridge of flesh along x: first voxel and width
   enum : Label { Skin = 1, Fat = 2, Flesh = 3, BoneLabel = 4 };
   LabelVolume volume;
   TissueTable tissues;
@@ -136,8 +136,8 @@ struct WebbedFingers {
   }
 };
 
-// A trunk and an arm along z that lie against each other below a shoulder: each of bone in muscle, with fat and skin
-// around, but between them one of the two has lost its skin and fat, as in a scan that is too coarse for them.
+// A trunk and an arm along z that touch below a shoulder. Each has bone in muscle, with fat and skin around. Where they
+// touch, one of the two has no skin and fat, as in a scan that is too coarse for both.
 struct PressedArm {
   static constexpr int kBetween = 24;  // the arm's lowest voxel along x
   enum : Label { Skin = 1, Fat = 2, Muscle = 3, Spine = 4, Humerus = 5, Ulna = 6 };
@@ -181,7 +181,8 @@ struct PressedArm {
       for (int y = from.y; y < to.y; ++y)
         for (int x = from.x; x < to.x; ++x) volume.at({x, y, z}) = label;
   }
-  //   low, high  how many of the two layers are missing towards lower and higher x
+  // Fills a box with layers of skin, fat and muscle.
+  //   low, high  how many of the outer two layers are missing on the side of lower x and of higher x
   void layered(glm::ivec3 from, glm::ivec3 to, int low, int high) {
     for (const Label label : {Skin, Fat, Muscle}) {
       fill(from, to, label);
@@ -214,7 +215,7 @@ TEST_CASE("seams: skin that only one of two limbs has left goes with the one on 
     const TissueVoxels tissue(body.volume);
     const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
     const Seams seams = find_seams(body.volume, tissue, body.tissues, body.rig, parts);
-    std::int64_t found = 0, between = 0;  // away from the crease, where the arm's skin turns inward
+    std::int64_t found = 0, between = 0;  // counted away from the crease, where the arm's skin turns inwards
     seams.for_each([&](const glm::ivec3& v, int axis) {
       if (v.y < 8 || v.y >= 20) return;
       ++found;
@@ -262,7 +263,7 @@ TEST_CASE(
   CHECK(cut.trunk_moved < 0.01 * cut.trunk);
   CHECK(cut.arm_left < 0.03 * cut.arm);
   CHECK(grown.trunk_moved > 5 * cut.trunk_moved + 100);
-  // The sides that come apart are covered with skin, and hang together as two limbs do.
+  // Skin covers the faces that come apart, and each limb stays in one piece.
   const VolumeMetrics metrics = compare(body.volume, cut.posed.volume, body.tissues);
   CHECK(metrics.skin_share_after > 0.999);
   CHECK(cut.posed.report.new_skin_voxels > 100);

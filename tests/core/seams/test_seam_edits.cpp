@@ -24,7 +24,7 @@ TissueTable two_tissues() {
   return tissues;
 }
 
-// A block of flesh with a rod of bone along y, air around it, on an oblique and mirrored grid.
+// A block of flesh with a rod of bone along y, in air, on an oblique and mirrored grid.
 LabelVolume block() {
   LabelVolume volume{{{20, 16, 18}, {2, 3, 2.5}, {10, -20, 30}, glm::dmat3(1)}, {}};
   const double c = std::cos(0.4), s = std::sin(0.4);
@@ -36,7 +36,7 @@ LabelVolume block() {
   return volume;
 }
 
-// Voxels that are joined to one through faces that are not cut.
+// Counts the voxels that are connected to `start` through faces that are not cut.
 std::int64_t reached_from(const LabelVolume& volume, const Seams& seams, const glm::ivec3& start) {
   std::vector<bool> seen(volume.voxels.size(), false);
   std::vector<glm::ivec3> waiting{start};
@@ -65,7 +65,8 @@ TEST_CASE(
   const AffineTransform world = world_from_voxel(volume.grid);
   const LabelSet soft = soft_labels(two_tissues());
   const std::int64_t all = 14 * 12 * 16;
-  // Ways through the block from below it to above it in voxels, left of the bone; the blade goes through all of y.
+  // Paths of the knife in voxels (x, z), from below the block to above it, left of the bone. The blade extends through
+  // all of y.
   const std::vector<std::vector<glm::dvec2>> ways = {
       {{6, 0}, {6, 17}}, {{5.5, 0}, {5.5, 17}}, {{4, 0}, {8, 17}}, {{3, 0}, {9, 7.3}, {4, 11}, {8.5, 17}}};
   for (const auto& way : ways) {
@@ -99,8 +100,8 @@ TEST_CASE("seam edits: through bone nothing is cut, and the same cut twice chang
       second{world * glm::dvec3(12, -1, 17), world * glm::dvec3(12, 17, 17)};
   CHECK(cut_between(seams, volume, soft, first, second) > 0);
   CHECK(cut_between(seams, volume, soft, first, second) == 0);
-  CHECK(reached_from(volume, seams, {2, 5, 5}) == 14 * 12 * 16);  // it hangs together by its bone
-  // A blade far away or without end reaches nothing and does no harm.
+  CHECK(reached_from(volume, seams, {2, 5, 5}) == 14 * 12 * 16);  // still connected through the bone
+  // A blade that lies far away, or is infinitely long, cuts nothing and does no harm.
   CHECK(cut_between(seams, volume, soft, {{1e300, 0, 0}, {0, 0, 0}}, second) == 0);
   CHECK(cut_between(seams, volume, soft, {glm::dvec3(1e4), glm::dvec3(2e4)},
                     {glm::dvec3(1e4, 0, 1e4), glm::dvec3(3e4)}) == 0);
@@ -138,7 +139,7 @@ TEST_CASE("seam pairs: the seam of an arm grown to the trunk is said to lie betw
   std::int64_t faces = 0, elsewhere = 0;
   for (const SeamPair& pair : pairs) {
     faces += pair.faces;
-    if (pair.second != "trunk") {  // the last faces, which a way around the seam's end reaches
+    if (pair.second != "trunk") {  // the last faces, which a path around the seam's end reaches
       elsewhere += pair.faces;
       continue;
     }

@@ -21,7 +21,7 @@ std::vector<TissueKind> kinds() {
   return kind;
 }
 
-// Rows of tissue along x, one voxel thick, with air around them. Each is a word: S skin, f fat, m muscle, b bone.
+// Makes rows of tissue along x, one voxel thick, with air around. Each row is a word: S skin, f fat, m muscle, b bone.
 SkinLayers layers_of(const std::vector<std::string>& words, double spacing) {
   LabelVolume volume;
   volume.grid.size = {kLongest + 2, 2 * kSide + 1, 2 * kSide + 1};
@@ -41,9 +41,10 @@ TEST_CASE("skin layers: what lies nearer to the surface than it does on free ski
   for (int ray = 0; ray < 1000; ++ray) {
     std::string word = ray % 2 ? "Sfmmmm" : "SSfmmm";
     if (ray % 3 == 0) std::reverse(word.begin(), word.end());
-    words.insert(words.end(), {word, "Sfmm", "SSSSSS"});  // the second comes out again, the third never leaves the skin
+    // The second row reaches air again on its other side; the third never leaves the skin.
+    words.insert(words.end(), {word, "Sfmm", "SSSSSS"});
   }
-  const SkinLayers layers = layers_of(words, 5);  // six voxels are looked at
+  const SkinLayers layers = layers_of(words, 5);  // at 5 mm, six voxels of each row are examined
   CHECK(layers.surprise(0, Layer::Fat, 0) == 1);
   CHECK(layers.surprise(0, Layer::Fat, 1) == 0);
   CHECK(layers.surprise(0, Layer::Muscle, 1) == 1);
@@ -66,7 +67,7 @@ TEST_CASE("skin layers: only the skin that is asked for counts") {
   volume.voxels = {0, 'S', 'f', 'm', 'm', 'b', 'm', 'm'};
   const TissueVoxels tissue(volume);
   const std::vector<SkinRay> rays = skin_rays(volume, tissue, kinds());
-  REQUIRE(rays.size() == 0);  // of thirty voxels, it comes out again
+  REQUIRE(rays.size() == 0);  // within thirty voxels, the row reaches air again
   volume.grid.spacing = {5, 5, 5};
   const std::vector<SkinRay> short_rays = skin_rays(volume, tissue, kinds());
   REQUIRE(short_rays.size() == 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A limb that can be checked by hand: a bar of muscle along z with two bones in its middle that leave a gap, and a rig
-// of two bones that meet in the gap's middle.
+// A limb that can be checked by hand: a bar of muscle along z. Inside it lie two bones with a gap between them, and a
+// rig of two bones meets in the middle of the gap.
 #pragma once
 
 #include "core/rig/armature.h"

@@ -11,7 +11,7 @@ using namespace limber;
 
 namespace {
 
-// Up to `most` of `bones` bones.
+// Returns random influences, each of up to `most` of `bones` bones.
 std::vector<Influence> random_influences(std::mt19937& random, std::size_t count, int bones, int most) {
   std::vector<Influence> made(count);
   for (Influence& influence : made) {
@@ -77,7 +77,7 @@ TEST_CASE(
   for (Influence& influence : two) influence = quantize({{4, 1 + random() % 100}, {9, 1 + random() % 100}});
   CHECK(InfluenceChunk(two).heap_bytes() <= 512 * 3 + 24);
   const InfluenceChunk worst(random_influences(random, 512, 65535, 4));
-  CHECK(worst.heap_bytes() <= 512 * (8 + 8) + 8);  // every voxel a set of its own
+  CHECK(worst.heap_bytes() <= 512 * (8 + 8) + 8);  // the worst case: each voxel has its own set of bones
 }
 
 TEST_CASE("packed influences: what does not sum to one is refused") {

@@ -14,7 +14,7 @@ using namespace limber::test;
 
 namespace {
 
-// Trunk, left and right arm; painted evenly over all three.
+// Gives all voxels the same weights of trunk, left arm and right arm.
 Painted even() {
   Painted painted(two_sided_body());
   painted.set([](const glm::ivec3&) { return quantize({{0, 0.5}, {1, 0.3}, {2, 0.2}}); });
@@ -50,7 +50,7 @@ TEST_CASE("recomputed weights: one bone's alone, the others share the rest as th
     CHECK(std::abs(influence.of(0) / influence.of(1) - 0.5 / 0.3) < 1e-3);
     CHECK(influence.weight[0] + influence.weight[1] + influence.weight[2] + influence.weight[3] == kFullWeight);
   });
-  // Where a bone has to give up all and no other had any, the computed ones come in.
+  // If a bone loses all its weight and no other bone has any, the computed weights replace it.
   Painted all_right = even();
   all_right.set([](const glm::ivec3&) { return rigid_influence(2); });
   const SkinWeights taken =
@@ -77,7 +77,7 @@ TEST_CASE("recomputed weights: a locked bone keeps every bit, and so does all ti
 TEST_CASE(
     "blend stiffness: a stiffer tissue goes over from bone to bone in less room, others stay as they were, a softer "
     "one takes more") {
-  // Without bone in the middle the flesh alone blends; the outer half of the bar is another tissue.
+  // There is no bone in the middle, so only flesh blends there. The outer half of the bar is another tissue.
   SmallBody body = two_bone_bar(12, 60, 20);
   constexpr Label kFat = 3;
   body.tissues.tissues.push_back({.label = kFat, .file_value = kFat, .kind = TissueKind::Fat});
