@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The editor with a trunk that an arm is grown to, in the Skin workspace.
+// The editor with a trunk and an arm that touch, in the Skin workspace.
 #pragma once
 
 #include "editor/context/view_projection.h"
@@ -55,7 +55,7 @@ struct GluedEditor : SmallEditor {
   }
   int steps() const { return static_cast<int>(editor->history.position()); }
   std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
-  // Where the view shows a point, pixels at scale 1.
+  // Returns the pixel at which the view shows a point, as if the interface scale were 1.
   std::string at(const glm::dvec3& point) const {
     const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->look.scale);
     char line[80];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a keyboard sends for a text: each letter's key down, its character, the key up.
+// Sends the events of a keyboard for a text: key down, character and key up for each letter.
 #pragma once
 
 #include <cctype>
@@ -14,7 +14,7 @@ inline void press_key(editor::Offscreen& host, editor::Key key) {
   host.events.push(editor::KeyChanged{key, false});
 }
 
-// Letters, digits and blanks.
+// Returns the key for a letter, a digit or a space.
 inline editor::Key key_of(char c) {
   using editor::Key;
   if (c == ' ') return Key::Space;

@@ -15,7 +15,7 @@ constexpr glm::ivec2 kWindow{1120, 560}, kSmall{160, 120};
 
 Stage::Stage() : sitting(home.folder.path(), {}, kWindow) {
   editor().worker_program = LIMBER_PROGRAM;
-  editor().preferences.reduce_motion = true;  // cameras arrive at once
+  editor().preferences.reduce_motion = true;  // cameras move at once
   open_limb();
 }
 
@@ -39,7 +39,7 @@ void Stage::put_away() {
 
 void Stage::watch() {
   ran_.clear();
-  // Operators can be replaced by the editor itself, so each time they are asked anew.
+  // The editor may replace its operators, so they are wrapped again each time.
   for (editor::Operator& op : editor().operators)
     op.run = [this, id = op.id, act = op.run](editor::Editor& e) {
       ran_.insert(id);

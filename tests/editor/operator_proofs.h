@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What every operator does, shown in the real editor: an effect that is not there, what a user does with pointer and
-// keys so that the operator runs, and the effect that is there then. An operator without such a proof fails a test by
-// name.
+// Proofs of what every operator does, shown in the real editor. A proof has a script of pointer and keys that runs the
+// operator, and an effect that must be absent before the script and present after it. A test fails and names each
+// operator without a proof.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace limber::test {
 
-// The editor as it was before the deeds.
+// The state of the editor before the script.
 struct Seen {
   Document document;
   int steps = 0, position = 0;
@@ -23,10 +23,10 @@ struct Seen {
   glm::dvec3 cross_hair{0};
   editor::Selection selection;
   std::string clipboard;
-  std::vector<std::uint8_t> body, slice;  // small pictures of the scene, without what lies over them
+  std::vector<std::uint8_t> body, slice;  // small pictures of the scene, without overlays
 };
 
-// The limb in a sitting of its own, with a home to write into.
+// The limb in its own editor session, with a home folder to write to.
 class Stage {
  public:
   Stage();
@@ -39,9 +39,9 @@ class Stage {
   bool ran(const std::string& id) const { return ran_.contains(id); }
 
   void open_limb();
-  // Closes what stands in the way: menus, dialogs, messages.
+  // Closes open menus, dialogs and messages.
   void put_away();
-  void watch();  // counts the operators that run from now on
+  void watch();  // records the operators that run from now on
   Seen look();
 
   Home home;
@@ -51,18 +51,18 @@ class Stage {
   std::set<std::string> ran_;
 };
 
-enum class Shows { Nothing, InBody, InSlice };  // which picture of the scene must change
+enum class Shows { Nothing, InBody, InSlice };  // the picture of the scene that must change
 
 struct Proof {
   std::string id;
   std::string deeds;
-  std::function<bool(Stage&, const Seen& before)> effect;  // false before the deeds, true after them
+  std::function<bool(Stage&, const Seen& before)> effect;  // false before the script, true after it
   Shows shows = Shows::Nothing;
   std::string first = "";                  // deeds that make ready
-  std::function<void(Stage&)> ready = {};  // what no deed can make
+  std::function<void(Stage&)> ready = {};  // preparation that no script can do
 };
 
-// In the order in which one user could do them.
+// The lists of proofs, in the order in which a user could run them.
 std::vector<Proof> proofs_of_views();
 std::vector<Proof> proofs_of_navigation();
 std::vector<Proof> proofs_of_tissues();

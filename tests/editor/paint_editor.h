@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The weighed limb in the Skin workspace, ready to be painted by pointer.
+// The limb with weights in the Skin workspace, ready to be painted with the pointer.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace limber::test {
 
 using namespace editor;
 
-// The ball, of which the upper half follows the upper bone wholly; seen from the front.
+// The ball seen from the front. Its upper half follows the upper bone, its lower half the lower bone.
 struct PaintEditor : LimbEditor {
   explicit PaintEditor(float scale = 1, bool parallel = false)
       : LimbEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale)) {
@@ -41,7 +41,7 @@ struct PaintEditor : LimbEditor {
     editor->selection.bones = {bone};
     play("wait-idle");
   }
-  // A point of the ball's front, where the 3D view shows it; pixels at scale 1.
+  // Returns the pixel at which the 3D view shows a point of the ball's front, as if the interface scale were 1.
   std::string pixel_of(const glm::dvec3& point) const {
     const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->look.scale);
     char line[80];
@@ -66,7 +66,7 @@ struct PaintEditor : LimbEditor {
   const SkinWeights& weights() const { return *editor->document().weights; }
   int steps() const { return static_cast<int>(editor->history.position()); }
   std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
-  // Of the tissue voxels.
+  // Calls body(world, voxel, influence) for each tissue voxel.
   template <class Body>
   void for_each(const Body& body) const {
     const TissueVoxels tissue(*editor->document().volume);
@@ -76,7 +76,7 @@ struct PaintEditor : LimbEditor {
         body(world * glm::dvec3(voxel), voxel, weights().chunk(brick)[place - tissue.bricks()[brick].first]);
       });
   }
-  // Voxels with some weight of the bone where it had none, and the furthest of them from a point.
+  // Counts the voxels of one half that have weight of `bone`, and returns with it the largest distance to `from`, mm.
   std::pair<int, double> painted(int bone, const glm::dvec3& from, bool upper) const {
     int count = 0;
     double furthest = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The small editor with folders of its own, as in a real sitting: recent files, journals and a home to look into.
+// The small editor with its own folders, like a user's session: recent files, journals and a home folder.
 #pragma once
 
 #include <cstdlib>
@@ -23,7 +23,7 @@ struct Sitting {
 
   void play(const std::string& script) { test.play(script); }
   editor::Editor& editor() { return *test.editor; }
-  // Closes the start screen and shows the ball of small_body(), as if opened.
+  // Closes the start screen and shows the ball of small_body(), as if it had been opened.
   void open_ball() {
     auto opened = std::make_shared<editor::Opened>();
     opened->document = small_body();
@@ -36,7 +36,7 @@ struct Sitting {
   SmallEditor test;
 };
 
-// A home with a volume in a folder of its own.
+// A home folder that contains a volume in a subfolder.
 struct Home {
   Home() {
     std::filesystem::create_directories(folder / "scans");

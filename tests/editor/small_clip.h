@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A clip for the small limb: its lower bone bends by a degree a frame.
+// A clip for the small limb: its lower bone bends by one degree per frame.
 #pragma once
 
 #include <algorithm>
@@ -32,10 +32,10 @@ inline Motion bending_motion(const Armature& armature, int frames = 61, double r
   return motion;
 }
 
-// By how much the lower bone bends, degrees.
+// Returns the angle by which the lower bone is bent, degrees.
 inline double bend_of(const Pose& pose) { return glm::degrees(2 * std::atan2(pose.rotation[1].x, pose.rotation[1].w)); }
 
-// The limb with that clip.
+// Returns the limb with that clip.
 inline Document bending_limb(int frames = 61, double rate = 30) {
   Document document = small_limb();
   editor::add_clip(

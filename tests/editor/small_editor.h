@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The real editor without a display, small enough for software OpenGL, with a body of four tissues in a mirrored and
-// anisotropic grid, and the player that types and clicks in it.
+// The real editor without a display, small enough for software OpenGL. It has a body of four tissues on a mirrored and
+// anisotropic grid, and a player that types and clicks.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace limber::test {
 
-// A ball of skin around muscle around bone, and a small blood vessel: labels 143, 17, 111 and 65.
+// Makes a ball of skin around muscle around bone, and a small blood vessel: labels 143, 17, 111 and 65.
 inline Document small_body() {
   auto volume = std::make_shared<LabelVolume>();
   volume->grid.size = {24, 20, 30};
@@ -58,7 +58,8 @@ struct SmallEditor {
       : host(editor::open_offscreen(size)),
         editor(std::make_unique<editor::Editor>(*host, preferences)),
         player(*editor, *host) {
-    editor->workers_yield = false;  // other tests run beside this one
+    // Workers run at normal priority, since other tests run at the same time.
+    editor->workers_yield = false;
     editor->views->renderer.average_at_rest(0);
     player.step();
     if (!with_body) return;
@@ -68,7 +69,7 @@ struct SmallEditor {
     player.settle();
   }
 
-  // For tests that look at pictures, or compare what was painted through two of them.
+  // Draws at full quality, for tests that compare pictures.
   void draw_finely() {
     editor->views->renderer.average_at_rest(1);
     player.settle();

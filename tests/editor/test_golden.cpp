@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures of the whole window, compared with those that were looked at and found good: tests/editor/golden/NAME.png.
+// Compares pictures of the whole window with pictures that were looked at and approved: tests/editor/golden/NAME.png.
 //
-// They are kept at half size and with colours in steps of four, which is finer than what is compared: both pictures are
-// blurred by 3 x 3 pixels, then the mean difference and the share of pixels that clearly differ are held. Drivers round
-// differently at edges, so single pixels prove nothing.
+// These are stored at half size with colours in steps of four, which is finer than the comparison: both pictures are
+// blurred by 3 x 3 pixels, then the mean difference and the share of pixels that clearly differ must be below limits.
+// Drivers round differently at edges, so single pixels prove nothing.
 //
 // A failure writes NAME.png and NAME-difference.png into the folder that $LIMBER_GOLDEN_FAILURES names (else
-// golden-failures, in the folder the test runs in). After a wanted change:
-//   LIMBER_GOLDEN_REFRESH=1 build/tests/limber_editor_tests -tc="golden:*"     and look at each picture that changed.
-// To look at the scenes in another window, without comparing:
-//   LIMBER_SCENES=2048x1280@2 build/tests/limber_editor_tests -tc="golden:*"   writes NAME-2048x1280@2.png where it
-//   runs.
+// golden-failures, in the folder in which the test runs). After an intended change, run this and look at each picture
+// that changed:
+//   LIMBER_GOLDEN_REFRESH=1 build/tests/limber_editor_tests -tc="golden:*"
+// To see the scenes in another window without comparing them, run this; it writes NAME-2048x1280@2.png into the current
+// folder:
+//   LIMBER_SCENES=2048x1280@2 build/tests/limber_editor_tests -tc="golden:*"
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -37,7 +38,7 @@ namespace {
 constexpr glm::ivec2 kWindow{1280, 720};
 constexpr double kMostMean = 1.2;     // of 255
 constexpr double kClearly = 20;       // of 255, in any channel
-constexpr double kMostClear = 0.004;  // share of the pixels
+constexpr double kMostClear = 0.004;  // share of the pixels that may clearly differ
 
 int channel(const Image& image, int x, int y, int c) {
   return image.rgba[(static_cast<std::size_t>(y) * image.size.x + x) * 4 + c];
@@ -94,7 +95,7 @@ std::filesystem::path golden(const std::string& name) {
   return std::filesystem::path(LIMBER_SOURCE_DIR "/tests/editor/golden") / (name + ".png");
 }
 
-// The window that $LIMBER_SCENES asks for.
+// The size and scale of the window that $LIMBER_SCENES asks for.
 struct Window {
   glm::ivec2 size = kWindow;
   float scale = 1;
@@ -123,14 +124,14 @@ void check_golden(const std::string& name, const Image& window) {
   MESSAGE("see ", folder.string());
 }
 
-// A sitting in which nothing moves by itself.
+// An editor session in which nothing moves by itself.
 struct Scene {
   explicit Scene(const glm::ivec2& size = kWindow)
       : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
     editor().preferences.reduce_motion = true;
-    editor().views->renderer.average_at_rest(6);  // as users see it
-    // Most pictures show the light of a body that has just moved: they check the window, and would take twice as long.
-    // The light at rest has a picture of its own, and tests/render/passes/test_light_pass.cpp.
+    editor().views->renderer.average_at_rest(6);  // frames averaged at rest, as for users
+    // Most pictures use the light of a body that has just moved: they check the window, and would take twice as long
+    // otherwise. The light at rest has its own picture, and tests/render/passes/test_light_pass.cpp.
     editor().views->renderer.light_at_rest(render::Light::Draft);
     editor().preferences.scale = wanted_window().value_or(Window{}).scale;
     sitting.play("wait-idle");
@@ -248,7 +249,7 @@ TEST_CASE("golden: arm, a clip box through the elbow") {
   check_golden("clip_box", scene.picture());
 }
 
-// So small that they cost little; the 3D view alone.
+// These pictures are small and show the 3D view only, so they cost little.
 TEST_CASE("golden: bones chosen in a box and under a circle") {
   for (const auto& [name, key, end] : {std::tuple{"box_select", "B", "500 340"}, {"circle_select", "C", "430 330"}}) {
     Small scene;
@@ -292,7 +293,7 @@ TEST_CASE("golden: an arm's eased keys as curves, with the handles of one") {
   check_golden("graph", scene.picture());
 }
 
-// The arm with weights in the Skin workspace, the forearm active.
+// The arm with weights in the Skin workspace, with the forearm active.
 struct Weighted : Arm {
   Weighted() {
     Document next = editor().document();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The real editor, played by scripts without a display.
+// Plays scripts in the real editor, without a display.
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -198,11 +198,12 @@ TEST_CASE("replay: splitters follow the pointer, and a double click restores the
   CHECK(test.editor->layout.sidebar.width() == doctest::Approx(before + 60).epsilon(0.02));
   test.play("double-click \"splitter sidebar/grip\"");
   CHECK(test.editor->layout.sidebar.width() == before);
-  test.play("click view.four\n move \"splitter four-y/grip\"\n wait 0.5\n wait-idle");  // where the pointer may stay
+  // The pointer may stay here.
+  test.play("click view.four\n move \"splitter four-y/grip\"\n wait 0.5\n wait-idle");
   test.play("click view.four\n drag \"splitter four-y/grip\" 0 50");
   CHECK(test.editor->arrangement().four_y > 0.55f);
   test.play("key Ctrl+2\n key Ctrl+1");
-  CHECK(test.editor->arrangement().four_y > 0.55f);  // kept per workspace
+  CHECK(test.editor->arrangement().four_y > 0.55f);  // stored for each workspace
 }
 
 TEST_CASE("replay: the area under the pointer is maximized and shrinks back") {
@@ -247,7 +248,7 @@ TEST_CASE("replay: a volume opens in the background while the editor goes on, an
   const std::vector<editor::ViewPlace> before = test.editor->layout.view_places;
   test.editor->to_open = {folder / "ball.nrrd"};
   test.player.step();
-  CHECK(test.editor->layout.view_places[0].rect == before[0].rect);  // nothing jumps for a job
+  CHECK(test.editor->layout.view_places[0].rect == before[0].rect);  // the layout does not change for a job
   test.play("wait-job\n expect volume yes\n expect name ball");
   CHECK(*test.editor->document().volume->voxels.data() == 0);
   CHECK(test.editor->document().volume->voxels == body.volume->voxels);
@@ -294,7 +295,7 @@ TEST_CASE("replay: named widgets lie in their regions and none covers another") 
 TEST_CASE("replay: an editor at rest draws nothing and leaves no OpenGL error, closed, no OpenGL object") {
   {
     SmallEditor test;
-    test.play("wait-idle\n click view.four\n wait 1\n wait-idle");  // the tool tip of the button has come
+    test.play("wait-idle\n click view.four\n wait 1\n wait-idle");  // waits until the button's tooltip is shown
     CHECK(test.editor->rest() > 1);
     CHECK(glGetError() == GL_NO_ERROR);
     CHECK(render::gl::live_objects() > 0);
@@ -364,12 +365,12 @@ TEST_CASE("replay: a script tells what its frames cost, and what a clip that pla
     CHECK(std::stoi(line) == ++frames);
     waited += line.find("wait 0.5") != std::string::npos;
   }
-  CHECK(std::abs(waited - 60) <= 2);  // a second at 60 a second
+  CHECK(std::abs(waited - 60) <= 2);  // a second, at 60 frames per second
   const std::string text = read_file(file("log")), head = "# ms: worst ";
   const std::size_t said = text.find(head);
   CHECK(text.starts_with("# " + std::to_string(frames) + " frames\n"));
   REQUIRE(said != std::string::npos);
-  CHECK(std::abs(std::stod(text.substr(said + head.size())) - worst) < 0.06);  // both are rounded
+  CHECK(std::abs(std::stod(text.substr(said + head.size())) - worst) < 0.06);  // both values are rounded
   CHECK(read_file(file("empty")).starts_with("# 0 frames\n"));
 }
 

@@ -14,7 +14,7 @@ using namespace limber;
 
 namespace {
 
-// 0 - 1 - 2 - 3, 1 - 4 - 5, and a rig of its own: 6 - 7.
+// Two trees of bones by parent: 0 - 1 - 2 - 3 with the branch 1 - 4 - 5, and 6 - 7.
 Armature tree() {
   Armature armature;
   const int parents[] = {-1, 0, 1, 2, 1, 4, -1, 6};
@@ -45,7 +45,7 @@ BoneSet any_locks(std::mt19937& random) {
 
 int weight_of(const Influence& influence, int bone) { return WeightRules::sum_of(influence, std::span(&bone, 1)); }
 
-// By falling weight, whole, no bone twice, and nothing left where there is no weight.
+// Returns true if the weights fall, sum to kFullWeight, name no bone twice, and have bone 0 where the weight is 0.
 bool is_sound(const Influence& influence) {
   int sum = 0;
   for (int i = 0; i < 4; ++i) {
@@ -58,7 +58,7 @@ bool is_sound(const Influence& influence) {
   return sum == kFullWeight;
 }
 
-// Every way to change weights, with random settings.
+// Changes an influence by a randomly chosen rule with random settings.
 WeightChange any_change(std::mt19937& random, const WeightRules& rules, Influence& influence) {
   const int bone = random() % 8,
             weight = random() % 3 == 0 ? (random() % 2) * kFullWeight : static_cast<int>(random() % (kFullWeight + 1));
@@ -168,7 +168,7 @@ TEST_CASE(
   CHECK(heir_of_2({0, 1, 0, 1, 0, 0, 0, 0}) == 0);
   CHECK(heir_of_2({1, 1, 0, 1, 1, 0, 0, 0}) == 5);
   CHECK(heir_of_2({1, 1, 0, 1, 1, 1, 0, 0}, 7) == 7);
-  CHECK(heir_of_2({1, 1, 0, 1, 1, 1, 0, 0}) == -1 - 1);  // blocked by the parent
+  CHECK(heir_of_2({1, 1, 0, 1, 1, 1, 0, 0}) == -1 - 1);  // -1 - bone: blocked by bone 1, the parent
   Influence half = rigid_influence(2);
   WeightRules(armature, {}).set(half, 2, 20000);
   CHECK(weight_of(half, 2) == 20000);

@@ -24,7 +24,7 @@ Armature chain() {
   return armature;
 }
 
-// Alike, nearly alike, next to nothing beside one, of any size; one to four bones, in any order.
+// Returns one to four bones in random order. Their weights are equal, nearly equal, negligible beside one, or random.
 Influence any_influence(std::mt19937& random) {
   std::vector<int> bones(kBones);
   for (int b = 0; b < kBones; ++b) bones[b] = b;
@@ -53,7 +53,7 @@ TEST_CASE("weights of many voxels at once: to the bit what comes of one after th
     const int bone = int(random() % kBones);
     std::vector<std::uint16_t> asked(influences.size()), found(influences.size());
     for (std::uint16_t& weight : asked) {
-      const auto any = random() % 5;  // everything or nearly, nothing or nearly, anything
+      const auto any = random() % 5;  // 0: nearly the full weight; 1: nearly none; else: random
       weight = static_cast<std::uint16_t>(any == 0 ? kFullWeight - random() % 4 : any == 1 ? random() % 4 : random());
     }
     for (const LaneWidth width : {LaneWidth::Widest, LaneWidth::Four}) {
@@ -61,7 +61,7 @@ TEST_CASE("weights of many voxels at once: to the bit what comes of one after th
       std::vector<Influence> made = influences;
       for (std::size_t i = 0; i < influences.size(); ++i) {
         REQUIRE(found[i] == WeightRules::sum_of(influences[i], std::span(&bone, 1)));
-        // One in four stays as it is.
+        // Every fourth voxel keeps its weight.
         if (i % 4 == 3) asked[i] = found[i];
       }
       set_weights(made, bone, rules.fallback_bone(bone), asked, width);

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kLength = 240, kRadius = 36;
 
-// A cylinder of muscle along z; its second bone begins in the middle.
+// Makes a cylinder of muscle along z whose second bone begins in its middle.
 Painted cylinder(double spacing) {
   SmallBody body;
   const int across = static_cast<int>(std::ceil(2 * kRadius / spacing)) + 4;
@@ -40,7 +40,7 @@ Painted cylinder(double spacing) {
   return Painted(std::move(body));
 }
 
-// Weights of Fore that rise along z by a Gauss curve of this width, mm; 0: at once.
+// Sets weights of Fore that rise along z like the integral of a Gaussian of this width, mm; 0: a step.
 void blend(Painted& body, double width) {
   const double spacing = body.body.volume.grid.spacing.z;
   body.set([&](const glm::ivec3& v) {
@@ -50,7 +50,7 @@ void blend(Painted& body, double width) {
   });
 }
 
-// How long the weights of Fore take from .25 to .75 along z, mm, at a depth below the skin.
+// Returns over what distance along z the weight of Fore rises from 0.25 to 0.75, mm, at a depth below the skin.
 double band(const Painted& body, const SkinWeights& weights, double depth) {
   const Grid& grid = body.body.volume.grid;
   const double spacing = grid.spacing.x;
@@ -82,7 +82,7 @@ TEST_CASE("smooth weights: a step becomes a Gauss curve's integral of the width 
       for (const int brick : bricks)
         body.tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
           const double off = (v.z + 0.5) * spacing - kLength / 2;
-          if (std::abs(off) > kLength / 2 - 3 * width) return;  // the ends are closed
+          if (std::abs(off) > kLength / 2 - 3 * width) return;  // near the ends nothing flows out
           const glm::ivec3 in = v & 7;
           WeightSum sum;
           smooth.at(brick, in.x + 8 * in.y + 64 * in.z, sum);
@@ -99,7 +99,7 @@ TEST_CASE("smooth weights: a step becomes a Gauss curve's integral of the width 
 TEST_CASE("smooth weights: nothing spreads through air or across a seam") {
   Painted body = cylinder(2);
   body.set([](const glm::ivec3& v) { return quantize({{v.y < 20 ? 0 : 1, 1.0}}); });
-  // Across y = 20: a seam on the lower half, a layer of air on the upper one.
+  // Separates the halves at y = 20: by a seam for z < 60, by a layer of air above.
   auto seams = std::make_shared<Seams>(body.body.volume.grid.size);
   SmallBody parted = body.body;
   for (int z = 0; z < parted.volume.grid.size.z; ++z)

@@ -31,7 +31,7 @@ Painted random_arm(double spacing, unsigned seed) {
   return painted;
 }
 
-// Weights that change smoothly along the arm's bones.
+// Sets weights that change smoothly along the arm's bones.
 void blend_along_bones(Painted& painted, double width) {
   const AffineTransform world = world_from_voxel(painted.body.volume.grid);
   painted.set([&](const glm::ivec3& v) {
@@ -217,7 +217,7 @@ TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what 
   });
   CHECK(wrong == 0);
 
-  // The source side ends four voxels earlier; within two of them the nearest tissue will do.
+  // Makes the source side four voxels shorter. Within 4.5 mm the nearest tissue serves as the match.
   SmallBody short_arm = two_sided_body();
   const int side = sign > 0 ? 0 : 1;
   for (int z = 0; z < 14; ++z)
@@ -238,7 +238,7 @@ TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what 
 
 TEST_CASE("weight edits: weights of the same volume come over as they are, those of a coarser one nearly") {
   Painted fine(two_bone_bar(24, 80, 12, glm::dvec3(1))), coarse(two_bone_bar(12, 40, 6, glm::dvec3(2)));
-  // The coarse grid's voxels cover eight of the fine one's each.
+  // Each voxel of the coarse grid covers eight voxels of the fine one.
   coarse.body.volume.grid.origin = glm::dvec3(-1.5);
   coarse.body.armature = fine.body.armature;
   blend_along_bones(fine, 8);

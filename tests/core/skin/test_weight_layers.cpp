@@ -16,7 +16,7 @@ namespace {
 
 WeightLayers on(const Painted& painted) { return with_new_layer({painted.weights, {}}, "Elbow"); }
 
-// The layer at `index` replaced.
+// Returns the layers with the one at `index` replaced.
 WeightLayers with(const WeightLayers& layers, std::size_t index, WeightLayer layer) {
   WeightLayers other = layers;
   other.layers[index] = std::make_shared<const WeightLayer>(std::move(layer));
@@ -87,7 +87,7 @@ TEST_CASE("weight layers: the base may change below a layer, which keeps what it
   const SkinWeights after = composed(layers);
   CHECK(at(painted.tissue, after, {3, 3, 20}) == at(painted.tissue, before, {3, 3, 20}));
   CHECK(at(painted.tissue, after, {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
-  // And on the canvas the new base is seen beside it.
+  // While layer 0 is painted, the new base shows beside it.
   CHECK(at(painted.tissue, canvas(layers, 0), {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("weight layers: what comes out is made anew only where parts changed, 
   same(painted_at(painted, before, 1, {6, 6, 30}, 0), before, came_out);
   WeightLayers swapped = before;
   std::swap(swapped.layers[0], swapped.layers[1]);
-  CHECK(changed_bricks(swapped, before).empty());  // the other covers nothing
+  CHECK(changed_bricks(swapped, before).empty());  // the layer that is now on top covers nothing there
   WeightLayer half = *before.layers[0];
   half.opacity = 0.3;
   same(with(before, 0, half), before, came_out);
@@ -185,7 +185,7 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   const Painted painted(two_bone_bar());
   WeightLayers layers = painted_at(painted, on(painted), 0, {6, 6, 40}, 1);
   const SkinWeights before = mask_as_weights(*layers.layers[0]);
-  // Nothing changed: nothing changes.
+  // Without a change, the mask remains the same.
   CHECK(mask_painted_on(layers, 0, before, before).mask == layers.layers[0]->mask);
   SkinWeights after = before;
   for (std::int64_t b = 0; b < after.chunk_count(); ++b) {
@@ -207,7 +207,7 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   const SkinWeights out = composed(with(layers, 0, masked));
   for (std::int64_t b = 0; b < out.chunk_count(); ++b)
     CHECK(composed_while_masked(layers, 0, b, after.chunk(b)) == out.chunk(b));
-  // Painted away wholly, a brick is no part of the layer any more.
+  // A brick whose mask is painted away completely is dropped from the layer.
   SkinWeights nothing = after;
   for (std::int64_t b = 0; b < nothing.chunk_count(); ++b)
     nothing.set_chunk(b, SkinWeights::Influences(nothing.chunk(b).size(), rigid_influence(kNotCovering)));
@@ -225,7 +225,7 @@ TEST_CASE(
   const Armature bones = with_below(plain.armature);
   const WeightedBody with_what_lies_below{plain.volume, plain.tissue, plain.tissues, bones};
   const glm::ivec3 middle(2, 2, 22);
-  // Sets a bone where all others of the layer keep what they have.
+  // Sets a bone's share. The layer's other bones are locked, so the share comes from what lies below.
   const auto set = [&](int bone, double value) {
     StrokeSettings settings;
     settings.brush = {.kind = BrushKind::Set, .radius = 9, .value = value, .falloff = FalloffShape::Constant};
@@ -245,7 +245,7 @@ TEST_CASE(
   };
   const Influence below = at(painted.tissue, *painted.weights, middle);
   REQUIRE(below.of(0) == 1);
-  // The layer has 0.3 of one bone and 0.5 of another, and below shows through the rest.
+  // The layer gives 0.3 to one bone and 0.5 to another, and the base shows through the rest.
   Influence made = set(1, 0.3);
   CHECK(made.of(1) == doctest::Approx(0.3).epsilon(1e-4));
   CHECK(made.of(0) == doctest::Approx(0.7).epsilon(1e-4));
@@ -253,7 +253,7 @@ TEST_CASE(
   CHECK(made.of(1) == doctest::Approx(0.3).epsilon(1e-4));
   CHECK(made.of(2) == doctest::Approx(0.5).epsilon(1e-4));
   CHECK(made.of(0) == doctest::Approx(0.2).epsilon(1e-4));
-  // No more than there is room for; what is given up shows what lies below again.
+  // A bone gets no more than the rest of the layer. Shares that are set to 0 show the base again.
   made = set(2, 1);
   CHECK(made.of(1) == doctest::Approx(0.3).epsilon(1e-4));
   CHECK(made.of(2) == doctest::Approx(0.7).epsilon(1e-4));

@@ -23,7 +23,7 @@ std::vector<WeightProblem> of_kind(const std::vector<WeightProblem>& problems, K
   return some;
 }
 
-// A bar whose weights go over evenly from the one bone to the other.
+// A bar whose weights change linearly from one bone to the other.
 Painted good_bar() {
   Painted painted(two_bone_bar());
   const auto& volume = painted.body.volume;
@@ -53,7 +53,7 @@ TEST_CASE("weight problems: good weights have none") {
 
 TEST_CASE("weight problems: a piece that no bone reaches follows, repaired, what is nearest to it") {
   SmallBody body = two_bone_bar();
-  for (int z = 36; z < 38; ++z) body.volume.at({15, 15, z}) = kMuscle;  // a bit of tissue beside the lower end
+  for (int z = 36; z < 38; ++z) body.volume.at({15, 15, z}) = kMuscle;  // two voxels of tissue beside the lower end
   for (int z = 2; z < 42; ++z)
     body.volume.at({13, 13, z}) = 0, body.volume.at({13, 12, z}) = 0, body.volume.at({12, 13, z}) = 0;
   Painted painted(std::move(body));
@@ -91,7 +91,7 @@ TEST_CASE("weight problems: an island is found with its place and filled in from
   CHECK(edit.changed == 32);
   CHECK(edit.weights == good);
   CHECK(find_problems(painted.weighted_body(), edit.weights).empty());
-  // Its lock is in the way.
+  // The bone of the island is locked, which blocks the repair.
   EditScope scope;
   scope.locked = {0, 1};
   const WeightEdit blocked = repaired(painted.weighted_body(), *painted.weights, islands[0], scope);
@@ -109,7 +109,7 @@ TEST_CASE("weight problems: bones far apart in the rig are found in pairs, and t
     return v.z == 41 ? quantize({{3, 0.5}, {5, 0.5}}) : rigid_influence(0);
   });
   const auto far = of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::FarBones);
-  REQUIRE(far.size() == 2);  // 0 with 5, 1 with 5
+  REQUIRE(far.size() == 2);  // bones 0 and 5, and bones 1 and 5
   for (const WeightProblem& problem : far) CHECK(problem.voxels.size() == 2 * 12 * 12);
   CHECK(far[0].other == 5);
   EditScope scope;
@@ -156,7 +156,7 @@ TEST_CASE(
 TEST_CASE("weight problems: a small bone with air or flesh all around stays with what it follows") {
   Painted painted = good_bar();
   auto& volume = painted.body.volume;
-  // The lower bone's end becomes a bone of its own, apart by a slice of flesh.
+  // Cuts off the end of the lower bone by a slice of flesh.
   for (int y = 0; y < volume.grid.size.y; ++y)
     for (int x = 0; x < volume.grid.size.x; ++x)
       if (volume.at({x, y, 36}) == kBone) volume.at({x, y, 36}) = kMuscle;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights of real bodies carried to another spacing and back, and from one side to the other of a body whose sides
-// differ.
+// Transfers weights of real bodies to another spacing and back, and mirrors them in a body whose sides differ.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -47,7 +46,7 @@ struct Skinned {
   }
 };
 
-// Half of what the bones' weights differ by, in all: what share of a voxel follows another bone.
+// Returns half the sum of the weights' differences: the share of a voxel that follows another bone.
 double difference(const Influence& a, const Influence& b) {
   double sum = 0;
   for (int i = 0; i < 4; ++i) {
@@ -142,7 +141,7 @@ TEST_CASE(
         wrong += is != was;
         return;
       }
-      // Every voxel around the mirrored place, by the way there.
+      // Finds all voxels nearest to the mirrored position that may be the source, by brute force.
       const glm::dvec3 centre = to_voxel * plane.place(point);
       double nearest = 1e9;
       std::vector<glm::ivec3> sources;

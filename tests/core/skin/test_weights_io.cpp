@@ -117,7 +117,7 @@ TEST_CASE("weights io: packed weights are read, and refused when a byte is wrong
   CHECK(parse(packed) == made.weights);
   CHECK_THROWS_AS(parse(packed.substr(0, packed.size() - 1)), Error);
   std::string wrong = packed;
-  wrong[wrong.size() - 6] ^= 1;  // of the checksum
+  wrong[wrong.size() - 6] ^= 1;  // a bit of the checksum
   CHECK_THROWS_AS(parse(wrong), Error);
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("weights io: damaged weights and weights of another volume or rig are 
 
   std::string sum = whole, bone = whole;
   sum[sum.size() - 8] ^= 1;        // the last voxel's largest weight
-  bone[bone.size() - 16 + 1] = 9;  // its bone
+  bone[bone.size() - 16 + 1] = 9;  // the bone of that weight
   CHECK_THROWS_WITH_AS(parse(sum), doctest::Contains("sum to"), Error);
   CHECK_THROWS_WITH_AS(parse(bone), doctest::Contains("belongs to bone"), Error);
 

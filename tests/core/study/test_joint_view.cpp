@@ -10,7 +10,8 @@ using namespace limber;
 
 namespace {
 
-// A joint at `head` whose upper bone comes from `parent`, and whose lower bone went on straight before it turned.
+// Returns a joint at `head` whose upper bone starts at `parent`. The lower bone is turned from the straight
+// continuation.
 JointFigures bent(const glm::dvec3& parent, const glm::dvec3& head, const glm::dvec3& axis, double degrees) {
   const glm::dvec3 lower = glm::angleAxis(glm::radians(degrees), glm::normalize(axis)) * (head - parent);
   return {.bone = "Lower",
@@ -34,14 +35,14 @@ TEST_CASE("study pictures: a bent joint's fold faces the viewer, about whatever 
   for (const glm::dvec3& axis : {glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(1, 2, 0.3),
                                  glm::dvec3(0, 0.02, 1), glm::dvec3(-3, 1, 2)})
     for (const double degrees : {10.0, 45.0, 90.0, 140.0}) {
-      // The upper bone lies across the axis.
+      // The upper bone is perpendicular to the axis.
       const glm::dvec3 unit = glm::normalize(axis);
       const glm::dvec3 along = glm::normalize(glm::cross(unit, glm::dvec3(0.3, -0.2, 0.9)));
       const JointFigures joint = bent({5, 6, 7}, glm::dvec3(5, 6, 7) + 300.0 * along, axis, degrees);
       INFO("axis ", axis.x, " ", axis.y, " ", axis.z, ", ", degrees, " degrees");
       const glm::dvec3 fold = folding_side(joint);
       CHECK(std::abs(glm::dot(fold, unit)) < 1e-9);
-      // The fold lies between the bones, and an hour's hand that turns with the joint comes nearer to it.
+      // The fold lies between the two bones, on the side towards which the joint turns.
       const glm::dvec3 upper = glm::normalize(joint.parent_head - joint.head),
                        lower = glm::normalize(joint.tail - joint.head);
       CHECK(glm::dot(fold, upper) == doctest::Approx(glm::dot(fold, lower)));
@@ -57,9 +58,9 @@ TEST_CASE("study pictures: a bent joint's fold faces the viewer, about whatever 
 
 TEST_CASE("study pictures: a straight joint is seen from the side towards which it turned") {
   JointFigures joint = bent({0, 0, 0}, {0, 0, -300}, {-1, 0, 0}, 30);
-  joint.tail = {0, 0, -600};  // it rested bent, and the pose straightens it
+  joint.tail = {0, 0, -600};  // bent at rest; the pose straightens it
   CHECK(glm::distance(folding_side(joint), {0, -1, 0}) < 1e-9);
-  joint.parent_head = joint.tail = joint.head;  // bones without a length
+  joint.parent_head = joint.tail = joint.head;  // both bones have length 0
   check_frame(folding_view(joint, {0, 0, 0}));
 }
 

@@ -31,7 +31,7 @@ TEST_CASE("study methods: the text has the parameters that the reports say were 
     CHECK_MESSAGE(has(text.references, part), part);
   for (const char* part : {"Dionne", "dual quaternion", "TetGen", "Network flows"})
     CHECK_FALSE_MESSAGE(has(text.references, part), part);
-  // The numbers of references rise through the text.
+  // References are numbered in the order in which the text cites them.
   std::size_t at = 0;
   for (int number = 1; has(text.paragraphs, "[" + std::to_string(number) + "]"); ++number) {
     const std::size_t first = text.paragraphs.find("[" + std::to_string(number) + "]");

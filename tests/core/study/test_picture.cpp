@@ -19,7 +19,7 @@ std::uint32_t number_at(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-// The pixels of a PNG file of ours, by zlib; its checksums are checked on the way.
+// Decodes a PNG file by zlib, and checks its checksums.
 Picture decoded(const std::string& png) {
   REQUIRE(png.substr(0, 8) == "\x89PNG\r\n\x1a\n");
   Picture picture;
@@ -66,7 +66,7 @@ TEST_CASE("study pictures: a slice shows the voxel that each pixel lies in, on t
     LabelColours colours(65536);
     for (int label = 0; label < 5; ++label) colours[label] = glm::u8vec3(50 * label, 255 - 50 * label, label);
     const AffineTransform to_world = world_from_voxel(volume.grid);
-    // Seen along the grid's z: a pixel for each voxel of the slice z = 4, rows downward against y.
+    // The view looks along the grid's z: one pixel per voxel of the slice z = 4, with rows running against y.
     const PictureFrame frame{.centre = to_world * glm::dvec3(4, 3.5, 4),
                              .right = volume.grid.direction[0],
                              .up = volume.grid.direction[1],
@@ -80,7 +80,7 @@ TEST_CASE("study pictures: a slice shows the voxel that each pixel lies in, on t
           CHECK(glm::u8vec3(picture.rgb[3 * (9 * y + x)], picture.rgb[3 * (9 * y + x) + 1],
                             picture.rgb[3 * (9 * y + x) + 2]) == colours[label]);
         }
-    const std::size_t middle = 3 * (9 * 4 + 4);  // just below the centre
+    const std::size_t middle = 3 * (9 * 4 + 4);  // the pixel just below the centre
     CHECK(glm::u8vec3(picture.rgb[middle], picture.rgb[middle + 1], picture.rgb[middle + 2]) ==
           colours[volume.at({4, 3, 4})]);
   }

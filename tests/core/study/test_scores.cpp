@@ -13,7 +13,7 @@ using namespace limber;
 
 namespace {
 
-// Rows are raters, as papers print them; 0 is no score.
+// Makes a table from one row per rater, as papers print it; 0 means no score.
 ScoreTable table_of(const std::vector<std::vector<int>>& raters) {
   ScoreTable scores(raters.front().size());
   for (const auto& rater : raters)
@@ -27,7 +27,7 @@ const std::string kHead = "study,rater,order,picture,score,remark\r\n";
 }  // namespace
 
 TEST_CASE("scores: Krippendorff's alpha of his own example, with four raters and missing scores, is 0.815") {
-  // The data of Krippendorff 2011, Computing Krippendorff's alpha-reliability, section C; his ordinal alpha is 0.815.
+  // Data of Krippendorff 2011, Computing Krippendorff's alpha-reliability, section C, where the ordinal alpha is 0.815.
   const ScoreTable scores = table_of({{1, 2, 3, 3, 2, 1, 4, 1, 2, 0, 0, 0},
                                       {1, 2, 3, 3, 2, 2, 4, 1, 2, 5, 0, 3},
                                       {0, 3, 3, 3, 2, 3, 4, 2, 2, 5, 1, 0},
@@ -40,9 +40,8 @@ TEST_CASE("scores: Krippendorff's alpha of his own example, with four raters and
 }
 
 TEST_CASE("scores: Cohen's kappa with quadratic weights is as reckoned by hand") {
-  // Squared differences: 0 + 1 + 0 + 1 + 4 = 6. By chance: the mean of all 25 of {1,2,3,4,5} with {1,3,3,5,3}:
-  // 1: 0+4+4+16+4 = 28, 2: 1+1+1+9+1 = 13, 3: 4+0+0+4+0 = 8, 4: 9+1+1+1+1 = 13, 5: 16+4+4+0+4 = 28, together 90 / 5
-  // = 18.
+  // The squared differences sum to 0 + 1 + 0 + 1 + 4 = 6. By chance it would be the sum over all 25 pairs of {1, 2, 3,
+  // 4, 5} with {1, 3, 3, 5, 3}, divided by 5: 28 for score 1, then 13, 8, 13 and 28, together 90 / 5 = 18.
   const ScoreTable scores = table_of({{1, 2, 3, 4, 5, 0}, {1, 3, 3, 5, 3, 2}});
   CHECK(weighted_kappa(scores, 0, 1) == doctest::Approx(1 - 6.0 / 18));
   CHECK(mean_weighted_kappa(scores) == doctest::Approx(1 - 6.0 / 18));

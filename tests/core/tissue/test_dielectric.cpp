@@ -15,14 +15,14 @@ using namespace limber::test;
 
 namespace {
 
-// Values that others published, none of them the source of the parameters.
-//   Ifac   the IFAC-CNR calculator's own output (niremf.ifac.cnr.it/tissprop), as kept at
-//   github.com/NeuroForLunch/dielectric-properties-of-body-tissues BMEO   BioMedical Engineering OnLine 17 (2018),
-//   s12938-018-0473-9, table 3 Duke   the tissue file of the Virtual Family's Duke at 400 and 900 MHz, Chalmers
-//   (github.com/ravanis/Hyperthermia_Treatment_Plan), whose
-//          values come from fits over that band, so that they agree to 2 % only
-//   Mhz900 the IFAC-CNR calculator's output at 900 MHz for all tissues it knows, four digits, as kept in gprMax's
-//   AustinManWoman_materials.txt
+// Published values, none of which is the source of the parameters:
+//   Ifac    output of the IFAC-CNR calculator (niremf.ifac.cnr.it/tissprop), from
+//           github.com/NeuroForLunch/dielectric-properties-of-body-tissues
+//   BMEO    BioMedical Engineering OnLine 17 (2018), s12938-018-0473-9, table 3
+//   Duke    tissue file of the Virtual Family's Duke at 400 and 900 MHz, Chalmers
+//           (github.com/ravanis/Hyperthermia_Treatment_Plan); its values are fits over that band, so they agree to 2 %
+//   Mhz900  output of the IFAC-CNR calculator at 900 MHz for all its tissues, four digits, from gprMax's
+//           AustinManWoman_materials.txt
 enum Source { Ifac, BMEO, Duke, Mhz900 };
 struct Published {
   const char* row;
@@ -192,7 +192,7 @@ TEST_CASE("dielectric: tissues give what others published from 10 Hz to 100 GHz"
     REQUIRE_MESSAGE(row >= 0, published.row);
     ++checked[row];
     const Dielectric d = dielectric_at(table.parameters[row], published.frequency);
-    // As exact as the digits that were published; conductivities of dry skin at 10 kHz have two.
+    // The tolerance follows the digits that were published. Conductivities of dry skin at 10 kHz have two.
     const double epsilon = published.source == Duke ? 0.02 : published.source == Mhz900 ? 6e-4 : 1e-4;
     const double last_digit =
         published.source == BMEO ? (published.frequency == 1e4 && published.conductivity < 0.001 ? 5e-6 : 6e-5) : 0;
@@ -201,7 +201,7 @@ TEST_CASE("dielectric: tissues give what others published from 10 Hz to 100 GHz"
     CHECK(std::abs(d.conductivity - published.conductivity) <=
           (last_digit > 0 ? last_digit : epsilon * published.conductivity));
   }
-  CHECK(checked.size() == 46);  // the 44, gas, and an implant's metal
+  CHECK(checked.size() == 46);  // the 44 tissues, gas, and the metal of an implant
   for (const std::string& source : table.sources) CHECK(source.size() > 20);
 }
 
@@ -217,11 +217,12 @@ TEST_CASE("dielectric: permittivity falls and conductivity rises with frequency,
       before = here;
     }
   }
-  // No dispersion: the same at every frequency.
+  // Without dispersions, the values are the same at every frequency.
   const ColeCole plain{.epsilon_infinity = 5, .dispersions = {}, .conductivity = 0.3};
   CHECK(dielectric_at(plain, 10).permittivity == 5);
   CHECK(dielectric_at(plain, 1e11).conductivity == 0.3);
-  // One Debye dispersion, by hand, at w tau = 1: half of delta, and delta eps0 / (2 tau).
+  // One Debye dispersion at w tau = 1, by hand: the permittivity gains delta / 2, the conductivity delta eps0 / (2
+  // tau).
   const ColeCole debye{.epsilon_infinity = 2, .dispersions = {{{10, 1 / (2 * 3.14159265358979 * 1e9), 0}}}};
   CHECK(dielectric_at(debye, 1e9).permittivity == doctest::Approx(7));
   CHECK(dielectric_at(debye, 1e9).conductivity == doctest::Approx(5 * 2 * 3.14159265358979 * 1e9 * 8.8541878128e-12));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The 44 tissues against the source's own table and, at six frequencies each, against values that others published.
+// Compares the 44 tissues with the table of their source and, at six frequencies each, with values from other
+// publications.
 #include <array>
 #include <cmath>
 #include <map>
@@ -13,8 +14,8 @@ using namespace limber;
 
 namespace {
 
-// C. Gabriel, AL/OE-TR-1996-0037 (1996), Appendix C, summary table, as kept at gbppr.net/mil/ads/dielectric: parameters
-// in the table's order and units (tau in ps, ns, us, ms), conductivities rounded to three decimals.
+// C. Gabriel, AL/OE-TR-1996-0037 (1996), Appendix C, summary table, from gbppr.net/mil/ads/dielectric: parameters in
+// the order and units of the table (tau in ps, ns, us, ms), conductivities rounded to three decimals.
 struct AppendixC {
   const char* row;
   std::array<double, 14> value;  // ef, del1, tau1, alf1, del2, tau2, alf2, sig, del3, tau3, alf3, del4, tau4, alf4
@@ -66,8 +67,8 @@ const std::vector<AppendixC> kAppendixC = {
     {"vitreous humour", {4, 65, 7.234, 0, 30, 159.155, 0.1, 1.5, 0, 159.155, 0, 0, 15.915, 0}},
 };
 
-// What the parameters of version 5 of the IT'IS database (2025) give, as computed by GOLIAT and kept in its repository
-// (rwydaegh/goliat, material_properties_cache.json). It holds all of the 44 but wet skin.
+// Values of the IT'IS database, version 5 (2025), for all of the 44 tissues but wet skin, as GOLIAT computed them and
+// keeps them in its repository (rwydaegh/goliat, material_properties_cache.json).
 constexpr std::array<double, 6> kMegahertz = {450, 835, 1450, 2450, 3500, 5800};
 struct AtSix {
   const char* row;
@@ -378,8 +379,8 @@ const std::vector<AtSix> kByItis = {
 };
 
 // Wet skin: BioMedical Engineering OnLine 17 (2018), s12938-018-0473-9, table 3, whose conductivities have four
-// decimals, and at 900 MHz and 100 GHz the IFAC-CNR calculator. (At 200 kHz that paper's table does not go with its own
-// neighbours.)
+// decimals; at 900 MHz and 100 GHz the IFAC-CNR calculator. The paper's value at 200 kHz is left out, since it does not
+// fit the values beside it.
 struct At {
   double frequency;
   Dielectric value;
@@ -391,7 +392,8 @@ constexpr std::array<At, 6> kWetSkin = {{{1e4, {29010, 0.0029}},
                                          {9e8, {46.08, 0.8447}},
                                          {1e11, {7.2453, 46.117}}}};
 
-// The model in real numbers: 1 / (1 + x (cos + i sin)) with x = (w tau)^(1 - alpha), the angle (1 - alpha) 90 degrees.
+// Computes the Cole-Cole model in real numbers: 1 / (1 + x (cos a + i sin a)) with x = (w tau)^(1 - alpha) and a = (1 -
+// alpha) 90 degrees.
 Dielectric model(const std::array<double, 14>& p, double frequency) {
   const double w = 2 * std::numbers::pi * frequency;
   const std::array<std::array<double, 3>, 4> terms = {{{p[1], p[2] * 1e-12, p[3]},
@@ -422,7 +424,7 @@ TEST_CASE("dielectric: the 44 tissues have the parameters of Gabriel's Appendix 
   CHECK(kAppendixC.size() == 44);
   for (const auto& [row, p] : kAppendixC) {
     const ColeCole& here = table.parameters[table.row_named(row)];
-    // Of three tissues the table shows a conductivity that is rounded: dielectric.csv has one more digit.
+    // The table rounds the conductivity of three tissues; dielectric.csv has one more digit.
     const double rounded = std::abs(here.conductivity - p[7]);
     CHECK_MESSAGE(rounded <= 0.0005, row);
     const std::array<double, 4> delta = {p[1], p[4], p[8], p[11]}, alpha = {p[3], p[6], p[10], p[13]};
@@ -443,7 +445,7 @@ TEST_CASE("dielectric: all 44 tissues have the values that others published, at 
   std::map<std::string, int> checked;
   for (const auto& [row, values] : kByItis) {
     const ColeCole& here = table.parameters[table.row_named(row)];
-    // IT'IS took yellow marrow's conductivity as it is printed, 0.001; IFAC-CNR's values at 1 MHz go with 0.0005.
+    // IT'IS uses the printed conductivity of yellow marrow, 0.001. The values of IFAC-CNR at 1 MHz fit 0.0005.
     const double siemens = std::string(row) == "bone marrow" ? 0.000501 : 0;
     for (std::size_t k = 0; k < kMegahertz.size(); ++k) {
       check_near(row, kMegahertz[k] * 1e6, dielectric_at(here, kMegahertz[k] * 1e6), values[k], 6e-6, siemens);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes with every name of the label tables in use leave for simulations by the commands, with no name unmatched.
+// Volumes with every name of the common label tables are converted for simulations, and no name remains unmatched.
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -29,7 +29,7 @@ std::size_t count(const std::string& text, const std::string& wanted) {
   return found;
 }
 
-// One voxel a name, in a row along x, with the table that names them: v.nrrd and t.json of the folder.
+// Writes v.nrrd and t.json: one voxel for each name, in a row along x, and the table that names them.
 void write_volume(const TemporaryFolder& folder, const std::vector<std::string>& names) {
   std::string voxels(2, '\0');
   nlohmann::json table;
@@ -46,7 +46,7 @@ void write_volume(const TemporaryFolder& folder, const std::vector<std::string>&
       << voxels;
 }
 
-// Each tissue has all that the three targets ask for, and each file holds every one of them.
+// Checks that each tissue has all that the three targets need, and that each file holds every tissue.
 void check_leaves(const std::vector<std::string>& names) {
   const TemporaryFolder folder;
   write_volume(folder, names);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The one table of tissues: names of the label tables that are in use, densities as their sources have them, mixtures.
+// Tests the table of tissues: names of the common label tables, densities as in their sources, and mixtures.
 #include "core/tissue/tissue_rows.h"
 
 #include <doctest/doctest.h>
@@ -23,13 +23,13 @@ Tissue tissue_named(const std::string& name) {
   return tissue;
 }
 
-// "kidney", "muscle (kind)", "none"
+// Returns the name of the matched row, "muscle (kind)" if only the kind matched, or "none".
 std::string row_of(const std::string& name) {
   const TissueMatch match = tissue_rows().match(tissue_named(name));
   return match.row < 0 ? "none" : tissue_rows().rows[match.row].names.name + (match.by_name ? "" : " (kind)");
 }
 
-// Every name has permittivity, a density with its source, and elements.
+// Checks that every tissue has a permittivity, a density with its source, and its elements.
 void check_known(const std::vector<Tissue>& tissues) {
   TissueTable table;
   table.tissues = tissues;
@@ -44,7 +44,7 @@ void check_known(const std::vector<Tissue>& tissues) {
   CHECK(media_of(table, read_composition_table(), "test").size() == tissues.size());
 }
 
-// Each name is the row that it should be, and all that a simulation needs is known of it.
+// Checks that each name matches the expected row, and that all data for a simulation are known.
 void check_names(const std::vector<NamesOfRow>& expected) {
   std::vector<Tissue> tissues;
   for (const auto& [row, names] : expected)
@@ -155,8 +155,8 @@ TEST_CASE("tissue rows: every structure of BodyParts3D and of the SPL knee is kn
 }
 
 TEST_CASE("tissue rows: densities are those of the tissue, not of its kind, as their sources have them") {
-  // kg/m3. ICRP 110: adult male, all 53 media, as the Geant4 example ICRP110_HumanPhantoms has them. IT'IS: means of
-  // its database, as its page on density had them in January 2026. ICRU 46: adult.
+  // Densities in kg/m3. ICRP 110: adult male, all 53 media, as in the Geant4 example ICRP110_HumanPhantoms. IT'IS:
+  // means of its database, from its page on density in January 2026. ICRU 46: adult.
   const std::pair<const char*, double> densities[] = {{"teeth", 2750},
                                                       {"cortical bone", 1920},
                                                       {"Humeri, upper half, spongiosa", 1205},
@@ -213,7 +213,7 @@ TEST_CASE("tissue rows: densities are those of the tissue, not of its kind, as t
                                                       {"lung_upper_lobe_left", 382},
                                                       {"stomach contents", 1040},
                                                       {"urine", 1040},
-                                                      {"air", 1},  // ICRP 110
+                                                      {"air", 1},  // up to here from ICRP 110
                                                       {"csf", 1007},
                                                       {"grey matter", 1045},
                                                       {"white matter", 1041},
@@ -225,7 +225,7 @@ TEST_CASE("tissue rows: densities are those of the tissue, not of its kind, as t
                                                       {"sclera", 1032},
                                                       {"cornea", 1062},
                                                       {"eye_lens_left", 1076},
-                                                      {"vitreous humour", 1005},  // IT'IS
+                                                      {"vitreous humour", 1005},  // up to here from IT'IS
                                                       {"vertebrae_L3", 1330},
                                                       {"vertebrae_C4", 1420},
                                                       {"skull", 1610},
@@ -233,7 +233,7 @@ TEST_CASE("tissue rows: densities are those of the tissue, not of its kind, as t
                                                       {"femur_left", 1420},
                                                       {"sternum", 1250},
                                                       {"sacrum", 1290},
-                                                      {"cancellous bone", 1180}};  // ICRU 46
+                                                      {"cancellous bone", 1180}};  // from ICRU 46
   for (const auto& [name, density] : densities)
     CHECK_MESSAGE(tissue_named(name).density == doctest::Approx(density / 1000), name);
   CHECK(usual_density(tissue_named("liver")).row == "liver");

@@ -206,7 +206,7 @@ TEST_CASE("tissue table: organs have the colours of anatomy atlases in any vocab
                   artery = colour("aorta", TissueKind::Vessel);
   CHECK((bile.g > bile.r && bile.g > bile.b));
   CHECK((vein.b > vein.r && artery.r > artery.b));
-  // What has no organ's name is told apart by its label, and kinds keep their colours.
+  // Tissues without an organ's name get a colour by their label, and kinds keep theirs.
   CHECK(organ("thing", 5) != organ("thing", 6));
   CHECK(colour("Left brachialis", TissueKind::Muscle) == colour("Right soleus", TissueKind::Muscle));
 }

@@ -13,7 +13,7 @@ using namespace limber;
 
 namespace {
 
-// Noise over a ramp, with values from -1000 to 2000, on an oblique grid whose size is no multiple of a block.
+// Noise on a ramp, with values from -1000 to 2000, on an oblique grid whose size is not a multiple of a block.
 struct Noise {
   Grid grid{{37, 21, 19}, {0.7, 1, 2}, {5, -3, 11}, glm::dmat3(1)};
   std::vector<float> values;
@@ -59,7 +59,7 @@ TEST_CASE("grey levels: no value interpolated in a block is outside the block's 
   std::mt19937 random(11);
   const auto coordinate = [&](int size) { return double(random() % 100000) / 100000 * size; };
   for (int i = 0; i < 20000; ++i) {
-    // A point as the shader has it: voxel v covers [v, v + 1), and its centre is at v + 1/2.
+    // In the shader's coordinates, voxel v covers [v, v + 1) and has its centre at v + 1/2.
     const glm::dvec3 p(coordinate(37), coordinate(21), coordinate(19));
     const glm::ivec3 block = glm::ivec3(p) / GreyLevels::kBlock, blocks = image.blocks();
     const auto& range = image.ranges[static_cast<std::size_t>(block.x + blocks.x * (block.y + blocks.y * block.z))];

@@ -11,7 +11,7 @@ using namespace limber;
 
 namespace {
 
-// Stretches of air and of tissue; labels with the highest bit too.
+// Returns runs of air and of tissue, also with labels that use the highest bit.
 std::vector<Label> random_row(int size, unsigned key) {
   std::mt19937 random(key);
   std::vector<Label> row;

@@ -121,8 +121,8 @@ TEST_CASE("label sampler: a point that is not a number, or far away, is air") {
 }
 
 namespace {
-// `from` turned by `degrees` about z through the point `centre` (voxel coordinates of `from`), on the grid of `to`,
-// whose voxel 0 lies at `shift` in those coordinates.
+// Turns a volume by `degrees` about z through the point `centre`, and samples it on the grid of `to`. Coordinates are
+// voxels of the original; voxel 0 of the turned volume lies at `from_shift`, voxel 0 of `to` at `to_shift`.
 template <class Sample>
 void turn(double degrees, const glm::dvec2& centre, const glm::dvec3& from_shift, const glm::dvec3& to_shift,
           LabelVolume& to, const Sample& sample) {
@@ -144,7 +144,7 @@ struct Agreement {
 };
 
 Agreement dice(const LabelVolume& a, const LabelVolume& b) {
-  std::vector<std::array<double, 3>> count(65536);  // in a, in b, in both
+  std::vector<std::array<double, 3>> count(65536);  // voxels in a, in b, in both
   for (size_t i = 0; i < a.voxels.size(); ++i) {
     ++count[a.voxels[i]][0];
     ++count[b.voxels[i]][1];
@@ -185,5 +185,5 @@ TEST_CASE("label sampler: the arm turned by 45 degrees and back agrees better th
   const Agreement agreement = dice(arm, back);
   CHECK(agreement.mean > 0.932);                                              // cubic B-splines: 0.9270
   CHECK(agreement.by_voxels > 0.971);                                         // 0.9691
-  CHECK(agreement.volume_ratio.at(143) == doctest::Approx(1).epsilon(0.01));  // skin, one voxel thin
+  CHECK(agreement.volume_ratio.at(143) == doctest::Approx(1).epsilon(0.01));  // skin, which is one voxel thick
 }

@@ -15,7 +15,7 @@ int sides_of(const glm::ivec3& v, const glm::ivec3& size) {
   return sides;
 }
 
-// Voxel by voxel, from every border voxel of so many sides.
+// Floods air voxel by voxel from all voxels that lie at `sides` or more faces of the grid.
 std::vector<std::uint8_t> flooded(const LabelVolume& volume, int sides) {
   std::vector<std::uint8_t> outside(volume.voxels.size(), 0);
   std::vector<glm::ivec3> open;
@@ -54,7 +54,7 @@ TEST_CASE("outside air: boxes of tissue with holes, free or against any sides, g
       low[axis] = random() % 3 == 0 ? 0 : int(random() % size);
       high[axis] = random() % 3 == 0 ? size - 1 : low[axis] + int(random() % (size - low[axis]));
     }
-    const unsigned air = random() % 4;  // in fifths
+    const unsigned air = random() % 4;  // share of air, in fifths
     for (int z = low.z; z <= high.z; ++z)
       for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) volume.at({x, y, z}) = random() % 5 >= air ? 1 : 0;

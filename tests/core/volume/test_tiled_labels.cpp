@@ -15,7 +15,7 @@ using namespace limber;
 
 namespace {
 
-// Random blobs of three labels in air, of a size that fills no tile at its ends.
+// Makes random blobs of three labels in air, in a size that does not fill the last tiles.
 LabelVolume blobs(const glm::ivec3& size, unsigned seed) {
   std::mt19937 random(seed);
   LabelVolume volume{{.size = size}, ZeroedVector<Label>(std::size_t(size.x) * size.y * size.z)};

@@ -13,8 +13,8 @@ TEST_CASE("tissue set: it spreads to what hangs together with it through faces, 
     LabelVolume volume;
     volume.grid.size = {19 + int(seed), 17, 26};
     volume.voxels.resize(volume.grid.voxel_count());
-    // Labels 2 and 3 are spread through, 1 is not, 3 is where it starts; near the threshold of percolation ways are
-    // long.
+    // The search starts at label 3 and may spread through 2 and 3, but not through 1. Shares near the percolation
+    // threshold make long paths.
     for (Label& label : volume.voxels) {
       const unsigned draw = random() % 1000;
       label = draw < 50 ? 0 : draw < 640 ? 1 : draw < 997 ? 2 : 3;

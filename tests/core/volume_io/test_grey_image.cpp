@@ -14,7 +14,7 @@ using namespace limber;
 
 namespace {
 
-// Voxels of 2 x 1 x 3 mm whose value tells their place; rows run to the patient's right.
+// Makes voxels of 2 x 1 x 3 mm whose value gives their index. Rows run to the patient's right.
 GreyVolume numbered() {
   GreyVolume volume;
   volume.grid = {{4, 5, 3}, {2, 1, 3}, {10, 20, 30}, glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1)};
@@ -61,13 +61,13 @@ TEST_CASE("grey image: a slice shows the voxel at each place of the world, nothi
         REQUIRE(picture.size() == 1);
         CHECK(picture[0] == 100 * z + 10 * y + x);
       }
-  // To the right in the world is back along the rows.
+  // To the right in the picture is backwards along the rows.
   GreyFrame frame = axial(volume, {1, 2, 1});
   frame.size = {9, 1};
   frame.millimetres_per_pixel = 2;
   const auto row = grey_slice(volume, frame);
   for (const auto& [pixel, value] : {std::pair(2, 123), {3, 122}, {4, 121}, {5, 120}}) CHECK(row[pixel] == value);
-  frame.middle.x += 0.8;  // the nearest voxel stays the same up to half of its width
+  frame.middle.x += 0.8;  // mm: less than half a voxel, so the nearest voxel stays the same
   CHECK(grey_slice(volume, frame)[3] == 122);
   frame.middle.x += 0.4;
   CHECK(grey_slice(volume, frame)[3] == 121);
@@ -83,7 +83,7 @@ TEST_CASE("grey image: a projection shows the largest value on each line of sigh
     const auto picture = grey_projection(volume, axial(volume, voxel));
     CHECK(picture[0] == value);
   }
-  // From the front, whatever the picture's middle is.
+  // Views from the front, with the middle of the picture anywhere along the line of sight.
   GreyFrame front{.middle = world_from_voxel(volume.grid) * glm::dvec3(2, 40, 1), .down = {0, 0, -1}};
   CHECK(grey_projection(volume, front)[0] == 5000);
   front.middle.z += 3;

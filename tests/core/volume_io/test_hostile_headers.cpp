@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small files that ask for much, and numbers that no image or rig has: refused with one line, within little memory.
+// Small files that ask for much memory, and numbers that no image or rig can have, are refused with one line and little
+// memory.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -46,7 +47,7 @@ void check_refused(const ProgramRun& run) {
   CAPTURE(run.err);
   CHECK(run.exit_code == 1);
   CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-#ifndef LIMBER_ADDRESS_SANITIZER  // its reader has no limit on memory
+#ifndef LIMBER_ADDRESS_SANITIZER  // the sanitizer's reader has no memory limit
   CHECK(run.peak_mb < 150);
 #endif
   CHECK(run.cpu_seconds < 5);
@@ -59,7 +60,7 @@ TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no m
   const std::string claim = little_endian(9, 2) + little_endian(0x1001, 2) + "UN" + little_endian(0, 2);
   for (const std::uint32_t length : {0xfffffff0u, 0x7ffffff0u, 0x20000000u})
     check_refused(info(folder, "image.dcm", dicom_start() + claim + little_endian(length, 4) + "a few bytes"));
-  // An image of 65535 by 65535 pixels that are not there, in a file of a megabyte.
+  // Names an image of 65535 x 65535 pixels in a file of a megabyte.
   std::string large = dicom_image("1");
   for (const std::uint16_t side : {0x10, 0x11}) {
     const std::string name = little_endian(0x28, 2) + little_endian(side, 2) + "US" + little_endian(2, 2);

@@ -10,7 +10,7 @@ using namespace limber;
 
 namespace {
 
-// Bytes in runs of zeros and of other bytes, of random lengths.
+// Returns runs of zeros and of other bytes, of random lengths.
 std::string random_bytes(std::mt19937& random) {
   std::string bytes;
   for (int run = static_cast<int>(random() % 8); run > 0; --run) {

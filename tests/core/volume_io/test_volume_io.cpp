@@ -71,7 +71,7 @@ std::string patched(std::string bytes, std::size_t place, T value) {
   return bytes;
 }
 
-// What the refusal says; empty when the file is read.
+// Returns the error message; empty if the file is read.
 std::string refusal(const Path& path) {
   try {
     read_volume(path);
@@ -333,7 +333,7 @@ TEST_CASE("volume io: bad files are refused with one line, whatever their format
   const auto refuse = [&](const std::string& extension, const std::string& bytes, const std::string& reason) {
     refused_for(folder.write("bad" + std::to_string(number++) + extension, bytes), reason);
   };
-  // Data that are not there, damaged, or hold less than they should.
+  // Tests data that are missing, damaged, or too short.
   refuse(".nrrd", nrrd(kCube, kEight.substr(1)), "promises 8 bytes");
   refuse(".nrrd", nrrd("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: gzip\n", packed(kEight, 31).substr(0, 12)),
          "data end after");
@@ -351,7 +351,7 @@ TEST_CASE("volume io: bad files are refused with one line, whatever their format
          "does not fit");
   refuse(".nii", nifti().substr(0, 352), "promises 8 bytes");
   refuse(".nii", nifti().substr(0, 300), "no NIfTI");
-  // Sizes, spacing, directions that cannot be.
+  // Tests impossible sizes, spacings and directions.
   refuse(".mha", meta("DimSize = 0 2 2\nElementType = MET_UCHAR\n", kEight), "at least one voxel");
   refuse(".mha", meta("DimSize = 2000000000 2000000000 2000000000\nElementType = MET_UCHAR\n", kEight), "overflows");
   refuse(".mha", meta("CompressedData = True\nDimSize = 4000 4000 4000\nElementType = MET_UCHAR\n", packed(kEight, 15)),
@@ -365,7 +365,7 @@ TEST_CASE("volume io: bad files are refused with one line, whatever their format
   refuse(".nrrd", nrrd("type: uint8\ndimension: 3\nsizes: 2 2\nencoding: raw\n", kEight), "sizes");
   refuse(".nii", patched<float>(nifti(), 80, -1.0f), "pixdim");
   refuse(".nii", patched<float>(nifti(), 84, nan), "pixdim");
-  // More than one volume, colours, other things.
+  // Tests files of several volumes, colours and other unsupported content.
   refuse(".mha", "NDims = 4\nDimSize = 2 2 1 2\nElementType = MET_UCHAR\nElementDataFile = LOCAL\n" + kEight, "4-D");
   refuse(".mha", meta("ElementNumberOfChannels = 2\nDimSize = 2 2 1\nElementType = MET_UCHAR\n", kEight), "channels");
   refuse(".mha", meta("ElementType = MET_UCHAR\n", kEight), "DimSize");
@@ -475,7 +475,7 @@ TEST_CASE("volume io: a DICOM series and the labels made from it lie at the same
   const Grid labels = read_volume(test::shared_path("data/torso/ts_seg_of_dicom.nii.gz")).volume.grid;
   CHECK(series.grid.size == labels.size);
   CHECK(glm::length(series.grid.spacing - labels.spacing) < 1e-5);
-  // The labels' rows run the other way: the corners of one are the corners of the other.
+  // The rows of the labels run in the opposite direction, so the corners swap.
   const glm::dvec3 corner = world_from_voxel(labels) * glm::dvec3(0, labels.size.y - 1, 0);
   CHECK(glm::length(corner - series.grid.origin) < 1e-3);
   CHECK(*std::min_element(series.voxels.begin(), series.voxels.end()) == -1024);

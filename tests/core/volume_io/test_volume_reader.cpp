@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes are parsed in a process without rights: the same bytes come of it, and nothing else can.
+// Volumes are parsed in a process without rights. The results are the same bytes, and a bad parser can do no harm.
 #include "core/volume_io/volume_reader.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// All that a volume's parser says: the header, the voxels and what it says at their end; or its error.
+// Returns all that a volume's parser delivers as one string: header, voxels and the data after them, or its error.
 std::string told(const std::function<OpenedVolume()>& open) {
   try {
     OpenedVolume opened = open();
@@ -37,7 +37,7 @@ std::string told(const std::function<OpenedVolume()>& open) {
     if (!opened.voxels) return all;
     std::string voxels(static_cast<std::size_t>(opened.header.grid.voxel_count() * size_of(opened.header.voxel_type)),
                        '\0');
-    // In uneven pieces, which do not end where the reader's messages end.
+    // Reads in pieces of growing size, which do not match the reader's messages.
     for (std::size_t done = 0, piece = 1; done < voxels.size(); done += piece) {
       piece = std::min(voxels.size() - done, piece * 3 % 100'003 + 1);
       opened.voxels->read(voxels.data() + done, piece);
@@ -76,7 +76,7 @@ void write(const Path& path, const std::string& bytes) { std::ofstream(path, std
 
 const std::string kNrrd = "NRRD0005\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
 
-// A volume that the bad reader does this with.
+// Writes a volume on which the bad reader misbehaves in the given way.
 Path bad_volume(const TemporaryFolder& folder, const std::string& what) {
   fs::create_directories(folder / "inner");
   const Path path = folder / "inner" / "bad.nrrd";
@@ -88,7 +88,7 @@ struct Limits {
   double busy_seconds = 20, silent_seconds = 120;
 };
 
-// What becomes of a reader that does this; empty when the volume is read.
+// Returns the error if the reader misbehaves in this way; empty if the volume is read.
 std::string outcome(const std::string& what, const Limits& limits = {}) {
   const TemporaryFolder folder;
   write(folder / "other.raw", "12345678");

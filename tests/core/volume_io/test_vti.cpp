@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// VTK images: files written by hand in each of the forms that VTK writes, what is written comes back, and damage is
-// told.
+// Tests VTK images: files by hand in each form that VTK writes, files that the program writes and reads back, and
+// damaged files.
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -21,7 +21,7 @@ Path file_with(const char* name, const std::string& text) {
   return path;
 }
 
-// 2 x 3 x 1 points, with what stands for the data.
+// Returns an image of 2 x 3 x 1 points with the given data array.
 std::string image(const std::string& array, const std::string& behind = "", const std::string& file_attributes = "",
                   const std::string& in = "PointData") {
   const std::string extent = in == "PointData" ? "2 3 0 2 0 0" : "2 4 0 3 0 1";
@@ -68,7 +68,7 @@ void check_labels(const Path& path) {
   CHECK(file.type.format == "VTK image");
   CHECK(file.volume.grid.size == glm::ivec3(2, 3, 1));
   CHECK(file.volume.grid.spacing == glm::dvec3(2, 3, 4));
-  CHECK(file.volume.grid.origin == glm::dvec3(14, 20, 30));  // of the extent's first point
+  CHECK(file.volume.grid.origin == glm::dvec3(14, 20, 30));  // position of the extent's first point
   std::vector<double> values;
   for (const Label label : file.volume.voxels) values.push_back(label == 0 ? 0 : file.tissues.find(label)->file_value);
   CHECK(values == std::vector<double>(kLabels.begin(), kLabels.end()));
@@ -165,7 +165,7 @@ TEST_CASE("vti: damage is told in a line") {
   const std::string zlib = R"(compressor="vtkZLibDataCompressor")", a = packed(kShorts);
   const auto length = static_cast<std::uint32_t>(a.size());
   std::string wrong = a;
-  wrong[a.size() - 1] ^= 1;  // of the checksum
+  wrong[a.size() - 1] ^= 1;  // a bit of the checksum
   CHECK(raw(bytes_of<std::uint32_t>({1, 12, 0, length}) + a, zlib).empty());
   CHECK(raw(bytes_of<std::uint32_t>({1, 12, 0, length}) + wrong, zlib).find("damaged") != std::string::npos);
   CHECK(raw(bytes_of<std::uint32_t>({1, 20, 0, length}) + a, zlib).find("not as long") != std::string::npos);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Choosing, hiding and clipping; volume preparation, weights, pose and results: edits, which are undone.
+// Proves the operators that select, hide and clip, prepare volumes, and make weights, poses and results. All can be
+// undone.
 #include <fstream>
 
 #include "core/prepare/prepare.h"
@@ -20,14 +21,14 @@ using Effect = std::function<bool(Stage&, const Seen&)>;
 Effect becomes(const char* fact, const char* value = "shown") {
   return [=](Stage& s, const Seen&) { return s.is(fact, value); };
 }
-// One edit with that label, after which the fact holds.
+// The effect is one edit with this label, after which the query `fact` has this value.
 Effect edits(const char* label, const char* fact, const char* value) {
   return [=](Stage& s, const Seen& b) {
     return s.is("edit", label) && s.is(fact, value) &&
            static_cast<int>(s.editor().history.position()) == b.position + 1;
   };
 }
-// The volume becomes what that function makes of it.
+// The effect is the volume that `expected` makes of the old one.
 Effect makes(LabelVolume (*expected)(const LabelVolume&)) {
   return [=](Stage& s, const Seen& b) {
     const LabelVolume volume = expected(*b.document.volume);
@@ -37,7 +38,7 @@ Effect makes(LabelVolume (*expected)(const LabelVolume&)) {
 bool weighted(Stage& s, const Seen& b) { return s.document().weights && s.document().weights != b.document.weights; }
 std::size_t results(Stage& s) { return s.document().results.size(); }
 
-// A result whose mesh is swollen on the left side of the body.
+// Adds a result whose mesh is swollen on the left side of the body.
 void solved_limb(Stage& stage) {
   stage.open_limb();
   Document next = stage.document();
@@ -86,7 +87,7 @@ std::vector<Proof> proofs_of_tissues() {
          return s.editor().selection.tissues == std::set<Label>{17, 143};
        },
        Shows::Nothing, "click Muscle/17/name\n wait-idle",
-       [](Stage& s) { s.editor().views->bones = false; }},  // a bone under the pointer would come first
+       [](Stage& s) { s.editor().views->bones = false; }},  // otherwise a bone under the pointer would be selected
       {"select.all", "move \"3D view/view\"\n key A", becomes("selected", "4"), Shows::Nothing, "click Muscle/17/name",
        [](Stage& s) { s.editor().views->bones = true; }},
       {"select.pick_list", "click \"3D view/view\" Alt",
@@ -189,7 +190,7 @@ std::vector<Proof> proofs_of_work() {
        [](Stage& s, const Seen&) { return s.editor().resampling.method == "dqs"; }},
       {"resample.fem", "click Edit/Resample/FEM",
        [](Stage& s, const Seen&) { return s.editor().resampling.method == "fem"; }},
-      // The worker takes its time, so that there is something to watch.
+      // The worker is slow, so that there is a solve to watch.
       {"result.watch", "click \"Edit/Resample/Watch the solve\"",
        [](Stage& s, const Seen&) { return s.editor().fem->watched == 0 && !s.editor().fem->solves.empty(); },
        Shows::Nothing, "key Ctrl+Return",
@@ -237,8 +238,8 @@ std::vector<Proof> proofs_of_work() {
 
 TEST_CASE("operators: tissues are chosen, hidden and cut, and edits undone") {
   Stage stage;
-  for (const char* above : {"Steps", "Bone"})
-    stage.editor().open_sections[above] = false;  // the tissues below are chosen
+  // Folds the panels above, so that the tissues are in view.
+  for (const char* above : {"Steps", "Bone"}) stage.editor().open_sections[above] = false;
   prove(stage, proofs_of_tissues());
 }
 

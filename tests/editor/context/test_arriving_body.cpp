@@ -37,7 +37,7 @@ TEST_CASE("arriving body: without frames a job goes on at once, and a cancelled 
   editor::ArrivingBodies arriving;
   const auto body = render::prepared_body(cube(), {}, render::Display::Solid, {.side = 2048}, no_progress());
   CHECK_FALSE(arriving.has_frames());
-  arriving.await(body, no_progress());  // returns, though nobody uploads
+  arriving.await(body, no_progress());  // returns although nothing uploads the body
 
   class Stoppable : public Progress {};
   Stoppable progress;

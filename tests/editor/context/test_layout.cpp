@@ -89,7 +89,7 @@ TEST_CASE("layout: below 1100 the sidebar is closed, and opened lies over the vi
   CHECK(layout.views.high.x == 1024);
   CHECK(layout.sidebar.width() == 280);
   CHECK(layout.view_at({1000, 300}) == nullptr);
-  CHECK(arrange({2048, 1280}, 2, {}).sidebar.empty());  // the same window, twice as fine
+  CHECK(arrange({2048, 1280}, 2, {}).sidebar.empty());  // the same window at twice the resolution
 }
 
 TEST_CASE("layout: a splitter goes where it is dragged, within its limits, and back by a double click") {

@@ -4,7 +4,7 @@
 #include "tests/editor/small_editor.h"
 
 namespace limber::editor {
-// As in dialog.h, which includes ImGui; tests are built without its headers.
+// Declared again here, as dialog.h includes ImGui and tests are built without its headers.
 Rect begin_dialog(Editor& editor, const std::string& title, float width, float height,
                   const std::function<void()>& close);
 void end_dialog(Editor& editor);

@@ -20,7 +20,7 @@ struct AdjustingEditor : LimbEditor {
     editor->selection.bones = {*editor->selection.bone};
     editor->transform_settings->part = TransformSettings::Part::Whole;
   }
-  // Of what was done last; a number, or the number of a choice.
+  // Changes a field of the last operation to a number, or to the choice with this index.
   void change(const std::string& label, double value) {
     REQUIRE(why_not_redo(*editor) == "");
     std::vector<FormField> fields = editor->last_operation->fields;
@@ -39,7 +39,7 @@ TEST_CASE("adjust: what was done with a number is as if it had been done with th
   struct Deed {
     const char *ready, *keys, *label;
     double value;
-    const char* directly;  // keys that do it with that value at once
+    const char* directly;  // keys that apply this value at once
   };
   AdjustingEditor test;
   test.play("key Num1\nmove \"3D view/view\"\nwait-idle");
@@ -62,7 +62,7 @@ TEST_CASE("adjust: what was done with a number is as if it had been done with th
          "key Alt+E\nkey 2\nkey 5\nkey Return"}}) {
     CAPTURE(deed.keys);
     CAPTURE(deed.label);
-    // What comes out of it, done with that value at once or adjusted to it.
+    // The result of applying the value at once, or of adjusting the last operation to it.
     struct Outcome {
       std::string edit;
       Armature rig;
@@ -169,7 +169,8 @@ TEST_CASE("adjust: the box in the view unfolds and its numbers act, and forms ha
   CHECK(test.rig().bones[1].tail == glm::dvec3(3, 0, -36));
   CHECK(test.position() == 1);
   test.play("move \"3D view/view\"\nkey F9\nwait-idle\nkey Escape");
-  CHECK(test.editor->last_operator == "rig.move");  // what is repeated is the deed, not its form
+  // The operator can be repeated; adjusting its form does not count as one.
+  CHECK(test.editor->last_operator == "rig.move");
   test.play("key Ctrl+F2\nclick Bones/All\nclick Suffix/text\ntype \".L\"\nwait-idle\nkey Return\nwait-idle");
   REQUIRE(test.rig().bones[1].name == "Fore.L");
   test.play(

@@ -10,7 +10,7 @@ using namespace limber::editor;
 
 namespace {
 
-// A picture in which a pixel is half a millimetre of the body.
+// Returns a picture in which one pixel is half a millimetre of the body.
 FigureSource source_with(const std::vector<std::string>& names) {
   FigureSource source;
   source.legend = [names](const glm::ivec2&) {
@@ -32,7 +32,7 @@ struct Box {
   glm::dvec2 low, high;
 };
 
-// The places of all parts, of texts from the height of an accent to that of a descender.
+// Returns the boxes of all parts in mm. The box of a text reaches from its accents to its descenders.
 std::vector<Box> parts_of(const FigureLayout& layout) {
   const double pixel = 25.4 / layout.options.dots_per_inch;
   std::vector<Box> parts = {
@@ -44,7 +44,7 @@ std::vector<Box> parts_of(const FigureLayout& layout) {
   return parts;
 }
 
-// That every part lies in the figure, and none over another.
+// Checks that every part lies in the figure, and that no two overlap.
 void check_room(const FigureLayout& layout) {
   const std::vector<Box> parts = parts_of(layout);
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -100,7 +100,7 @@ TEST_CASE("figure layout: a name wider than the figure is broken into lines, wit
   CHECK(layout.texts.back().text == "short");
   CHECK(lettering.lines("one\n two\tthree  four", false, 100) == std::vector<std::string>{"one two three four"});
   CHECK(lettering.lines("", false, 100).empty());
-  CHECK(lettering.lines("f\u00fcr \u00e4u\u00dferst enge Spalten", false, 1.2).size() > 5);  // no character is cut
+  CHECK(lettering.lines("f\u00fcr \u00e4u\u00dferst enge Spalten", false, 1.2).size() > 5);  // every character fits
 }
 
 TEST_CASE("figure layout: the scale bar stands for a round length, and says where it holds") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Figures and videos of the command line.
+// Tests figures and videos that the command line makes.
 #include <cstdlib>
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ using namespace limber::test;
 
 namespace {
 
-// Four posts whose edges are 100 mm apart in x and in y, each of two tissues one above the other.
+// Writes four posts whose edges are 100 mm apart in x and in y. Each has one tissue above another.
 std::string write_posts(const TemporaryFolder& folder) {
   LabelVolume volume;
   volume.grid.size = {65, 65, 60};
@@ -32,7 +32,7 @@ std::string write_posts(const TemporaryFolder& folder) {
   return path;
 }
 
-// Black as ink, which no shadow on the posts is.
+// Returns true for pure black, which no shadow on the posts has.
 bool is_ink(const render::Image& image, int x, int y) {
   const std::uint8_t* p = image.rgba.data() + (std::size_t(y) * image.size.x + x) * 4;
   return p[0] == 0 && p[1] == 0 && p[2] == 0;
@@ -42,7 +42,7 @@ bool is_colour(const render::Image& image, int x, int y) {
   return std::max({p[0], p[1], p[2]}) - std::min({p[0], p[1], p[2]}) > 40;
 }
 
-// The longest row of pixels of ink.
+// Returns the length of the longest row of black pixels.
 int bar_length(const render::Image& image) {
   int longest = 0;
   for (int y = 0; y < image.size.y; ++y)
@@ -53,7 +53,7 @@ int bar_length(const render::Image& image) {
   return longest;
 }
 
-// The distance of the left edges of two posts, pixels, in the upper part of the picture.
+// Returns the distance in pixels between the left edges of two posts in the upper part of the picture.
 int post_distance(const render::Image& image) {
   for (int y = image.size.y / 10; y < image.size.y / 2; ++y) {
     std::vector<int> edges;
@@ -84,7 +84,7 @@ TEST_CASE("render figure: the scale bar is as long as the same length of a body 
       const render::Image image = render::read_png(png);
       CHECK(image.size == glm::ivec2(std::lround(80 * std::atof(dpi) / 25.4)));
       const int posts_pixels = post_distance(image), bar_pixels = bar_length(image);
-      // Which round length the bar stands for follows from its own length: those next to it are twice as long or half.
+      // Finds the round length that the bar stands for: the other round lengths are at least twice or half of it.
       const double millimetres = 100.0 * bar_pixels / posts_pixels;
       const double round = millimetres > 35 ? 50 : millimetres > 15 ? 20 : 10;
       INFO("posts ", posts_pixels, " pixels, bar ", bar_pixels, " for ", round, " mm");
@@ -172,7 +172,7 @@ TEST_CASE("render video: a turntable becomes a video through ffmpeg, and without
                         other = render::read_png(folder / (name + "-2.png"));
     CHECK(first.size == glm::ivec2(162, 122));
     CHECK(first.rgba != other.rgba);
-    int orange = 0;  // of the upper halves of the posts
+    int orange = 0;  // pixels of the posts' upper halves
     for (std::size_t i = 0; i < first.rgba.size(); i += 4) orange += first.rgba[i] > first.rgba[i + 2] + 40;
     CHECK(orange > 100);
   }

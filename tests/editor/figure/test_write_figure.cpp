@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Figures in files, read back by other programs.
+// Reads figures back by other programs.
 #include "editor/figure/write_figure.h"
 
 #include <doctest/doctest.h>
@@ -25,7 +25,7 @@ FigureLayout small_layout(const Lettering& lettering, FigureOptions::Paper paper
   return figure_layout(options, source, lettering);
 }
 
-// A disc of one colour, with a soft rim, without a background.
+// Draws a disc of one colour with a soft edge on a transparent background.
 render::Image disc(const glm::ivec2& size) {
   render::Image image{size, std::vector<std::uint8_t>(std::size_t(size.x) * size.y * 4)};
   for (int y = 0; y < size.y; ++y)
@@ -38,7 +38,7 @@ render::Image disc(const glm::ivec2& size) {
   return image;
 }
 
-// What ImageMagick tells of a file.
+// Returns what ImageMagick's `identify` prints of a file.
 std::string identified(const std::filesystem::path& path, const std::string& format) {
   const auto run = run_program("identify", {"-format", format, path.string()});
   INFO(run.err);
@@ -46,7 +46,7 @@ std::string identified(const std::filesystem::path& path, const std::string& for
   return run.out;
 }
 
-// Reads a picture by way of ImageMagick, as PNG.
+// Converts a picture to PNG by ImageMagick and reads it.
 render::Image converted(const std::filesystem::path& path, const TemporaryFolder& folder) {
   const std::string png = (folder / "converted.png").string();
   const auto run = run_program("convert", {path.string(), "PNG32:" + png});
@@ -97,7 +97,8 @@ TEST_CASE("figure file: a TIFF of any size keeps every pixel, with opacity only 
       write_file_atomically(folder / "a.tif", bytes);
       INFO(size.x, " x ", size.y);
       CHECK(converted(folder / "a.tif", folder).rgba == image.rgba);
-      CHECK((bytes.find(std::string("\x52\x01\x03\x00", 4)) == std::string::npos) == opaque);  // tag 338
+      // Tag 338 (ExtraSamples) describes the alpha channel.
+      CHECK((bytes.find(std::string("\x52\x01\x03\x00", 4)) == std::string::npos) == opaque);
     }
 }
 
@@ -123,7 +124,7 @@ TEST_CASE("figure file: an SVG drawn by librsvg is the figure, with real text an
     double sum = 0;
     int far = 0;
     for (std::size_t i = 0; i < whole.rgba.size(); i += 4)
-      for (std::size_t c = i; c < i + 3; ++c) {  // as seen on grey paper
+      for (std::size_t c = i; c < i + 3; ++c) {  // compared on grey paper
         const auto seen = [&](const render::Image& image) {
           return (image.rgba[c] * image.rgba[i + 3] + 128 * (255 - image.rgba[i + 3])) / 255.0;
         };

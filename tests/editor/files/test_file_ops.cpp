@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Projects, files that come in and go out, recent ones, samples; dialogs, help and preferences.
+// Proves the operators of projects, imports, exports, recent files and samples, and of dialogs, help and preferences.
 #include <fstream>
 
 #include "core/motion/bvh.h"
@@ -23,18 +23,18 @@ using Effect = std::function<bool(Stage&, const Seen&)>;
 Effect becomes(const char* fact, const char* value = "shown") {
   return [=](Stage& s, const Seen&) { return s.is(fact, value); };
 }
-// That file is written, and holds what the document holds.
+// The effect is a file of this name that holds what the document holds.
 template <class Same>
 Effect writes(const char* name, Same same) {
   return [=](Stage& s, const Seen&) {
     return std::filesystem::exists(s.home / name) && s.is("error", "none") && same(s.home / name, s.document());
   };
 }
-// The file browser is answered with a name.
+// Returns the script that answers the file browser with a name.
 std::string answer(const std::string& menu, const std::string& name) {
   return "click \"" + menu + "\"\n type \"" + name + "\"\n key Return\n wait-job";
 }
-// One edit, after which the document has that part.
+// The effect is one edit that gives the document this part.
 template <class Part>
 Effect brings(const char* file, Part Document::*part) {
   return [=](Stage& s, const Seen& b) {
@@ -50,7 +50,7 @@ Effect brings_clip(const char* name) {
   };
 }
 
-// One element of a DICOM file, explicit and little-endian.
+// Writes one element of a DICOM file in explicit little-endian form.
 void put(std::ofstream& out, std::uint16_t group, std::uint16_t element, const char* kind, std::string value) {
   const auto number = [&](std::uint32_t n, int bytes) {
     for (int i = 0; i < bytes; ++i) out.put(static_cast<char>(n >> (8 * i)));
@@ -66,7 +66,7 @@ void put(std::ofstream& out, std::uint16_t group, std::uint16_t element, const c
 }
 std::string two_bytes(int n) { return {static_cast<char>(n), static_cast<char>(n >> 8)}; }
 
-// Slices of 8 x 8 voxels with a square in their middle.
+// Writes slices of 8 x 8 voxels with a square in their middle.
 void write_dicom_series(const std::filesystem::path& folder, int slices) {
   std::filesystem::create_directories(folder);
   for (int i = 0; i < slices; ++i) {
@@ -98,7 +98,7 @@ void write_dicom_series(const std::filesystem::path& folder, int slices) {
   }
 }
 
-// Edits of a sitting that did not end well.
+// Leaves the edits of an editor session that crashed.
 void leave_edits(Stage& s) {
   Document document = small_limb();
   {

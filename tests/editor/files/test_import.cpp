@@ -20,7 +20,7 @@ using editor::FileKind;
 
 namespace {
 
-// A tube with all that belongs to it, in files.
+// The files of a tube: volume, tissues, rig, weights and motion.
 struct TubeFiles : Home {
   TubeFiles() : tube(bent_tube()) {
     for (Tissue& tissue : tube.tissues.tissues) tissue.file_value = tissue.label;

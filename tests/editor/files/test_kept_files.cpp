@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files that version 0.1.0 wrote (tests/kept) still say what they said: a project, settings, keys, a recording, a job,
-// a report and the operators' ids. They are never written anew; a file of a later version is added beside them.
+// Files that version 0.1.0 wrote (tests/kept) are still read in full: a project, settings, keys, a recording, a job, a
+// report and the operators' ids. They are never rewritten; files of later versions are added beside them.
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -22,7 +22,8 @@ using Json = nlohmann::json;
 
 Path kept(const std::string& name) { return Path(LIMBER_SOURCE_DIR) / "tests/kept" / name; }
 
-// Keys of `before` that `after` lacks, or that hold a value of another type; lists are compared by their first entry.
+// Adds the keys of `before` that `after` lacks, or whose value has another type. Lists are compared by their first
+// entry.
 void add_lost_keys(const Json& before, const Json& after, const std::string& place, std::vector<std::string>& lost) {
   const auto kind = [](const Json& json) { return json.is_number() ? "number" : json.type_name(); };
   if (std::string(kind(before)) != kind(after)) return lost.push_back(place);
@@ -134,7 +135,7 @@ TEST_CASE("kept: a job of version 0.1.0 runs, and its report has every key that 
   }
   std::vector<std::string> lost;
   add_lost_keys(Json::parse(read_file(kept("report.json"))), Json::parse(read_file(folder / "report.json")), "", lost);
-  // These are there only while skin comes near other skin, which depends on the mesh.
+  // These keys exist only if skin comes near other skin, which depends on the mesh.
   for (const char* key : {"/mesh/contact_nodes", "/mesh/min_gap_mm", "/mesh/median_gap_mm"}) std::erase(lost, key);
   for (const std::string& key : lost) FAIL_CHECK("the report lost ", key);
 }

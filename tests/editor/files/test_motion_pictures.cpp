@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The motion that plays as pictures: each shows the body as the 3D view does at rest in that frame.
+// Exports the playing motion as pictures. Each shows the body as the 3D view shows that frame at rest.
 #include <doctest/doctest.h>
 
 #include "core/motion/recorded_clip.h"
@@ -17,7 +17,7 @@ using namespace limber::test;
 
 namespace {
 
-// The mean difference of two pictures' colours, of 255.
+// Returns the mean difference of two pictures' colours, 0 to 255.
 double difference(const render::Image& a, const render::Image& b) {
   if (a.rgba.size() != b.rgba.size()) return 255;
   double sum = 0;
@@ -84,7 +84,7 @@ TEST_CASE(
   export_motion_pictures(*test.editor, folder / "chosen.png");
   for (int i = 0; i < 3; ++i) test.player.step();
   test.play("click resample.lbs");
-  CHECK(test.editor->live->is_lent());  // otherwise it was chosen too late
+  CHECK(test.editor->live->is_lent());  // otherwise the method was changed too late
   test.play("wait-job\n wait-idle");
   for (int picture = 0; picture < 10; ++picture) {
     const std::string number = "-000" + std::to_string(picture) + ".png";
@@ -95,7 +95,7 @@ TEST_CASE(
   test.play("wait-job\n wait-idle");
   CHECK(difference(render::read_png(folder / "as-set-0009.png"), render::read_png(folder / "linear-0009.png")) > 0.05);
 
-  // After a cancelled export the 3D view becomes fine again.
+  // After a cancelled export, the 3D view returns to full resolution.
   test.play("click resample.dqs\n wait-job\n wait-idle");
   export_motion_pictures(*test.editor, folder / "cancelled.png");
   test.player.step();
@@ -113,7 +113,7 @@ TEST_CASE("motion pictures: too many are refused before they are listed") {
   document.weights = half_weights(*document.volume);
   test.editor->history.reset(std::move(document), "Open limb");
   const TemporaryFolder folder;
-  // Two thousand million frames, and a video of a clip that shows a frame in 100 seconds.
+  // Tries two billion frames, and a video of a clip that shows one frame in 100 seconds.
   edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
     clip.range_start = -1'000'000'000;
     clip.range_end = 1'000'000'000;
@@ -167,8 +167,9 @@ TEST_CASE("motion pictures: a camera that follows the body keeps it where it is,
   const double along = difference(picture("along-0000.png"), picture("along-0003.png"));
   CAPTURE(still);
   CAPTURE(along);
-  CHECK(still > 10 * along);  // what is left is the edges of voxels that are sampled elsewhere
-  // The motion's own file may lie in the same folder and have the clip's name.
+  // With the camera following, only voxel edges differ, since they are sampled at other positions.
+  CHECK(still > 10 * along);
+  // The motion's own file may lie in the same folder under the clip's name.
   test.play("click \"File/Export/Motion...\"\n wait-idle\n key Return\n wait-job\n wait-idle");
   CHECK(std::filesystem::exists(folder / "off to-town-motion.bvh"));
   CHECK_FALSE(std::filesystem::exists(folder / "off to-town.bvh"));

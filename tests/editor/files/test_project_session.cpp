@@ -20,7 +20,7 @@ using namespace limber::test;
 
 namespace {
 
-// No file of this process may grow beyond a few bytes: as on a full disk.
+// Limits the files of this process to a few bytes, as on a full disk.
 class FullDisk {
  public:
   FullDisk() {
@@ -183,7 +183,8 @@ TEST_CASE("project: after kill -9 of the program its edits are offered on the st
     std::uintmax_t bytes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(home / "limber/edits", ignored))
       bytes += entry.file_size(ignored);
-    if (bytes > 0 && i % 20 == 19) break;  // and a second more than the first edit took
+    // Waits until the first edit is stored, and up to a second longer.
+    if (bytes > 0 && i % 20 == 19) break;
   }
   std::this_thread::sleep_for(std::chrono::seconds(1));
   ::kill(child, SIGKILL);
@@ -206,7 +207,7 @@ TEST_CASE("project: what a crash left of a saved project is offered when it is o
     Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
     sitting.play("key Ctrl+S\n type ball\n key Return\n wait-job\n click Muscle/17/eye");
     CHECK(sitting.editor().life.session->flush(20));
-  }  // ends without a question, as a program that is ended from outside
+  }  // ends without a question, like a killed program
   for (const bool wanted : {true, false}) {
     Sitting sitting(home.folder.path(), {home / "ball.limber"});
     sitting.play("expect \"text:ball closed unexpectedly\"");
@@ -271,7 +272,7 @@ TEST_CASE(
   std::filesystem::remove(home / "ball.limber");
   sitting.play("key Ctrl+S\n wait-job\n expect unsaved no");
   CHECK(verify_project(home / "ball.limber").empty());
-  // One that was told of the loss is told afterwards that edits are kept again.
+  // After a warning about the lost file, a message says that edits are kept again.
   const auto& toasts = sitting.editor().messages.toasts;
   CHECK(std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) { return toast.line == "ball.limber"; }));
 

@@ -35,7 +35,7 @@ std::set<std::string> pictures_of(const Page& page) {
   return pictures;
 }
 
-// A page that is found by the words in its title, by one sentence, by words of two sentences, or not at all.
+// Makes four pages. The word "elbow" is in a title, in one sentence, in two sentences, or only in a heading.
 Book small_book() {
   Book book;
   book.pages.resize(4);
@@ -66,7 +66,7 @@ TEST_CASE("guide: every page is in the contents once, in a chapter, and has no o
   names.erase("guide");
   CHECK(names == names_in(kGuide, ".md"));
 
-  std::size_t in_chapters = 1;  // the cover is in none
+  std::size_t in_chapters = 1;  // the cover belongs to no chapter
   for (const Chapter& chapter : book.chapters) {
     CHECK_FALSE(chapter.pages.empty());
     in_chapters += chapter.pages.size();

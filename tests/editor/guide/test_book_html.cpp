@@ -21,7 +21,7 @@ Book guide() {
   return read_guide([](const std::string& id) { return "<" + id + ">"; });
 }
 
-// Returns the first group of all matches.
+// Returns the first group of each match.
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
   const std::regex expression(pattern);
   std::vector<std::string> found;
@@ -38,7 +38,7 @@ TEST_CASE("guide html: every page is a file, every link leads to one, and elemen
   CHECK(files.size() == book.pages.size() + 2);
   for (const auto& [name, text] : files) {
     INFO(name);
-    // Nothing is loaded from a network: every file that is named is one of the book's own.
+    // The page loads nothing from a network: every file that it names belongs to the book.
     CHECK(text.find("@import") == std::string::npos);
     CHECK(text.find("url(") == std::string::npos);
     CHECK(text.find("http") == std::string::npos);

@@ -42,7 +42,7 @@ TEST_CASE("guide reader: F1 opens it, and its pages are turned, clicked and sear
 TEST_CASE("guide reader: Home and End go to the ends of a page, Space and PageUp a window along it") {
   SmallEditor test({1280, 720});
   test.play("key F1\n key Alt+Right\n expect \"text:Five steps from a sample to a bent arm.\"");
-  // The visible part of the page's picture; empty where it is scrolled away.
+  // Returns the visible part of the page's picture; empty if it is scrolled out of view.
   const auto picture = [&] {
     const Widget* shown = test.editor->widgets.find("picture images/first-pose.png");
     return shown ? std::pair(shown->rect.low.y, shown->rect.high.y) : std::pair(0.0f, 0.0f);
@@ -67,10 +67,10 @@ TEST_CASE("guide reader: Alt+Left goes back to the page before, Alt+Right forwar
   const char* inside = "expect text:Alt+Z\n";
   test.play("key F1\n click \"pages/Measure\"\n click \"pages/Look inside\"\n");
   test.play(std::string(inside) + "key Alt+Left\n" + measure + "key Alt+Right\n" + inside);
-  // A page chosen anew ends the way forward; then Alt+Right turns to the next page of the book.
+  // Opening a page clears the forward history. Then Alt+Right turns to the next page of the book.
   test.play(std::string("key Alt+Left\n click \"pages/Look inside\"\n key Alt+Right\n") + measure);
   test.play(std::string("key Alt+Left\n") + inside + "key Alt+Left\n" + measure);
-  // Before the first visited page stands the cover, and before the cover nothing.
+  // Before the first visited page comes the cover, and nothing comes before the cover.
   test.play(
       "key Alt+Left\n expect \"text:Limber changes the pose of labelled voxel anatomy.\"\n key Alt+Left\n"
       "expect \"text:Limber changes the pose of labelled voxel anatomy.\"\n");
@@ -110,7 +110,7 @@ TEST_CASE("guide reader: a missing page is told in a message, and the program go
   const TemporaryFolder folder;
   fs::create_directories(folder.path() / "bin");
   fs::create_directories(folder.path() / "share/limber/docs");
-  fs::copy_file(LIMBER_PROGRAM, folder / "bin/limber");  // its own files are sought beside it first
+  fs::copy_file(LIMBER_PROGRAM, folder / "bin/limber");  // this copy looks for its files beside itself first
   write_file_atomically(folder / "share/limber/docs/guide.md", "# User guide\n\n## One\n\n- [Gone](guide/gone.md)\n");
   write_file_atomically(folder / "script", "key F1\nexpect dialog no\nexpect text:docs/guide/gone.md\n");
   const std::string home = folder.path().string();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The pictures of the user guide are what the scripts of the same names show: assets/docs/guide/scripts/NAME.play makes
-// assets/docs/guide/images/NAME.png. The scripts play in a folder with bodies that the program makes:
+// Tests the pictures of the user guide. The script assets/docs/guide/scripts/NAME.play makes the picture
+// assets/docs/guide/images/NAME.png. Scripts play in a folder with bodies that the program makes:
 //   limber phantom arm --spacing 3 -o arm
 //   limber phantom body --spacing 6 -o body
 //
 // The test plays every script with coarse bodies, which takes a fraction of the time, and checks that it shows about
-// what the kept picture shows: the same window, workspace and view. Pictures are compared by the tile that differs
-// most, because most of any picture is background. `./run pictures` makes the pictures anew, with fine bodies; look at
+// the same as the stored picture: the same window, workspace and view. Pictures are compared by the tile that differs
+// most, because most of any picture is background. `./run pictures` makes the pictures again with fine bodies; look at
 // each one that changed.
 #include <cstdlib>
 #include <filesystem>
@@ -25,14 +25,15 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr glm::ivec2 kWindow{960, 600};
-constexpr int kTile = 60;  // pixels: both sides of the window are multiples of it
-// Of 255, in the tile that differs most: coarse bodies and messages give up to 37, the pictures of others 45 to 128.
+constexpr int kTile = 60;  // pixels; both sides of the window are multiples of it
+// Limit of the mean colour difference, 0 to 255, in the tile that differs most. Coarse bodies and messages differ by up
+// to 37, pictures of other scenes by 45 to 128.
 constexpr double kMostInTile = 41;
 const fs::path kGuide = fs::path(LIMBER_SOURCE_DIR) / "assets/docs/guide";
 
 enum class Bodies { Coarse, Fine };
 
-// Colours in steps of four make small files.
+// Rounds colours to steps of four, which makes small files.
 Image in_steps(Image image) {
   for (std::size_t i = 0; i < image.rgba.size(); ++i)
     image.rgba[i] = static_cast<std::uint8_t>(i % 4 == 3 ? 255 : std::min(255, (image.rgba[i] + 2) / 4 * 4));
@@ -69,7 +70,7 @@ Image picture_of(const std::string& name, Bodies bodies) {
   if (bodies == Bodies::Fine) sitting.editor().views->renderer.average_at_rest(6);
   sitting.editor().views->renderer.light_at_rest(render::Light::Draft);
   std::vector<ScriptLine> lines = parse_script(script);
-  // Messages take seconds to disappear, which a coarse picture need not wait for.
+  // Messages disappear after seconds. A coarse picture need not wait for that.
   if (bodies == Bodies::Coarse) std::erase_if(lines, [](const ScriptLine& line) { return line.words[0] == "wait"; });
   sitting.test.player.play(lines, home.folder.path());
   return in_steps(render::read_png(home / (name + ".png")));

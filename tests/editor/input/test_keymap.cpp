@@ -12,7 +12,7 @@
 using namespace limber::editor;
 
 TEST_CASE("keymap: every binding starts an operator that exists, and no key has two meanings in one place") {
-  const Keymap keymap = read_keymap(asset("keymap.json"));  // refuses a clash
+  const Keymap keymap = read_keymap(asset("keymap.json"));  // throws if two keys clash
   std::set<std::string> known;
   for (const Operator& op : gather_operators()) known.insert(op.id);
   for (const auto& [context, bindings] : keymap.contexts)

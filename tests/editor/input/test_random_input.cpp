@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Random keys, text, clicks and drags, while jobs end and messages and dialogs appear. The same seed gives the same
-// events: LIMBER_RANDOM_SEED, LIMBER_RANDOM_EVENTS.
+// Sends random keys, text, clicks and drags while jobs end and messages and dialogs appear. The environment variables
+// LIMBER_RANDOM_SEED and LIMBER_RANDOM_EVENTS set the seed and the number of events. The same seed gives the same
+// events.
 #include <cstdlib>
 #include <random>
 
@@ -50,7 +51,7 @@ class RandomUser {
     }
   }
   int events() const { return events_; }
-  int numbers() const { return numbers_; }  // that were begun
+  int numbers() const { return numbers_; }  // number fields that were clicked
 
  private:
   static Preferences small() {
@@ -62,7 +63,7 @@ class RandomUser {
   int upto(int last) { return static_cast<int>(random_() % static_cast<std::uint64_t>(last + 1)); }
   bool now_and_then() { return upto(2) == 0; }
 
-  // Closes what is open, and what waited for that.
+  // Closes all that is open, and whatever opens next.
   void put_away() {
     const auto open = [this] {
       return editor().dialog || !editor().messages.errors.empty() || editor().modal || editor().keyboard.typed ||
@@ -76,7 +77,7 @@ class RandomUser {
     REQUIRE_FALSE(open());
   }
 
-  // The limb in the Rig workspace; nothing is open, nothing waits.
+  // Shows the limb in the Rig workspace, with nothing open and nothing pending.
   void begin_again() {
     Editor& e = editor();
     put_away();
@@ -97,7 +98,7 @@ class RandomUser {
     put_away();
   }
 
-  // What no act of the user's brings.
+  // Randomly makes something happen that the user did not cause.
   void let_something_happen() {
     if (!now_and_then()) return;
     Editor& e = editor();
@@ -118,7 +119,7 @@ class RandomUser {
       default: return at_end_of_job([words](Editor& ed) { ed.messages.warn(words); });
     }
   }
-  // A job that has ended before the next frame; time stands still until then.
+  // Starts a job that ends before the next frame. Time stands still until then.
   void at_end_of_job(Finish finish) {
     pending_ = true;
     start_task(editor(), "", [this, finish](Progress&) -> Finish {
@@ -157,14 +158,14 @@ class RandomUser {
     while (!test_.host->events.empty());
     for (int i = 0; i < 3; ++i) step();
   }
-  // What commands have done so far.
+  // Counts the commands so far, and whether a tool is active.
   std::size_t commands() {
     std::size_t count = editor().history.position();
     for (const auto& [id, times] : editor().preferences.command_counts)
-      count += id == "edit.rename" ? 0 : static_cast<std::size_t>(times);  // F2 from anywhere
+      count += id == "edit.rename" ? 0 : static_cast<std::size_t>(times);  // F2 does not count
     return count + 1000 * static_cast<std::size_t>(editor().modal != nullptr);
   }
-  // Letters and Backspaces in bursts, over frames in which something happens; returns what the field must hold.
+  // Types letters and Backspaces in bursts, with events between the frames. Returns the text that the field must hold.
   std::string type(const std::string& letters, std::size_t commands_before) {
     std::string text;
     const int bursts = 1 + upto(3);
@@ -204,12 +205,12 @@ class RandomUser {
   std::mt19937_64 random_;
   int events_ = 0, numbers_ = 0;
   bool pending_ = false;
-  std::string held_;  // the widget that is pressed
+  std::string held_;  // name of the widget that is pressed
 };
 
 constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz 0123456789";
 
-// ---- what the user does
+// ---- The actions of the random user
 
 void RandomUser::rename() {
   const std::size_t before = commands();
@@ -220,7 +221,7 @@ void RandomUser::rename() {
   push(ButtonChanged{MouseButton::Left, false});
   key(Key::F2);
   CHECK(commands() == before);
-  // What F2 is to the list is no command.
+  // F2 renames the row and must not run any command.
   std::string text = type(kLetters, before);
   text += "q";
   letter('q');
@@ -231,7 +232,7 @@ void RandomUser::rename() {
   settle();
   CHECK(editor().document().armature->bones.size() == 2);
   CHECK(editor().document().armature->bones[1].name == text);
-  // A dialog that waited for the name's end stands before the sidebar's key.
+  // If a dialog has waited for the name to be entered, it opens first and takes the key.
   if (!editor().dialog && editor().messages.errors.empty()) CHECK(editor().arrangement().sidebar.value() != sidebar);
 }
 
@@ -246,7 +247,7 @@ void RandomUser::search() {
 
 void RandomUser::type_number() {
   const Widget* field = editor().widgets.find("Bone/Length");
-  if (!field) return;  // a wheel has scrolled it out of sight
+  if (!field) return;  // scrolled out of view
   ++numbers_;
   push(PointerMoved{field->rect.centre()});
   push(ButtonChanged{MouseButton::Left, true});
@@ -326,7 +327,7 @@ void RandomUser::drag_view() {
   settle();
 }
 
-// Anything anywhere: whatever it is, a field that has the keyboard keeps it.
+// Sends random events anywhere. A field that has the keyboard must keep it.
 void RandomUser::do_anything() {
   constexpr Key kKeys[] = {Key::G,    Key::R,    Key::S,         Key::X,      Key::Y,  Key::A,  Key::Tab,  Key::Up,
                            Key::Down, Key::Left, Key::Backspace, Key::Delete, Key::F2, Key::F3, Key::Num1, Key::Home};

@@ -18,7 +18,7 @@ std::int64_t voxels_with(const Document& document, Label label) {
   return std::count(document.volume->voxels.begin(), document.volume->voxels.end(), label);
 }
 
-// The ball with a hole in its bone, an island of bone in its muscle, and bone selected.
+// Makes a hole in the ball's bone and an island of bone in its muscle, and selects bone.
 void spoil(Editor& editor) {
   Document next = editor.document();
   auto volume = std::make_shared<LabelVolume>(*small_body().volume);
@@ -37,7 +37,7 @@ std::function<bool(Stage&, const Seen&)> edits(const char* label, std::int64_t v
   };
 }
 
-// How many voxels of the grid fulfil a condition on their place in the world.
+// Counts the voxels that satisfy a condition on their label and position.
 std::int64_t count_voxels(const std::function<bool(const LabelVolume&, const glm::ivec3&, const glm::dvec3&)>& holds) {
   const LabelVolume volume = *small_body().volume;
   const AffineTransform world = world_from_voxel(volume.grid);
@@ -48,8 +48,8 @@ std::int64_t count_voxels(const std::function<bool(const LabelVolume&, const glm
   return count;
 }
 
-// Voxels that are not bone, with a voxel of bone within `mm`, by brute force; and the same with bone and others
-// swapped.
+// Counts the voxels that are not bone and have bone within `mm`, by brute force. With `bone` set, counts bone voxels
+// that have other tissue within `mm`.
 std::int64_t near_bone(double mm, bool bone) {
   return count_voxels([&](const LabelVolume& volume, const glm::ivec3& v, const glm::dvec3&) {
     if ((volume.at(v) == 111) != bone) return false;
@@ -145,12 +145,12 @@ TEST_CASE("label edits: weights that no longer fit are removed with a warning, u
   run(*test.editor, "edit.undo");
   CHECK(test.editor->document().weights == next.weights);
 
-  // Bone that grows into muscle leaves the same voxels tissue, and the weights in place.
+  // When bone grows into muscle, the same voxels are tissue, so the weights remain.
   test.editor->selection.tissue = 111;
   test.play(menu + "Grow...\"\n wait-idle\n click dialog/Grow\n wait-job\n wait-idle");
   CHECK(test.editor->document().volume != next.volume);
   CHECK(test.editor->document().weights == next.weights);
-  // They were made for other bones, and it is said.
+  // The weights were made for another bone, and a message says so.
   CHECK(why_weights_are_old(*test.editor) == "Weights are older than the labels");
   run(*test.editor, "edit.undo");
   CHECK(why_weights_are_old(*test.editor) == "");

@@ -40,8 +40,8 @@ void click_at(SmallEditor& test, ViewId id, const glm::dvec3& point) {
   }
 }
 
-// The ball of small_body() (radius 40, bone in it of radius 12) in four views. The slices are not at the joint of
-// voxels.
+// Shows the ball of small_body() in four views: radius 40 mm, with bone of radius 12 mm inside. No slice lies on a
+// border between voxels.
 struct FourViews : SmallEditor {
   FourViews() : SmallEditor({1280, 900}) { play("key Ctrl+Alt+Q\n wait-idle\n key Num1\n wait 0.4\n wait-idle"); }
   double last_value() const {
@@ -113,16 +113,16 @@ TEST_CASE("measure tool: what is clicked in slices and in 3D is measured, to a p
   click_at(test, ViewId::Axial, {25, -15, 0});
   const double pixel = test.pixel(ViewId::Axial);
   CHECK(std::abs(test.last_value() - std::hypot(45.0, 25.0)) < 2 * pixel);
-  // From one view into another: the slices meet at the cross-hair.
+  // Measures from one view to another. The slices meet at the cross-hair.
   const glm::dvec3 meet = test.editor->views->cross_hair;
   click_at(test, ViewId::Axial, {-20, 10, meet.z});
   click_at(test, ViewId::Coronal, {10, meet.y, 22});
   CHECK(std::abs(test.last_value() - glm::distance(glm::dvec3(-20, 10, meet.z), glm::dvec3(10, meet.y, 22))) <
         2 * pixel);
-  // In 3D it is the surface: the front of the ball.
+  // In the 3D view, a click hits the surface: here the front of the ball.
   click_at(test, ViewId::Body, {0, 0, 0});
   click_at(test, ViewId::Axial, {0, 0, meet.z});
-  CHECK(std::abs(test.last_value() - 40) < 5);  // voxels of 4 x 5 x 3 mm
+  CHECK(std::abs(test.last_value() - 40) < 5);  // mm; voxels are 4 x 5 x 3 mm
   test.play("key Escape\n click View/Overlays/Measure/\"Measure angle\"\n wait-idle");
   click_at(test, ViewId::Axial, {30, 0, meet.z});
   click_at(test, ViewId::Axial, {0, 0, meet.z});
@@ -140,9 +140,9 @@ TEST_CASE("measure tool: a slice's girth is that of the ball's cut, and a skin's
   for (const glm::dvec3& corner : measured(test.editor->document()).back().points)
     CHECK(std::abs(corner.z - test.editor->views->cross_hair.z) < 1e-6);
   test.play("key Escape\n click View/Overlays/Measure/\"Measure thickness\"\n wait-idle");
-  click_at(test, ViewId::Axial, {0, 0, 0});  // the bone, a ball of radius 12
+  click_at(test, ViewId::Axial, {0, 0, 0});  // on the bone, a ball of radius 12 mm
   CHECK(test.last_value() == doctest::Approx(24).epsilon(0.25));
-  // In the air there is no tissue: one clear message, and nothing is added.
+  // A click in air gives one message and adds nothing.
   const std::size_t before = measured(test.editor->document()).size();
   click_at(test, ViewId::Axial, {44, -46, 0});
   CHECK(measured(test.editor->document()).size() == before);
@@ -210,7 +210,7 @@ TEST_CASE("measure tool: between two clicks the view can be turned, zoomed and l
   test.play("move \"3D view/view\"\n key Ctrl+Num1\n wait 0.4\n wait-idle");
   CHECK(test.editor->modal);
   click_at(test, ViewId::Body, {0, 0, 0});
-  CHECK(std::abs(test.last_value() - 80) < 8);  // from the front of the ball to its back
+  CHECK(std::abs(test.last_value() - 80) < 8);  // mm from the front of the ball to its back
   test.play("key Escape\n wait-idle");
   CHECK_FALSE(test.editor->modal);
 }
@@ -232,7 +232,7 @@ TEST_CASE("measure tool: in a posed body the points are those of the body at res
   click_at(test, ViewId::Sagittal, {0, 0, 20});
   const Measurements& all = measured(test.editor->document());
   REQUIRE(all.size() == 1);
-  CHECK(glm::distance(all[0].points[0], rest) < 3);  // the map is exact to about a voxel, 4 x 5 x 3 mm
+  CHECK(glm::distance(all[0].points[0], rest) < 3);  // mm; the map is exact to about a voxel of 4 x 5 x 3 mm
   CHECK(glm::distance(all[0].points[1], {0, 0, 20}) < 3);
   test.play("key Escape");
 }
@@ -254,7 +254,8 @@ TEST_CASE("measure tool: a dialog that opens gets the keyboard, and undo works b
   CHECK_FALSE(test.editor->modal);
   test.play("key Ctrl+A\n type hint\n key Return\n wait-idle\n expect dialog no");
   CHECK(measured(test.editor->document()).back().name == "hint");
-  CHECK_FALSE(test.editor->document().visibility);  // H hides a tissue where it is a command
+  // As a command, H would hide a tissue.
+  CHECK_FALSE(test.editor->document().visibility);
 }
 
 TEST_CASE("measurements: points in the air stay where they are, and results that do not fit are left at rest") {

@@ -15,7 +15,7 @@ using namespace editor;
 
 constexpr int kTrunk = 0, kUpper = 1, kFore = 2, kHand = 3, kThigh = 4;
 
-// An arm and a thigh on a trunk, in the small body.
+// Makes an arm and a thigh on a trunk, in the small body.
 inline Document arm() {
   Document document = small_body();
   document.armature = std::make_shared<const Armature>(Armature{{{"Trunk", -1, {0, 0, 0}, {0, 0, 20}},
@@ -26,7 +26,7 @@ inline Document arm() {
   return document;
 }
 
-// The tail of a bone in the document's pose, by a chain of matrices.
+// Returns the posed tail of a bone, by multiplying matrices along its chain.
 inline glm::dvec3 tail_of(const Document& document, const Pose& pose, int bone) {
   glm::dvec3 place = document.armature->bones[bone].tail;
   for (int b = bone; b >= 0; b = document.armature->bones[b].parent) {

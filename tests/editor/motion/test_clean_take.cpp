@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A recorded walk on a real body, cleaned as an animator does it: filtered, planted, a hand held at a place, made to
-// few keys, and edited by its curves. What the written file holds is measured without the program.
+// Cleans a recorded walk on a real body as an animator does: filters it, plants the feet, holds a hand at a position,
+// reduces it to keys, and edits its curves. The written file is measured independently of the program.
 #include <doctest/doctest.h>
 
 #include "core/base/file.h"
@@ -22,16 +22,16 @@ constexpr const char* kRig = "data/bp3d/body.armature.json";
 constexpr const char* kTake = "data/bvh/cmu_12_01_walk.bvh";
 constexpr int kFirstHeld = 205, kLastHeld = 235;
 
-// A point of the body that stands in some frames of the take.
+// A joint that stands still in some frames of the recording.
 struct Stance {
   std::string joint;
   int first = 0, last = 0;
 };
 
-// Finds when the feet of the recorded actor stand, by the recording alone: low and slow for a tenth of a second, with
-// four frames left out at either end.
+// Finds when the recorded feet stand, from the recording only: low and slow for a tenth of a second, without the first
+// and last four frames.
 std::vector<Stance> stances_of_take() {
-  constexpr double kMm = 25.4 / 0.45, kSlow = 200, kLow = 30;  // mm per unit of the file; mm/s; mm
+  constexpr double kMm = 25.4 / 0.45, kSlow = 200, kLow = 30;  // mm per file unit; mm/s; mm
   constexpr int kLeftOut = 4, kShortest = 12;
   const BvhPlaces take(shared_path(kTake));
   std::vector<Stance> stances;
@@ -72,10 +72,10 @@ double largest_slide(const BvhPlaces& places, const std::vector<Stance>& stances
   return most;
 }
 
-// A file's axes: x to the left, y up, z to the front.
+// Converts to the file's axes: x to the left, y up, z to the front.
 std::array<double, 3> in_file(const glm::dvec3& lps) { return {lps.x, lps.z, -lps.y}; }
 
-// Where the end of the right palm is, in the rig's axes.
+// Returns the position of the end of the right palm in the rig's axes.
 glm::dvec3 palm(const BvhPlaces& places, const Armature& rig, int frame) {
   const auto hand =
       std::find_if(rig.bones.begin(), rig.bones.end(), [](const Bone& b) { return b.name == "RightHand"; });
@@ -114,7 +114,7 @@ struct TakeEditor : SmallEditor {
     for (const char digit : digits) lines += std::string("\n key ") + digit;
     return lines;
   }
-  // Adds degrees to a channel of all of a bone's keys in the graph editor.
+  // Adds degrees to one channel of all keys of a bone, in the graph editor.
   void lift_keys(const std::string& bone, const char* degrees) {
     const std::vector<Bone>& bones = editor->document().armature->bones;
     const auto found = std::find_if(bones.begin(), bones.end(), [&](const Bone& b) { return b.name == bone; });
@@ -144,7 +144,7 @@ TEST_CASE(
   const BvhPlaces cleaned = test.exported("cleaned.bvh");
   CHECK(largest_slide(cleaned, stances) < 0.1);
 
-  // A place to which the hand has to go, nearer to the body and further up.
+  // The target lies nearer to the body and higher than the hand.
   const glm::dvec3 place = palm(cleaned, rig, 220) + glm::dvec3(40, -60, 120);
   test.hold(place);
   const auto off_place = [&](const BvhPlaces& places) {
@@ -162,7 +162,7 @@ TEST_CASE(
   CHECK(largest_slide(reduced, stances) < 2);
   CHECK(off_place(reduced) < 1.5);
 
-  // Keys of the head turn nothing else. Keys of a thigh move its foot, and planting it again brings it back.
+  // Keys of the head move nothing else. Keys of a thigh move its foot, and planting it again moves it back.
   test.lift_keys("Head", "12");
   const BvhPlaces nodding = test.exported("nodding.bvh");
   CHECK(distance_of(nodding.of("Head end")[300].place, reduced.of("Head end")[300].place) > 10);

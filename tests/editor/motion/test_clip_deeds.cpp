@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whole clips that are mirrored, repeated, joined, sped up and baked in the editor: what plays afterwards is what was
-// computed, undo gives back what was, and what cannot be done is said.
+// Mirrors, repeats, joins, speeds up and bakes whole clips in the editor. The played clip equals the computed one, undo
+// restores the old clip, and errors are reported.
 #include <doctest/doctest.h>
 
 #include "core/motion/clip_speed.h"
@@ -23,10 +23,10 @@ using namespace limber::editor;
 
 namespace {
 
-constexpr int kFrames = 85, kStart = 5;  // about two steps
+constexpr int kFrames = 85, kStart = 5;  // about two steps of the walk
 constexpr double kRate = 60;
 
-// The editor with a walker whose spine has a key on top of its steps. The clip begins at frame 5.
+// The editor with a walker whose left arm has keys on top of its steps. The clip begins at frame 5.
 struct DeedEditor : SmallEditor {
   DeedEditor() : SmallEditor({1280, 720}, {}, false) {
     Document document = small_body();
@@ -46,7 +46,7 @@ struct DeedEditor : SmallEditor {
     play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   }
 
-  // The poses of the shown clip in its playing range.
+  // Returns the poses of the shown clip in its playing range.
   std::vector<Pose> played() {
     std::vector<Pose> all;
     const ClipOnRig* clip = clip_on_rig(*editor);
@@ -59,7 +59,7 @@ struct DeedEditor : SmallEditor {
   void deed(const std::string& name, const std::string& more) {
     play("click \"Motion/Clip/Whole clip/" + name + "\"\n wait-idle\n " + more + "\n wait-job\n wait-idle");
   }
-  // Undoes the last edit, sees that the document is as it was, and does it again.
+  // Undoes the last edit, checks that the document is the old one, and redoes the edit.
   void undo_and_redo(const Document& old) {
     const Document now = editor->document();
     play("key Ctrl+Z\n wait-idle");
@@ -73,7 +73,7 @@ struct DeedEditor : SmallEditor {
   const Armature rig = walker();
 };
 
-// The farthest that two lists of poses are from each other: radians of a bone, or metres of the body.
+// Returns the largest difference between two lists of poses, in radians of a bone or metres of the body.
 double farthest(const std::vector<Pose>& a, const std::vector<Pose>& b) {
   REQUIRE(a.size() == b.size());
   double most = 0;
@@ -135,7 +135,7 @@ TEST_CASE("whole clips: repeated, the new clip plays what was computed") {
 TEST_CASE("whole clips: a take from a file is joined at the place, heading and rate of the shown one") {
   DeedEditor test;
   const TemporaryFolder folder;
-  // Another take: at half the rate, elsewhere, and turned aside.
+  // The second recording has half the rate, and is moved and turned aside.
   std::vector<Pose> other = sliding_steps(test.rig, 60);
   for (Pose& pose : other) pose = moved(test.rig, pose, {2.2, {0, 0, 0}, {4000, 1000, 0}});
   write_bvh(motion_of_poses(test.rig, 60, kRate / 2, [&](int frame) { return other[frame]; }), folder / "other.bvh");
@@ -163,14 +163,16 @@ TEST_CASE("whole clips: a length is set, and what cannot be reached is said") {
     return "click Set/Length\n double-click Length/value\n key Ctrl+A\n type " + frames + "\n key Tab\n wait-idle\n";
   };
   test.deed("Change speed...", set_length("3") + "click Change\n wait-idle");
-  CHECK(test.editor->dialog);  // 28 times as fast is too fast
+  // A speed factor of 28 is refused, so the dialog stays open.
+  CHECK(test.editor->dialog);
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
   test.deed("Change speed...", set_length("43") + "click Change\n wait-idle");
   CHECK_FALSE(test.editor->dialog);
   const std::vector<Pose> after = test.played();
   REQUIRE(after.size() == 43);
-  for (std::size_t f = 0; f < after.size(); ++f)  // the key at frame 20 comes to 12.5, so the arm is not compared
+  // The key at frame 20 would move to frame 12.5, so the arm is not compared.
+  for (std::size_t f = 0; f < after.size(); ++f)
     CHECK(glm::length(turn_between(after[f].rotation[1], before[2 * f].rotation[1])) < 1e-6);
   test.undo_and_redo(old);
 }
@@ -182,7 +184,7 @@ TEST_CASE("whole clips: the play head stays at its place in the motion when the 
   const glm::dquat spine = test.editor->document().pose->rotation[1];
   test.deed("Change speed...", "double-click Speed/value\n key Ctrl+A\n type 2\n key Tab\n wait-idle\n click Change");
   CHECK(test.editor->document().frame == kStart + 20);
-  CHECK(why_not_redo(*test.editor) == "");  // its speed can be adjusted
+  CHECK(why_not_redo(*test.editor) == "");  // the speed can be adjusted afterwards
   CHECK(glm::length(turn_between(test.editor->document().pose->rotation[1], spine)) < 1e-6);
 }
 
@@ -198,7 +200,7 @@ TEST_CASE("whole clips: what was computed for another rig is refused") {
 TEST_CASE("whole clips: a cancelled bake or change of speed leaves the document as it was") {
   DeedEditor test;
   test.editor->preferences.reduce_motion = true;
-  // As many frames as take longer to compute than to cancel.
+  // Uses so many frames that computing takes longer than cancelling.
   Document document = test.editor->document();
   const std::vector<Pose> poses = sliding_steps(test.rig, kFrames, 0.01);
   const auto long_take = std::make_shared<const Motion>(

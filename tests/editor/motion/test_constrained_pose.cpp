@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Constraints that hold while poses, keys and the constraints themselves are changed by hand.
+// Constraints hold while poses, keys and the constraints themselves are edited by hand.
 #include "core/motion/motion_edit.h"
 #include "core/pose/pose_io.h"
 #include "tests/editor/motion/constrained_arm.h"
@@ -15,7 +15,7 @@ TEST_CASE("constrained pose: rotations that are set under a constraint do not dr
   const auto keyed = [&] { return shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10); };
   run(*test.editor, "pose.clear_rotation");
   const Pose cleared = pose_of(test.document());
-  CHECK(cleared.rotation[kFore] != glm::dquat(1, 0, 0, 0));  // the plant bends the elbow all the same
+  CHECK(cleared.rotation[kFore] != glm::dquat(1, 0, 0, 0));  // the planted hand still bends the elbow
   for (int time = 0; time < 3; ++time) {
     run(*test.editor, "pose.clear_rotation");
     CHECK(keyed() == glm::dquat(1, 0, 0, 0));
@@ -53,7 +53,8 @@ TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand els
   CHECK(shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));
   CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftThigh"));
   is_held();
-  // The marker replaces the clip, and what lies below the constraint is still known: it does not count twice.
+  // A marker makes the pose no longer come from the clip. The pose below the constraint is still known, so the
+  // constraint is not applied twice.
   run(*test.editor, "pose.clear_rotation");
   const Pose cleared = pose_of(test.document());
   run(*test.editor, "motion.marker");
@@ -74,7 +75,7 @@ TEST_CASE("constrained pose: a flexed joint, an imported and a cleared pose are 
       "wait-idle");
   CHECK(test.fact("edit") == "Flex LeftForeArm");
   CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
-  // The key stores the turn by 30 degrees, below the constraint.
+  // The key stores the rotation by 30 degrees, without the effect of the constraint.
   const glm::dquat keyed = shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10);
   CHECK(std::abs(keyed.w) == doctest::Approx(std::cos(glm::radians(15.0))));
   Pose pose = rest_pose(*test.document().armature);
@@ -112,7 +113,7 @@ TEST_CASE("constrained pose: a limb stays where it is when another point or its 
   CHECK(apart(before, free) > 1);
   keep_direction(*test.editor, "Plant LeftHand", true);
   CHECK(apart(free, pose_of(test.document())) < 0.01);
-  // A forearm without a hand is planted by its end, whichever point is chosen.
+  // A forearm without a hand is planted by its tail, whichever point is selected.
   Document handless = test.document();
   Armature rig = *handless.armature;
   rig.bones.erase(rig.bones.begin() + kHand);
@@ -145,7 +146,7 @@ TEST_CASE("constrained pose: a switched weight has no keys between, and its last
   edit_clip(*test.editor, "Weights", PoseThen::FromClip, [](Clip& clip) {
     clip.keys.weights["Plant LeftHand"] = {{0, 1}, {13, 0.7}, {16, 1}, {40, 1}};
   });
-  set_weight(*test.editor, "Plant LeftHand", 1);  // at frame 10
+  set_weight(*test.editor, "Plant LeftHand", 1);  // at frame 10, where a key is set
   run(*test.editor, "constraint.switch");
   CHECK(weights(*test.editor) == std::map<int, double>{{0, 1}, {10, 1}, {20, 0}, {40, 1}});
   edit_clip(*test.editor, "Weights", PoseThen::FromClip, [](Clip& clip) {
@@ -178,7 +179,7 @@ TEST_CASE("constrained pose: a motion that does not move the rig leaves the pose
   run(*test.editor, "constraint.add_plant");
   REQUIRE(constraints_of(test.document()).list.size() == 1);
   CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").at(0) == pose.rotation[kTrunk]);
-  // The pose becomes the rest pose: the hand is planted where it is.
+  // When the pose becomes the rest pose, the hand is planted where it is.
   const glm::dvec3 before = tail_of(test.document(), kHand);
   run(*test.editor, "pose.apply_as_rest");
   const Bone& thigh = test.document().armature->bones[kThigh];
@@ -213,9 +214,10 @@ TEST_CASE("constrained pose: X-mirror gives a constrained counterpart the mirror
     const auto& keys = shown_clip(*test.editor)->keys.bones;
     const glm::dquat left = keys.at("LeftThigh").at(10), right = keys.at("RightThigh").at(10);
     CHECK(glm::degrees(2 * std::acos(std::abs(left.w))) == doctest::Approx(degrees));
-    // In the mirror x stays, and the turn about y and z goes the other way.
+    // Mirroring keeps x and reverses the rotation about y and z.
     CHECK(std::abs(glm::dot(right, glm::dquat(left.w, left.x, -left.y, -left.z))) > 1 - 1e-9);
-    CHECK(std::abs(glm::dot(right, pose_of(test.document()).rotation[5])) < 1 - 1e-3);  // half of it is shown
+    // The view shows only half of it, since the constraint has weight 0.5.
+    CHECK(std::abs(glm::dot(right, pose_of(test.document()).rotation[5])) < 1 - 1e-3);
   }
 }
 

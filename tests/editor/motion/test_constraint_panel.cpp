@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Constraints in the editor: each operator, and what the panel does to the shown clip.
+// Proves each operator of constraints, and tests what the panel does to the shown clip.
 #include "editor/motion/constraint_edits.h"
 
 #include "core/project/project_io.h"
@@ -26,7 +26,7 @@ std::function<void(Stage&)> ready(std::vector<Constraint> constraints, int bone 
 
 const std::vector<Constraint>& list_of(Stage& stage) { return constraints_of(stage.document()).list; }
 
-// Two that aim one arm at different places: the later one has the last word.
+// Two constraints that aim one arm at different positions. The later one determines the result.
 std::vector<Constraint> two_aims() {
   return {{.name = "A", .kind = ConstraintKind::Aim, .bone = "LeftArm", .place{90, 0, 0}},
           {.name = "B", .kind = ConstraintKind::Aim, .bone = "LeftArm", .place{0, 0, -90}}};
@@ -129,7 +129,7 @@ TEST_CASE("constraint panel: a planted hand stays where it was when it is plante
   for (const int frame : {0, 25, 30}) {
     go_to_frame(*test.editor, frame);
     CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
-    // What plays is what the frame shows when it is gone to.
+    // Playing gives the same pose as going to the frame.
     CHECK(pose_of(test.document()) == clip_on_rig(*test.editor)->at(frame));
   }
   CHECK(glm::distance(tail_of(test.document(), kHand), before) > 5);
@@ -158,7 +158,7 @@ TEST_CASE("constraint panel: the weight is slid, keyed and unkeyed, each as one 
   CHECK(shown_weight(*test.editor, constraints_of(test.document()).list[0]) == 1);
   go_to_frame(*test.editor, 15);
   CHECK(shown_weight(*test.editor, constraints_of(test.document()).list[0]) == doctest::Approx(0.625));
-  // Its keys are the timeline's as well.
+  // The keys of the weight appear in the timeline too.
   CHECK(frames_of(shown_clip(*test.editor)->keys).contains(20));
   go_to_frame(*test.editor, 20);
   test.play("wait-idle\n click " + path + "Key weight\"\n wait-idle");
@@ -178,7 +178,7 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
     for (int bone = 0; bone < 5; ++bone)
       CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], shown.rotation[bone])) > 1 - 1e-12);
   }
-  // What the user turns is turned below the constraint, which then takes its share: by its keys as without them.
+  // A turn by the user applies below the constraint, which then takes its share, with and without keys.
   Pose raised = shown;
   raised.rotation[kUpper] = glm::angleAxis(0.7, glm::dvec3(0, 1, 0)) * shown.rotation[kUpper];
   commit_pose(*test.editor, "Raise", raised);
@@ -187,7 +187,7 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
   run(*test.editor, "motion.insert_key");
   for (int bone = 0; bone < 5; ++bone)
     CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
-  // Undo brings back the pose before with what lies below it.
+  // Undo restores the old pose, together with the pose below the constraint.
   run(*test.editor, "edit.undo");
   run(*test.editor, "edit.undo");
   CHECK(pose_of(test.document()).rotation[kTrunk] == shown.rotation[kTrunk]);
@@ -208,7 +208,7 @@ TEST_CASE("constraint panel: poses that a constraint makes alike in two frames k
   const Pose held = pose_of(test.document());
   CHECK(std::abs(held.rotation[kTrunk].w) > 1 - 1e-12);
   go_to_frame(*test.editor, 30);
-  commit_pose(*test.editor, "Same", held);  // as at frame 10
+  commit_pose(*test.editor, "Same", held);  // the same pose as at frame 10
   test.editor->selection.bones = {kTrunk};
   run(*test.editor, "motion.insert_key");
   const glm::dquat keyed = shown_clip(*test.editor)->keys.bones.at("Trunk").at(30);
@@ -230,7 +230,7 @@ TEST_CASE("constraint panel: a head is aimed by its face, and a project keeps an
   const Pose aimed = pose_of(test.document());
   const glm::dvec3 face = glm::mat3_cast(aimed.rotation[5]) * glm::dvec3(0, -1, 0),
                    towards = glm::normalize(rig.bones[kHand].tail - rig.bones[5].head);
-  CHECK(glm::dot(face, towards) > 0.9);  // the own axis is 20 degrees off the front at most
+  CHECK(glm::dot(face, towards) > 0.9);  // the bone's axis deviates from the front by at most 20 degrees
   const TemporaryFolder folder;
   DocumentWriter writer;
   create_project({.document = test.document()}, folder / "head.limber", writer);
@@ -245,7 +245,7 @@ TEST_CASE("constraint panel: a planted hand stays while the trunk is turned by h
     test.editor->timeline->auto_key = auto_key;
     Pose turned = pose_of(test.document());
     turned.rotation[kTrunk] = glm::angleAxis(-0.8, glm::dvec3(0, 0, 1));
-    preview_pose(*test.editor, turned);  // while a tool or slider is dragged
+    preview_pose(*test.editor, turned);  // as while a tool or a slider is dragged
     CHECK(glm::distance(tail_of(test.document(), shown_pose(*test.editor), kHand), tail_of(test.document(), kHand)) >
           5);
     const Pose dragged = shown_pose(*test.editor);
@@ -254,7 +254,8 @@ TEST_CASE("constraint panel: a planted hand stays while the trunk is turned by h
     CHECK(pose_of(test.document()).rotation[kTrunk] == turned.rotation[kTrunk]);
     CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
     CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").contains(10) == auto_key);
-    CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));  // only what was turned is keyed
+    // Only the bones that the user turned get keys.
+    CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));
   }
 }
 
@@ -271,7 +272,7 @@ TEST_CASE(
   CHECK(pose_of(test.document()).rotation[kTrunk] == pose.rotation[kTrunk]);
   run(*test.editor, "constraint.remove");
   CHECK(pose_of(test.document()) == pose);
-  // Without a pose there is nothing to key; the pose that only the constraint made goes with it.
+  // Without a pose, no key is set. Removing the constraint also removes the pose that it made.
   test.editor->history.reset(arm(), "Rest");
   run(*test.editor, "constraint.add_aim");
   const std::string name = constraints_of(test.document()).list[0].name;
@@ -313,7 +314,7 @@ TEST_CASE("constraint panel: the order is changed by the buttons, only past what
   const auto aims_at = [&](const glm::dvec3& place) {
     const Pose& pose = pose_of(test.document());
     const glm::dvec3 head = test.document().armature->bones[kUpper].head, tail = tail_of(test.document(), kUpper);
-    const glm::dvec3 posed_head = tail_of(test.document(), pose, kTrunk);  // the arm begins at the trunk's tail
+    const glm::dvec3 posed_head = tail_of(test.document(), pose, kTrunk);  // the arm starts at the trunk's tail
     CHECK(head == test.document().armature->bones[kTrunk].tail);
     return glm::dot(glm::normalize(tail - posed_head), glm::normalize(place - posed_head)) > 0.999;
   };
@@ -348,12 +349,12 @@ TEST_CASE("constraint panel: a project reopens with the pose below the constrain
     state = editor_state(*test.editor);
   }
   ArmEditor other;
-  // A state of a clip without constraints changes nothing.
+  // Restoring a state has no effect on a clip without constraints.
   restore_editor_state(*other.editor, state);
   CHECK_FALSE(free_pose_by_hand(*other.editor));
   other.editor->history.reset(read_project(folder / "arm.limber").document, "Open");
   REQUIRE(pose_of(other.document()) == shown);
-  CHECK(unconstrained_pose(*other.editor) != free);  // nothing of the document says what it was
+  CHECK(unconstrained_pose(*other.editor) != free);  // the project alone does not store the pose below the constraint
   restore_editor_state(*other.editor, state);
   CHECK(unconstrained_pose(*other.editor) == free);
 }
@@ -366,7 +367,7 @@ TEST_CASE("constraint panel: no order is offered where one constraint must wait 
     const std::vector<Constraint> list =
         plant_first ? std::vector{planted_hand(), leg, aim} : std::vector{aim, leg, planted_hand()};
     ArmEditor test(list, kFore);
-    // Both turn the forearm, and the pose is the same in either order.
+    // Both constraints turn the forearm, and the pose is the same in either order.
     const ConstraintStack* stack = test.editor->timeline->prepared->constraints();
     REQUIRE(stack);
     const std::vector<int>&a = stack->turned(0), &b = stack->turned(2);

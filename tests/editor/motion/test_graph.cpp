@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The graph editor: each of its operators, and what dragging keys and handles does to a clip.
+// Proves each operator of the graph editor, and tests what dragging keys and handles does to a clip.
 #include "editor/motion/graph.h"
 
 #include <cmath>
@@ -23,7 +23,8 @@ const GraphTrack kFore{"Fore", false};
 
 glm::dquat turned(double x, double y, double z) { return rotation_of_channels(glm::radians(glm::dvec3(x, y, z))); }
 
-// Keys of the lower bone at 10, 30 and 50 without a motion, in the graph editor, with the pointer over the curves.
+// Opens the graph editor on keys of the lower bone at frames 10, 30 and 50, without a motion, with the pointer over the
+// curves.
 void open_graph(Editor& editor, const std::function<void(const std::string&)>& play) {
   editor.timeline->play = {};
   Document document = bending_limb();
@@ -61,7 +62,8 @@ std::function<bool(Stage&, const Seen&)> goes_on(Interpolation interpolation) {
 std::function<bool(Stage&, const Seen&)> handles_are(HandleKind handles) {
   return [=](Stage& s, const Seen&) { return shape(s.editor(), 30).handles == handles; };
 }
-// Whether the first span's angles at a quarter and at three quarters are these, of 40 degrees.
+// The effect is that the angle has covered these shares of the first span at a quarter and at three quarters of its
+// time.
 std::function<bool(Stage&, const Seen&)> eases(double early, double late) {
   return [=](Stage& s, const Seen&) {
     const auto share = [&](int frame) {
@@ -204,7 +206,7 @@ TEST_CASE("graph: a dragged key changes its own channel and its frame, live, and
   const Timeline& timeline = *test.editor->timeline;
   const float ten = graph_y(graph_of(*test.editor), 0) - graph_y(graph_of(*test.editor), 10);
   test.drag(key, key + glm::vec2(0, -ten));
-  // While the button is down nothing is committed, and the views show what the keys give.
+  // While the button is down, nothing is committed, but the views show the new keys.
   CHECK(fore(*test.editor) == old);
   CHECK(bend_of(shown_pose(*test.editor)) > 45);
   test.release();
@@ -263,7 +265,7 @@ TEST_CASE("graph: a dragged handle sets the slope of its channel alone and makes
   CHECK(speeds->x == doctest::Approx(wanted).epsilon(0.01));
   CHECK(std::abs(speeds->y - speeds_before->y) < 1e-9);
   CHECK(std::abs(speeds->z - speeds_before->z) < 1e-9);
-  // The curve of the played poses has this slope, by a difference over a small step.
+  // Computes the slope of the played curve by a difference over a small step.
   const Keys& keys = shown_clip(*test.editor)->keys;
   const auto x_at = [&](double frame) {
     return glm::degrees(channel_angles(value_at(fore(*test.editor), shapes_of(keys, "Fore"), frame)).x);
@@ -351,7 +353,7 @@ TEST_CASE("graph: a root bone has its shift as well, whose values are mm") {
   test.play("click \"timeline/channels/" + shift.bone + " shift/Y\"\n wait-idle");
   CHECK(is_shown(graph_of(*test.editor), {shift, 1}));
   const GraphCurve& curve = graph_of(*test.editor).curves.tracks.at(shift);
-  // The smooth step of a cubic between two flat ends.
+  // Between flat ends, the cubic is the smoothstep function.
   for (int frame = 0; frame <= 40; ++frame) {
     const double t = frame / 40.0;
     CHECK(curve.values[frame].x == doctest::Approx(100 * t * t * (3 - 2 * t)).epsilon(1e-9));

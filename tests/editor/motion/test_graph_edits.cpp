@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Changes of keys through the graph editor and the timeline: what they do to slopes, over a motion, and when another
-// clip is shown in the meantime.
+// Edits keys in the graph editor and the timeline: effects on slopes, on top of a motion, and when another clip is
+// shown in the meantime.
 #include "editor/motion/graph_edits.h"
 
 #include <cmath>
@@ -23,7 +23,7 @@ const GraphTrack kFore{"Fore", false};
 
 glm::dquat turned(double x, double y, double z) { return rotation_of_channels(glm::radians(glm::dvec3(x, y, z))); }
 
-// Curves of one bone without a motion.
+// Returns the curves of one bone without a motion.
 GraphCurves curves_of(const Keys& keys) {
   GraphCurves curves;
   GraphCurve& curve = curves.tracks[kFore];
@@ -37,12 +37,12 @@ std::set<GraphKey> channel_keys(const Keys& keys, int axis) {
   return all;
 }
 
-// The angles of a bone's curve about an axis at a frame, degrees.
+// Returns the angle of a bone's curve about an axis at a frame, degrees.
 double angle_at(const Keys& keys, double frame, int axis) {
   return glm::degrees(channel_angles(value_at(keys.bones.at("Fore"), shapes_of(keys, "Fore"), frame))[axis]);
 }
 
-// A clip without a motion whose lower bone has keys with hand-set slopes, seen in the timeline.
+// Shows a clip without a motion in the timeline; its lower bone has keys with slopes set by hand.
 Keys shaped_keys() {
   Keys keys;
   keys.bones["Fore"] = {{10, turned(0, 0, 0)}, {30, turned(40, 0, 0)}, {50, turned(20, 0, 0)}};
@@ -101,7 +101,7 @@ TEST_CASE("graph: a key that is turned about one axis keeps the slopes of its an
   };
   const Keys after = with_keys_changed(curves_of(keys), keys, {{{kFore, 2}, 20}}, {}, {1, 70});
   CHECK(angle_at(after, 20, 2) == doctest::Approx(70));
-  // By differences over small steps, from the curves that play.
+  // Compares the slopes of the played curves, by differences over small steps.
   CHECK(glm::distance(slopes(after, 20 - 1e-4, 20), slopes(keys, 20 - 1e-4, 20)) < 1e-3);
   CHECK(glm::distance(slopes(after, 20, 20 + 1e-4), slopes(keys, 20, 20 + 1e-4)) < 1e-3);
 }
@@ -278,7 +278,7 @@ TEST_CASE("graph: the area below gets its height back in the workspace in which 
   test.player.settle();
   CHECK(test.editor->arrangement().bottom_height > before[2].bottom_height);
   test.play("key Ctrl+1\n wait-idle");
-  run(*test.editor, "graph.show");  // here the timeline is hidden, so it shows the graph
+  run(*test.editor, "graph.show");  // the timeline is hidden in this workspace, so this shows the graph
   run(*test.editor, "graph.show");
   test.player.settle();
   for (std::size_t i = 0; i < before.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Clips that are cleaned in the editor: what plays afterwards is what was computed, and undo gives back what was.
+// Cleans clips in the editor. The played clip equals the computed one, and undo restores the old clip.
 #include <doctest/doctest.h>
 
 #include "core/motion/clean_motion.h"
@@ -37,7 +37,7 @@ struct WalkerEditor : SmallEditor {
     play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   }
 
-  // The poses of the shown clip, from its first frame.
+  // Returns the poses of the shown clip, from its first frame on.
   std::vector<Pose> played() {
     std::vector<Pose> all;
     const ClipOnRig* clip = clip_on_rig(*editor);
@@ -96,7 +96,7 @@ TEST_CASE("cleaning clips: feet stand, the new clip plays what was computed, and
 
 TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with the clip's keys kept in the motion") {
   WalkerEditor test;
-  // A key that turns the head's chain: the spine.
+  // Sets a key of the spine, which carries the head and the arms.
   go_to_frame(*test.editor, kStart + 60);
   edit_clip(*test.editor, "Key", PoseThen::FromClip,
             [&](Clip& clip) { clip.keys.bones["Spine"][kStart + 60] = glm::angleAxis(0.2, glm::dvec3(0, 0, 1)); });
@@ -116,7 +116,7 @@ TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with 
   const std::vector<Pose> after = test.played();
   for (int f = 60; f <= 70; ++f)
     CHECK(glm::distance(place_of(right, PlantPoint::Tip, test.rig, after[f]), test.editor->views->cross_hair) < 3);
-  // Long before and after, and in the other limbs, nothing has changed.
+  // Frames far from the hold and the other limbs are unchanged.
   for (const int f : {0, 30, 100, kFrames - 1})
     CHECK(glm::distance(place_of(right, PlantPoint::Tip, test.rig, after[f]),
                         place_of(right, PlantPoint::Tip, test.rig, before[f])) < 0.05);
@@ -127,8 +127,8 @@ TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with 
 }
 
 TEST_CASE("cleaning clips: a hand that rested and does not reach its place any more is named") {
-  // An arm that is all but straight holds on to something ahead while the body sways. A foot is held far aside, so the
-  // body goes along and the hand cannot stay.
+  // An almost straight arm holds on to something ahead while the body sways. Holding a foot far aside then moves the
+  // body, so the hand cannot stay.
   const Armature rig = walker();
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   REQUIRE(limbs[0].name == "left foot");
@@ -171,7 +171,7 @@ TEST_CASE("reducing clips: where feet cannot be kept as closely as asked, a warn
 TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   WalkerEditor test;
   const Document old = test.editor->document();
-  // No filter and feet as they are: there is nothing to do.
+  // Without a filter and with the feet as they are, there is nothing to do.
   test.play(
       "click \"Motion/Clip/Clean clip...\"\n wait-idle\n click \"Feet/As they are\"\n double-click "
       "\"Smooth/value\"\n key Ctrl+A\n type 0\n key Tab\n wait-idle\n click Clean\n wait-idle");
@@ -179,7 +179,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
 
-  // A position is the user's: none is there before one is typed.
+  // The field of the position starts empty: the user must type one.
   test.play(
       "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Position\"\n click Limb/list\n click "
       "\"Limb/left foot\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
@@ -187,7 +187,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
 
-  // A place that is no number of this world.
+  // Tries positions that are too large or not finite.
   for (const char* far : {"1e200, 0, 0", "0, 2000000, 0", "0, 0, nan"}) {
     CAPTURE(far);
     test.play(
@@ -199,7 +199,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
     CHECK(test.editor->document().clips == old.clips);
   }
 
-  // A rig without known limbs has nothing to hold.
+  // A rig without known limbs has no limb to hold.
   Document nameless = old;
   Armature rig = *old.armature;
   for (Bone& bone : rig.bones) bone.name = "b" + std::to_string(&bone - rig.bones.data());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Through time: each operator of the timeline and of clips.
+// Proves each operator of the timeline and of clips.
 #include "editor/motion/motion_path_overlay.h"
 #include "editor/pose/pose_edits.h"
 #include "tests/editor/operator_proofs.h"
@@ -11,7 +11,7 @@ using namespace editor;
 
 namespace {
 
-// The limb with its clip, at a frame, in the Pose workspace.
+// Opens the limb with its clip at a frame, in the Pose workspace.
 std::function<void(Stage&)> stand_at(int frame) {
   return [frame](Stage& s) {
     s.editor().timeline->play = {};
@@ -22,7 +22,7 @@ std::function<void(Stage&)> stand_at(int frame) {
   };
 }
 
-// The same, with the pointer on the timeline.
+// Does the same, with the pointer on the timeline.
 std::function<void(Stage&)> point_at(int frame) {
   return [frame](Stage& s) {
     stand_at(frame)(s);
@@ -30,7 +30,7 @@ std::function<void(Stage&)> point_at(int frame) {
   };
 }
 
-// The same limb at frame 20, with names for its bones that tell what they are.
+// Opens the same limb at frame 20, with bone names that tell which limbs they are.
 std::function<void(Stage&)> stand_with_names(const std::string& upper, const std::string& fore) {
   return [=](Stage& s) {
     stand_at(20)(s);
@@ -84,7 +84,7 @@ std::function<void(Stage&)> edited(int frame, const std::function<void(Clip&)>& 
     s.play("wait-idle");
   };
 }
-// Keys at 10 and 30, of which some are chosen.
+// Sets keys at frames 10 and 30, and selects some of them.
 std::function<void(Stage&)> with_chosen(std::set<int> chosen) {
   return [=](Stage& s) {
     with_keys(0, {10, 30})(s);
@@ -332,7 +332,7 @@ std::vector<Proof> proofs_of_clips() {
        "", stand_with_names("LeftArm", "LeftForeArm")},
       {"motion.close_gap", "click \"Motion/Clip/Close gap...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
-         // An even bend goes on evenly where the gap was.
+         // A bend at constant speed continues across the closed gap.
          return edit_is("Close gap")(s, b) && shown_clip(s.editor())->motion &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(22)) - 22) < 1e-3;
        },

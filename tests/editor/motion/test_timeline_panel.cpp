@@ -100,7 +100,7 @@ TEST_CASE("timeline: a playing clip shows the frame of the moment, whatever the 
     CHECK(test.shown_bend() == doctest::Approx(std::remainder(shown_frame(*test.editor), 720)).epsilon(1e-5));
   }
   test.editor->frame(began + 601 / 120.0 + 0.25);
-  CHECK(shown_frame(*test.editor) == 30);  // begins again
+  CHECK(shown_frame(*test.editor) == 30);  // at the start of the range
 }
 
 TEST_CASE("timeline: playing stops at the range's end, begins again there, or turns round") {
@@ -144,7 +144,7 @@ TEST_CASE("timeline: an unkeyed change lasts until the frame changes, a keyed on
   test.editor->timeline->auto_key = true;
   commit_pose(*test.editor, "Bend", changed);
   go_to_frame(*test.editor, 11);
-  CHECK(test.bend() == doctest::Approx(41));  // 30 degrees more than the motion
+  CHECK(test.bend() == doctest::Approx(41));  // 30 degrees more than the motion has
   go_to_frame(*test.editor, 10);
   CHECK(pose_of(test.editor->document()) == changed);
 }
@@ -210,14 +210,15 @@ TEST_CASE(
   CHECK(test.bend() == doctest::Approx(30).epsilon(0.01));
 
   auto& window = test.editor->timeline->window;
-  for (const int frame : {-2000, 2000, 33}) {  // keys may be wanted anywhere
+  for (const int frame : {-2000, 2000, 33}) {  // the window must show any frame
     window.low = 20, window.count = 10;
     go_to_frame(*test.editor, frame);
     test.player.settle();
     CHECK(seen());
     CHECK(window.count == 10);
   }
-  window.low = 500;  // by hand: the head's tab waits at the edge
+  // The user scrolls away: the frame marker stays visible at the edge.
+  window.low = 500;
   test.player.settle();
   CHECK(window.low == 500);
   CHECK(test.fact("text:33") == "shown");
@@ -297,7 +298,7 @@ TEST_CASE("timeline: another clip chosen from the list is shown at a frame it ha
 
 TEST_CASE("onion skin: the body's outline is drawn at the frames before and after, kept while the view stands still") {
   Document document = bending_limb();
-  // All of the body follows the lower bone.
+  // The whole body follows the lower bone.
   document.weights =
       std::make_shared<const SkinWeights>(std::vector<std::string>{"Fore", "Upper"}, TissueVoxels(*document.volume));
   BendingEditor test(document);
@@ -314,7 +315,7 @@ TEST_CASE("onion skin: the body's outline is drawn at the frames before and afte
       for (const glm::vec2& p : line) low = glm::min(low, p), high = glm::max(high, p);
     return (low + high) / 2.0f;
   };
-  // A ball about the joint stays where it is, whatever its turn.
+  // The ball is centred at the joint, so its outline does not move when it turns.
   const auto joint = body_seen(*test.editor)->pixel_of(glm::dvec3(0));
   for (const int frame : {20, 60})
     CHECK(glm::distance(middle_of(frame), glm::vec2(*joint)) < 0.1f * test.editor->layout.window.size().y);
@@ -333,7 +334,7 @@ TEST_CASE("motion paths: the tip of a bending bone runs along an arc, drawn over
   test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   CHECK(motion_paths(*test.editor) == nullptr);
   test.editor->timeline->paths.on = true;
-  CHECK(motion_paths(*test.editor) == nullptr);  // no bone is selected
+  CHECK(motion_paths(*test.editor) == nullptr);  // no paths without a selected bone
   test.editor->selection.bone = 1;
   test.editor->selection.bones = {1};
   test.play("wait-idle");
@@ -341,11 +342,11 @@ TEST_CASE("motion paths: the tip of a bending bone runs along an arc, drawn over
   REQUIRE(paths);
   REQUIRE(paths->tips.size() == 61);
   for (int frame = 0; frame < 61; ++frame) {
-    // The bone hangs 36 mm along -z from the joint at the origin, and turns about x by a degree a frame.
+    // The bone hangs 36 mm along -z from the joint at the origin, and turns about x by one degree per frame.
     const double angle = glm::radians(double(frame));
     CHECK(glm::distance(paths->tips[frame][0], glm::dvec3(0, 36 * std::sin(angle), -36 * std::cos(angle))) < 1e-3);
   }
-  // A key changes the path.
+  // Adding a key changes the path.
   go_to_frame(*test.editor, 60);
   edit_clip(*test.editor, "Key", PoseThen::FromClip,
             [](Clip& clip) { clip.keys.bones["Fore"][60] = glm::dquat(1, 0, 0, 0); });

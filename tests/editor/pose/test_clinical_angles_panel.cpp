@@ -17,7 +17,7 @@ namespace {
 
 using enum BodyJoint;
 
-// The editor in the Pose workspace with a rig of a whole body, and only the panel of clinical angles open.
+// The editor in the Pose workspace with the rig of a whole body. Only the panel of clinical angles is open.
 class AnglesStage : public Stage {
  public:
   explicit AnglesStage(const Armature& rig = body_rig()) {
@@ -78,7 +78,7 @@ TEST_CASE("clinical angles panel: a slider's drag shows the pose, is one edit at
   const int before = s.edits();
   s.play("drag \"Clinical angles/Slide Right knee flexion\" 20 0\n wait-idle");
   const double bent = s.angle({Knee, BodySide::Right}, 0);
-  CHECK(bent > 70);  // the middle of the range, and further
+  CHECK(bent > 70);  // beyond the middle of the range
   CHECK(bent < 150);
   CHECK(s.edits() == before + 1);
   s.play("press \"Clinical angles/Slide Right knee flexion\"\n move \"3D view/view\"\n wait 0.1");
@@ -96,7 +96,7 @@ TEST_CASE("clinical angles panel: X-mirror sets both sides, and auto-key keeps t
   s.type("Left shoulder abduction", "50");
   CHECK(s.angle({Shoulder, BodySide::Left}, 1) == doctest::Approx(50));
   CHECK(s.angle({Shoulder, BodySide::Right}, 1) == doctest::Approx(50));
-  // The collarbone follows.
+  // The collarbone moves with the arm.
   CHECK(s.angle({Girdle, BodySide::Right}, 2) == doctest::Approx(20.0 / 6));
   s.type("Left shoulder abduction", "90");
   s.play("expect \"text:At 90\u00b0 of abduction, the joint's other motions are the same rotation.\"");
@@ -132,7 +132,7 @@ TEST_CASE("clinical angles panel: pronation stops where the hand's own limits do
   s.type("Right forearm pronation", "85");
   const double pronated = s.angle({Forearm, BodySide::Right}, 0);
   CHECK(pronated > before + 2);
-  CHECK(pronated < 80);  // the hand takes a part of it, which its limits cut
+  CHECK(pronated < 80);  // the hand takes a part of the pronation, and its limits cut that part
   s.choose("RightHand");
   s.type("Right wrist flexion", "30");
   CHECK(s.angle({Forearm, BodySide::Right}, 0) == doctest::Approx(pronated).epsilon(0.02));

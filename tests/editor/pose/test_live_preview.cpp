@@ -25,7 +25,7 @@ namespace {
 
 constexpr glm::ivec2 kWithSidebar{1120, 720};
 
-// The limb whose lower half follows one bone wholly, in the Pose workspace, seen from the front.
+// The limb in the Pose workspace, seen from the front. Its lower half follows one bone.
 struct LiveEditor : LimbEditor {
   explicit LiveEditor(bool with_weights = true, const glm::ivec2& size = {900, 560}) : LimbEditor(size) {
     if (with_weights) weigh();
@@ -45,7 +45,8 @@ struct LiveEditor : LimbEditor {
   bool pose_is(double degrees) const {
     return std::abs(glm::degrees(glm::angle(scene().posed_from_rest[1].rotation)) - degrees) < 1e-6;
   }
-  // How far from its rest place a point of the lower half is read, mm.
+  // Returns the distance in mm between the rest position that the map gives for a posed point of the lower half, and
+  // the true one.
   double error() const {
     const auto map = scene().pose;
     if (!map) return INFINITY;
@@ -60,7 +61,7 @@ struct LiveEditor : LimbEditor {
   }
 };
 
-// A second of a motion that bends the joint.
+// Plays one second of a motion that bends the joint.
 void add_clip_and_play(LiveEditor& test) {
   Document next = test.editor->document();
   add_clip(next, clip_of(std::make_shared<const Motion>(limber::test::bending_motion(*next.armature)), "bending"));
@@ -109,7 +110,7 @@ TEST_CASE("live pose: in every frame of a turn, of a motion and on the way back 
   LiveEditor test;
   int frames = 0, behind = 0;
   double worst = 0;
-  // Called once a frame, while the scene is still that of the frame before.
+  // Runs once per frame, while the scene is still that of the frame before.
   test.editor->each_frame.push_back([&](Editor& editor) {
     const auto& motions = test.scene().posed_from_rest;
     if (editor.workspace != Workspace::Pose || !test.scene().armature) return true;
@@ -125,7 +126,7 @@ TEST_CASE("live pose: in every frame of a turn, of a motion and on the way back 
   add_clip_and_play(test);
   test.play("key Ctrl+Z\nwait-job");
   CHECK(frames > 60);
-  CHECK(behind > 10);  // so that there was a pose to wait for
+  CHECK(behind > 10);  // frames in which the view waited for a pose
   CHECK(worst < 2);    // mm
   test.editor->each_frame.clear();
 }
@@ -250,7 +251,7 @@ TEST_CASE(
   CHECK(!metrics.known());
   CHECK(metrics.last());
   CHECK(test.fact("text:coarse") == "shown");
-  test.play("wait 1\nwait-job");  // while the tool goes on
+  test.play("wait 1\nwait-job");  // the tool is still active
   REQUIRE(metrics.known());
   CHECK(metrics.known()->overlap_voxels != bent.overlap_voxels);
   test.play("key Escape");

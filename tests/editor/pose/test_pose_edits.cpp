@@ -30,7 +30,7 @@ struct PosingEditor : LimbEditor {
   }
   std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
   Pose pose() const { return pose_of(editor->document()); }
-  // Of one rotation, about an axis; NaN when it turns about another.
+  // Returns a bone's rotation about an axis, degrees; NaN if it also turns about another axis.
   double degrees(int bone, const glm::dvec3& axis) const {
     const SwingTwist parts = swing_twist(pose().rotation[bone], axis);
     return glm::length(parts.swing) < 1e-6 ? parts.twist * 180 / std::numbers::pi : NAN;
@@ -41,7 +41,7 @@ struct PosingEditor : LimbEditor {
     REQUIRE(render::project(editor->views->body.camera, world, glm::ivec2(place->size()), pixel));
     return pixel + glm::dvec2(place->low);
   }
-  // A pixel of the window; scripts speak of pixels at scale 1.
+  // Moves the pointer to a pixel of the window. Scripts use pixels at scale 1.
   void pointer_to(const glm::dvec2& pixel) {
     const glm::dvec2 at = pixel / double(editor->look.scale);
     play("move " + std::to_string(at.x) + " " + std::to_string(at.y));
@@ -72,7 +72,7 @@ TEST_CASE(
       test.play("key Return");
       CHECK(!test.editor->modal);
       INFO("scale ", scale, ", parallel ", parallel);
-      // Seen from the front, the eye is at -y: counter-clockwise turns about -y.
+      // From the front, the eye is at -y, so a counter-clockwise turn is about -y.
       CHECK(test.degrees(1, {0, -1, 0}) == doctest::Approx(40).epsilon(0.0005));
     }
 }
@@ -100,7 +100,7 @@ TEST_CASE("posing: an axis lock, a typed number, Escape and undo") {
   test.play("key Ctrl+Shift+Z");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(45));
 
-  // The bone's own axis after the world's, a minus sign and a corrected digit.
+  // Tests the bone's own axis after the world's, and a corrected digit.
   test.play("key Alt+R\nkey R\nkey X\nkey X\nkey 3\nkey 9\nkey Backspace\nkey 5\nkey Return");
   const glm::dvec3 own = rest_axes(test.editor->document().armature->bones[1])[0];
   CHECK(std::abs(test.degrees(1, own)) == doctest::Approx(35));
@@ -159,7 +159,7 @@ TEST_CASE("posing: a pose is copied, pasted and cleared bone by bone") {
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(0));
   test.play("key Ctrl+V");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(40));
-  // In the mirror a turn about x stays, since no bone has a side.
+  // Mirroring keeps a turn about x, since these bones belong to no side.
   test.play("key Ctrl+M");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(40));
 }
@@ -222,7 +222,7 @@ TEST_CASE(
   test.play("key 2\nkey 5\nkey Return");
   CHECK(test.last_edit() == "Breakdown");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(35));
-  // After the last key there is nothing to go to.
+  // After the last key there is no next pose to move towards.
   go_to_frame(*test.editor, 20);
   test.play("move \"3D view/view\"\nkey Shift+E\nkey 2\nkey 5\nkey Return");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(20));
@@ -253,7 +253,7 @@ TEST_CASE(
   CHECK(test.pose().root_translation.z == doctest::Approx(-7));
   CHECK(test.last_edit() == "Move body");
 
-  // Read as they were given, in any bone's axes.
+  // Angles that are set are read back, for bones with any axes.
   for (int i = 0; i < 50; ++i) {
     const glm::dvec3 angles(std::fmod(37.0 * i, 340) - 170, std::fmod(23.0 * i, 170) - 85,
                             std::fmod(71.0 * i, 340) - 170);
@@ -303,7 +303,7 @@ TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides"
   REQUIRE(poles().size() == 2);
   CHECK(glm::distance(poles().at("Fore.R"), poles().at("Fore.L") * glm::dvec3(-1, 1, 1)) < 1e-9);
 
-  // The pole is taken along, and the other side's with it, as are the limbs.
+  // Dragging a pole moves the pole of the other side and both limbs with it.
   begin_tool(*test.editor, begin_dragging_pole(*test.editor));
   test.play("key Z\n key 4\n key 0\n key Return");
   CHECK(glm::distance(poles().at("Fore.R"), poles().at("Fore.L") * glm::dvec3(-1, 1, 1)) < 1e-9);
@@ -338,7 +338,7 @@ TEST_CASE(
   test.play("wait-idle\n expect \"text:57.3\"\n expect \"text:0 to 150\u00b0\"");
   test.play("double-click Bone/Angle\n key Ctrl+A\n type \"0\"\n key Return\n wait-idle");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(glm::degrees(-1.0)));
-  // Straight it goes no further back, and the status line says why.
+  // A straight joint bends no further back, and the status line gives the reason.
   test.play(
       "move \"3D view/view\"\n key R\n key X\n key -\n key 6\n key 0\n wait-idle\n expect \"text:At the joint limit of "
       "Fore (0\u00b0 to 150\u00b0)\"\n expect \"text:Flexion 0.0\u00b0 of 150\u00b0\"");

@@ -21,7 +21,7 @@ double bend_of_fore(const Pose& pose) {
                                  std::abs(pose.rotation[1].w)));
 }
 
-// A library with a forearm bent by 40 degrees; the body is at rest again.
+// Makes a library with a pose whose forearm is bent by 40 degrees. The body is back at rest.
 void fill_library(Stage& s) {
   s.editor().selection.bone = 1;
   s.editor().selection.bones = {1};
@@ -53,7 +53,7 @@ TEST_CASE(
   CHECK_FALSE(s.editor().views->preview_pose);
   CHECK(s.editor().history.position() == edits);
 
-  // Only the chosen bones.
+  // A pose is applied to the selected bones only.
   s.editor().selection.bone = 0;
   s.editor().selection.bones = {0};
   s.play("click \"Pose library/Pose\"\n wait-idle");
@@ -89,7 +89,7 @@ TEST_CASE(
         "This pose is built in and cannot be changed");
   CHECK(find_operator(s.editor(), "pose.library_apply")->disabled_reason(s.editor()).empty());
 
-  // A pose of the user's of the same name is another one.
+  // A pose of the user with the same name is kept apart from the built-in one.
   run(s.editor(), "pose.library_add");
   Document named = s.document();
   NamedPose own = *named.poses[0];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bones are chosen and posed, results compared.
+// Proves the operators that select and pose bones and compare results.
 #include "editor/pose/pose_edits.h"
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/overlap_overlay.h"
@@ -34,7 +34,7 @@ std::function<bool(Stage&, const Seen&)> bones_are(const std::set<int>& bones, i
 
 double turn_about_z(Stage& s, int bone) { return pose_of(s.document()).rotation[bone].z; }
 
-// The two bones as the two sides of one.
+// Names the two bones as the left and the right one of a pair.
 void name_sides(Stage& s) {
   Document next = s.document();
   Armature armature = *next.armature;
@@ -45,7 +45,7 @@ void name_sides(Stage& s) {
   choose(0)(s);
 }
 
-// A body without skin stands for a posed one.
+// Adds a result that is a body without skin.
 void add_result(Stage& s) {
   Document next = s.document();
   auto volume = std::make_shared<LabelVolume>(*next.volume);

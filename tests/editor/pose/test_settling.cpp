@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finite elements at work in the worker: the volume settles before the user's eyes, work goes on beside it, and
-// whatever becomes of the worker the document is as it was.
+// Tests finite elements in the worker: the view shows the steps of the solve, the user can go on working, and however
+// the worker ends, the document is unchanged.
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -28,7 +28,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// The weighed limb, posed, with a script in the worker's place.
+// The limb with weights and a pose, with a script in place of the worker.
 struct SolveEditor : PaintEditor {
   TemporaryFolder folder;
 
@@ -39,7 +39,8 @@ struct SolveEditor : PaintEditor {
     next.pose = std::make_shared<const Pose>(pose);
     editor->history.reset(next, "Open posed limb");
     editor->resampling.method = "fem";
-    editor->resampling.quality = "normal";  // with larger tets all of so small a bone would be joint, and held by none
+    // With larger tets, all of such a small bone would count as joint, and no bone would be held.
+    editor->resampling.quality = "normal";
     editor->resampling.contact = false;
     play("key Ctrl+4\nwait-idle");
   }
@@ -49,7 +50,7 @@ struct SolveEditor : PaintEditor {
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
     editor->worker_program = path;
   }
-  // A worker that has come to a step in which the mesh and both bones are turned so, and then takes its time.
+  // Sets a worker that reports a step in which the mesh and both bones are turned by `turn`, and then goes on running.
   void set_worker_at(const RigidTransform& turn) {
     const Grid& grid = editor->document().volume->grid;
     FemMesh mesh{kuhn_mesh(grid, glm::dvec3(-1), glm::dvec3(grid.size), {6, 6, 8}), {}, {}};
@@ -112,16 +113,16 @@ TEST_CASE(
   CHECK(glm::distance(scene.posed_from_rest[1] * glm::dvec3(1, 2, 3), turn * glm::dvec3(1, 2, 3)) < 1e-9);
   CHECK(test.fact("text:15.0 of 30.0\u00b0, iteration 3, moving 0.80 mm") == "shown");
   CHECK(test.fact("text:settling") == "shown");
-  test.play("key N\nwait 4");  // the side bar; the time left is told after some seconds
+  test.play("key N\nwait 4");  // opens the sidebar; the remaining time appears after some seconds
   std::this_thread::sleep_for(std::chrono::milliseconds(3100));
   test.player.step();
   CHECK(test.fact("text:about 2 min left") == "shown");
 
-  // Elsewhere the work goes on as ever, and back here the solve is seen again, until something else is looked at.
+  // Other workspaces work as usual. Back here the solve is shown again, until another result is selected.
   test.play("key Ctrl+3");
   CHECK_FALSE(watched_solve(*test.editor));
   REQUIRE(test.step_until([&] { return test.fact("posed") != "no" && !test.editor->live->busy(); }));
-  const glm::dvec3 still(12, 10, 22);  // above the joint: only the solve moves it
+  const glm::dvec3 still(12, 10, 22);  // above the joint, so that only the solve moves it
   CHECK(glm::distance(*scene.pose->rest_at(still), still) < 0.1);
   test.play("key Ctrl+4");
   REQUIRE(test.step_until([&] { return test.settles(); }));
@@ -131,7 +132,7 @@ TEST_CASE(
   run(*test.editor, "result.watch");
   REQUIRE(test.step_until([&] { return test.settles(); }));
 
-  // A cancel ends it at once, the worker too.
+  // A cancel ends the solve and its worker at once.
   const auto asked = Clock::now();
   test.editor->jobs.cancel(test.editor->fem->watched);
   REQUIRE(test.step_until([&] { return !test.editor->jobs.busy(); }));
@@ -149,7 +150,7 @@ TEST_CASE(
     "result comes beside all that") {
   SolveEditor test;
   const Path go = test.folder / "go", project = test.folder / "limb.limber";
-  // Without --parent: it is the script's child.
+  // The program runs without --parent, since it is the script's child.
   test.set_worker(std::string(LIMBER_PROGRAM) + " job \"$2\" --progress json\nend=$?\nwhile [ ! -e " + go.string() +
                   " ]; do sleep 0.02; done\nexit $end\n");
   save_project_as(*test.editor, project);
@@ -228,7 +229,7 @@ TEST_CASE(
   CHECK(stale(1).empty());
   run(*test.editor, "edit.undo");
   CHECK(stale(0).empty());
-  show_result(*test.editor, "");  // weights are painted on the volume itself
+  show_result(*test.editor, "");  // painting needs the volume at rest
   test.play("key Ctrl+2");
   test.player.settle();
   test.stroke(test.at(0, 20), test.at(0, 20));
@@ -263,8 +264,8 @@ TEST_CASE("settling: a solve that may not take the memory it needs ends with a l
   test.editor->worker_program = LIMBER_PROGRAM;
   const Document before = test.editor->document();
   int failures = 0;
-  for (const int megabytes :
-       {16, 60, 75, 90, 105, 120, 160}) {  // too little to start, to read, to mesh, to solve; enough
+  // These are too little to start, to read, to mesh and to solve; the last is enough.
+  for (const int megabytes : {16, 60, 75, 90, 105, 120, 160}) {
     test.editor->preferences.worker_memory_mb = megabytes;
     test.editor->messages.last_failure.clear();
     test.play("key Ctrl+Return\nwait-job");
@@ -314,7 +315,7 @@ TEST_CASE(
   SolveEditor test;
   test.set_worker_at({glm::angleAxis(0.6, glm::normalize(glm::dvec3(1, 2, 3))), glm::dvec3(8, -6, 12)});
   const render::Scene& scene = test.editor->views->scene;
-  run(*test.editor, "fem.show_volume_ratio");  // says why it cannot
+  run(*test.editor, "fem.show_volume_ratio");  // only shows a message why it cannot
   CHECK_FALSE(test.editor->fem_overlay->measure);
   test.play("key Ctrl+Return");
   REQUIRE(test.step_until([&] { return test.settles(); }));
@@ -323,7 +324,8 @@ TEST_CASE(
   REQUIRE(test.step_until([&] { return scene.weights && scene.weights->field && scene.mesh; }));
   const MeasuredMesh* shown = shown_measure(*test.editor);
   REQUIRE(shown);
-  CHECK(shown->least == doctest::Approx(1).epsilon(1e-3));  // the worker's mesh is turned as it is
+  // The worker's mesh is only turned, so its volume ratio is 1.
+  CHECK(shown->least == doctest::Approx(1).epsilon(1e-3));
   CHECK(shown->most == doctest::Approx(1).epsilon(1e-3));
   CHECK(scene.mesh->V == watched_solve(*test.editor)->feed->seen().mesh.posed);
   CHECK(measure_text_at(*test.editor, {12, 10, 14}) == "det F 1.00");
@@ -334,7 +336,7 @@ TEST_CASE(
   CHECK_FALSE(scene.weights);
   CHECK_FALSE(scene.mesh);
 
-  // A bone of its own for each half: with the one between them the ball would turn as a whole.
+  // Gives each half its own bone: with the one bone between them, the ball would turn as a whole.
   Document two_bones = test.editor->document();
   auto volume = std::make_shared<LabelVolume>(*two_bones.volume);
   const AffineTransform world = world_from_voxel(volume->grid);
@@ -358,7 +360,7 @@ TEST_CASE(
   REQUIRE(shown);
   CHECK(shown->least < 0.98);
   CHECK(shown->most > 1.01);
-  // As the report has it.
+  // The value is that of the report.
   const auto json = nlohmann::json::parse(result->report);
   CHECK(shown->least == doctest::Approx(json["mesh"]["min_det_f"].get<double>()).epsilon(1e-3));
   run(*test.editor, "fem.show_energy");
@@ -366,7 +368,7 @@ TEST_CASE(
   CHECK(shown_measure(*test.editor)->measure == FemMeasure::EnergyDensity);
   CHECK(shown_measure(*test.editor)->most > 0);
 
-  // On the left of a wipe, with the volume at rest on the right; then the other way round.
+  // Shows the result on the left of a wipe and the volume at rest on the right, then the other way round.
   test.editor->comparison.a = result->name;
   test.editor->comparison.b = "";
   test.editor->comparison.views = Comparison::Views::Wipe;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Results beside the volume at rest: chosen, renamed, deleted, compared.
+// Compares results with the volume at rest, and selects, renames and deletes them.
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
@@ -12,7 +12,7 @@ using namespace limber::test;
 
 namespace {
 
-// A ball of another size stands for a posed one, in a grid of its own.
+// Makes a result from a ball of another size, on its own grid.
 std::shared_ptr<const Result> result(const Document& document, const std::string& name, double radius, double shift) {
   auto volume = std::make_shared<LabelVolume>(*document.volume);
   volume->grid.origin.z += shift;
@@ -54,7 +54,7 @@ TEST_CASE("results: a click shows one, a second click the volume at rest, in the
   test.play("click Two/row");
   CHECK(test.shown().get() == test.volume(1));
 
-  // Slices of the posed volume step through its own grid, 6 mm higher than the one at rest.
+  // Slices step through the grid of the posed volume, which lies 6 mm higher than that at rest.
   test.play("key Ctrl+Alt+Q\n move Axial/view\n expect text:posed");
   for (int i = 0; i < 40; ++i) test.host->events.push(Wheeled{1});
   test.player.settle();
@@ -88,7 +88,7 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   REQUIRE(test.editor->views->other_scene);
   CHECK(test.editor->views->other_scene->volume.get() == test.volume(0));
   CHECK(test.shown().get() == test.volume(1));
-  // What lies left of the line is read from A, what lies right of it from B: 25 mm from the middle only A has tissue.
+  // Left of the wipe line the view shows A, right of it B. 25 mm from the middle only A has tissue.
   const Rect view = *test.editor->layout.place_of(ViewId::Body);
   const glm::dvec3 right = test.editor->views->body.camera.world_from_view * glm::dvec3(1, 0, 0);
   const auto hovered = [&](double millimetres) {
@@ -100,7 +100,7 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   };
   CHECK(hovered(-25));
   CHECK_FALSE(hovered(25));
-  // So is what lies behind it: at rest there are four tissues, in Two there is one.
+  // The list of tissues under the pointer follows the side too: at rest there are four tissues, in Two there is one.
   test.editor->comparison.a = "";
   test.play("wait-idle");
   const auto listed = [&](double millimetres) {
@@ -142,7 +142,7 @@ TEST_CASE("results: A and B stand side by side, one camera sees both, and what t
   CHECK(layout.view_places[1].side_a);
   CHECK(a.high.x < b.low.x);
   CHECK(a.size() == b.size());
-  // The smaller ball stands on the right; 25 mm off its middle only A has tissue.
+  // The smaller ball is shown on the right. 25 mm from the middle, only A has tissue.
   const auto label_at = [&](const Rect& view, double millimetres) -> int {
     const render::Camera& camera = test.editor->views->body.camera;
     glm::dvec2 pixel;
@@ -170,7 +170,7 @@ TEST_CASE("results: A and B stand side by side, one camera sees both, and what t
   test.play("double-click \"3D view/divider\"");
   CHECK(test.editor->comparison.share == 0.5f);
 
-  // Slices stand twice as well; a box cuts both.
+  // Slices are shown twice too, and a clip box cuts both sides.
   test.play("key Ctrl+Alt+Q\n wait-idle");
   CHECK(layout.view_places.size() == 8);
   test.play("move \"Axial A/view\"");
@@ -180,7 +180,7 @@ TEST_CASE("results: A and B stand side by side, one camera sees both, and what t
   test.play("wait-idle\n move \"3D view/view\"\n key Alt+B\n wait-idle");
   CHECK(test.editor->views->scene.clip.box);
   CHECK(test.editor->views->other_scene->clip.box);
-  // Elsewhere there is one view, and here again two.
+  // Other workspaces have one view; this one has two again.
   test.play("key Ctrl+3\n wait-idle");
   CHECK(layout.view_places.size() == 1);
   test.play("key Ctrl+4\n wait-idle\n move \"3D view/view\"");
@@ -199,7 +199,7 @@ TEST_CASE("results: where A and B differ is marked on both sides and counted by 
   CHECK(found->a.volume == test.editor->document().volume);
   CHECK(found->b.volume.get() == test.volume(1));
   const LabelVolume &rest = *found->a.volume, &two = *found->b.volume;
-  // In whole voxels: Two lies two of them higher.
+  // Two lies exactly two voxels higher.
   DifferingSide::Count skin, muscle;
   for (int z = 0; z < rest.grid.size.z; ++z)
     for (int y = 0; y < rest.grid.size.y; ++y)
@@ -218,9 +218,9 @@ TEST_CASE("results: where A and B differ is marked on both sides and counted by 
   CHECK(views.scene.weights->field == found->b.field);
   CHECK(views.other_scene->weights->field == found->a.field);
 
-  // What lies at the same place on the other side is told beside the pointer.
+  // Beside the pointer, the label at the same position on the other side is shown.
   test.play("move \"3D view A/view\"\n wait-idle\n expect \"text:in B: \"\n expect \"text:Skin, A and B\"");
-  test.play("key 2\n wait-idle");  // B alone keeps its marks
+  test.play("key 2\n wait-idle");  // B alone still shows the differences
   CHECK(views.scene.weights->field == found->b.field);
   test.play("key 1\n wait-idle");
   CHECK(views.scene.weights->field == found->a.field);
@@ -284,7 +284,7 @@ TEST_CASE("results: the Resample workspace opens with the result of the current 
   CHECK(test.shown().get() == test.volume(0));
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
   CHECK(test.shown().get() == test.volume(1));
-  // The body at rest stays where the user selected it, and a stale result is not shown.
+  // The body at rest stays shown if the user selected it. A stale result is not shown.
   test.play("click Two/row\n wait-idle");
   CHECK(test.shown() == test.editor->document().volume);
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
@@ -301,7 +301,7 @@ TEST_CASE("results: the Resample workspace opens with the result of the current 
   test.editor->history.commit("Rig", fresh);
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
   CHECK(test.shown().get() == test.volume(1));
-  // A pose without a result leaves what the user selected.
+  // If the pose has no result, the user's selection stays.
   next = test.editor->document();
   bent.rotation[0] = glm::angleAxis(0.2, glm::dvec3(1, 0, 0));
   next.pose = std::make_shared<const Pose>(bent);
@@ -330,7 +330,7 @@ TEST_CASE("results: one is renamed in its row and deleted, and both are undone")
     expect edit "Rename One"
   )");
   CHECK(test.editor->document().results[0]->name == "Elbow");
-  CHECK(test.shown().get() == test.volume(0));  // still shown
+  CHECK(test.shown().get() == test.volume(0));  // the same result is still shown
   test.play("double-click Two/row\n type \"Elbow\"\n key Return\n expect edit \"Rename Two\"");
   CHECK(test.editor->document().results[1]->name == "Elbow (2)");
   test.play("double-click \"Elbow (2)/row\"\n type \"Other\"\n key Escape");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From a volume to a posed one in the real editor, and what happens when the worker fails.
+// Resamples a volume to a posed one in the real editor, also with workers that fail.
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -22,7 +22,7 @@ using namespace limber::test;
 
 namespace {
 
-// A program that stands in for the worker.
+// Writes a shell script that stands in for the worker program.
 Path script(const TemporaryFolder& folder, const std::string& text) {
   const Path path = folder / "worker";
   std::ofstream(path) << "#!/bin/sh\n" << text;
@@ -30,7 +30,7 @@ Path script(const TemporaryFolder& folder, const std::string& text) {
   return path;
 }
 
-// What a job makes of the document: joints glide by less than a voxel before.
+// Returns what a job makes of the document. Joints first glide by less than a voxel.
 Posed resampled(const Document& document, const Method& method, const ResampleSettings& settings = {}) {
   const glm::dvec3 spacing = document.volume->grid.spacing;
   const GlidedPose glided = glide_joints(
@@ -59,7 +59,7 @@ std::string next_step(const Editor& editor) {
   return "none";
 }
 
-// The failure's toast; the document must be as it was.
+// Runs a failing job, checks that the document is unchanged, and returns the message.
 std::string failure(LimbEditor& test) {
   const Document before = test.editor->document();
   run(*test.editor, "resample.run");
@@ -110,7 +110,7 @@ TEST_CASE("steps: the list names what is missing next, from nothing to a posed v
   run(*test.editor, "resample.lbs");
   run(*test.editor, "resample.run");
   test.play("wait-job");
-  CHECK(steps(*test.editor)[4].line == "Fore 30\u00b0, LBS");  // the newest
+  CHECK(steps(*test.editor)[4].line == "Fore 30\u00b0, LBS");  // the newest result
 }
 
 TEST_CASE("resample: the result is what the core computes, is undone, shown, and has its figures") {
@@ -134,14 +134,14 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(facts->tissues.size() == 4);
   CHECK(facts->change_percent);
   CHECK(facts->seconds > 0);
-  // With the voxels that `limber resample --overlap` would have marked.
+  // The result has the voxels that `limber resample --overlap` marks.
   const auto marked = resampled(document, Blend::Mixed, {.overlap = true}).overlap;
   REQUIRE(result.overlap);
   CHECK(std::ssize(result.overlap->tissue) == std::count(marked.begin(), marked.end(), 1));
   CHECK(std::ssize(result.overlap->bones) == std::count(marked.begin(), marked.end(), 2));
   CHECK(facts->overlap_voxels >= std::ssize(result.overlap->tissue));
 
-  // Shown in place of the volume, and no longer.
+  // The result replaces the volume in the view while it is selected.
   test.play("click \"Fore 30\u00b0, Mixed/row\"");
   CHECK(test.editor->views->scene.volume == result.volume);
   test.play("click \"At rest/row\"");
@@ -154,7 +154,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   run(*test.editor, "edit.undo");
   CHECK(test.editor->document().results.size() == 1);
 
-  // Mass-exact, the same; and it is said in its name and its report.
+  // A mass-exact run works the same way. Its name and its report say so.
   run(*test.editor, "resample.dqs");
   test.play("key Ctrl+4\n click Resample/Mass-exact\n key Ctrl+Return\n wait-job");
   REQUIRE(test.editor->document().results.size() == 2);
@@ -166,7 +166,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   CHECK(std::any_of(settings.begin(), settings.end(),
                     [](const auto& line) { return line.name == "Mass exact" && line.value == "yes"; }));
 
-  // One page of all results, which the studies' writer makes.
+  // All results go into one page, made by the writer of study reports.
   const TemporaryFolder folder;
   export_report(*test.editor, exact, folder / "both.html");
   test.play("wait-job");
@@ -182,7 +182,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
     CHECK(page.find(part) == std::string::npos);
   }
 
-  // By its name a file is a volume, surfaces, or a simulation's input, as the command line writes it.
+  // The file's name decides whether a volume, surfaces or a simulation's input is written, as on the command line.
   for (const char* name : {"posed.mha", "posed.obj", "posed.dat"}) export_result(*test.editor, exact, folder / name);
   test.play("wait-job");
   CHECK(read_volume(folder / "posed.mha").volume.voxels == exact->volume->voxels);
@@ -195,7 +195,8 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   const std::string xml = read_file(folder / "posed.xml");
   CHECK(xml.find("450000000") != std::string::npos);
   CHECK(xml.find("<Box") != std::string::npos);
-  CHECK_THROWS_AS(export_result(*test.editor, exact, folder / "posed.node"), Error);  // nothing was meshed
+  // A result of blending has no mesh to write.
+  CHECK_THROWS_AS(export_result(*test.editor, exact, folder / "posed.node"), Error);
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 7);
 }
 
@@ -207,7 +208,7 @@ TEST_CASE("resample: a result becomes stale when what it was made from changes, 
   const auto result = test.editor->document().results.at(0);
   CHECK(stale_reason(test.editor->document(), *result).empty());
   run(*test.editor, "pose.clear");
-  CHECK(stale_reason(test.editor->document(), *result).empty());  // it stands for its own pose
+  CHECK(stale_reason(test.editor->document(), *result).empty());  // a result keeps its own pose
   run(*test.editor, "edit.undo");
   run(*test.editor, "skin.geodesic");
   test.play("wait-job");
@@ -240,10 +241,10 @@ TEST_CASE("resample: a worker that crashes, fails, hangs or eats memory is a mes
   CHECK(failure(test).find("took longer") != std::string::npos);
   test.editor->worker_program = "/no/such/program";
   CHECK(failure(test).find("cannot be started") != std::string::npos);
-  test.editor->worker_program = script(folder, "exit 0\n");  // and writes nothing
+  test.editor->worker_program = script(folder, "exit 0\n");  // the worker succeeds, but writes nothing
   CHECK_FALSE(failure(test).empty());
 
-  // With a message that can be read again, and the editor goes on.
+  // The message can be opened again, and the editor goes on.
   test.play(R"(
     click "toast 0/Details"
     expect error "There is no such file"

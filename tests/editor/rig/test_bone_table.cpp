@@ -15,7 +15,7 @@ void map_once(Stage& s) {
   s.play("wait-idle");
 }
 
-// The share of the weight of a label's voxels that a bone has.
+// Returns the share of a bone in the weights of a label's voxels.
 double share(const Document& document, Label label, const std::string& bone) {
   const TissueVoxels tissue(*document.volume);
   const auto& names = document.weights->bones();
@@ -75,7 +75,7 @@ TEST_CASE(
   create_project({.document = test.editor->document()}, path, writer);
   CHECK(*read_project(path).document.bone_map == BoneMap{{"4", "LeftForearm"}});
 
-  // Weights go by it.
+  // Weights follow the map.
   test.play("key Ctrl+2\nclick \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
   CHECK(share(test.editor->document(), GluedArm::kHumerus, "LeftForearm") == doctest::Approx(1));
   test.play("key Ctrl+Z\nkey Ctrl+Z\nwait-idle");
@@ -101,7 +101,7 @@ TEST_CASE("bone table: the box of choices maps a label, and a bone that gets ano
     return *next.bone_map;
   };
   CHECK(renamed("Back") == BoneMap{{"5", "Back"}});
-  // A map that names a bone which is gone is not used, and said so.
+  // A map that names a missing bone is not used, and a message says so.
   Document next = test.editor->document();
   next.bone_map = std::make_shared<const BoneMap>(BoneMap{{"5", "Tail"}, {"4", "Spine"}});
   test.editor->history.commit("Wrong map", next);

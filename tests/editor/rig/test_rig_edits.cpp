@@ -99,7 +99,7 @@ TEST_CASE("rigging: with Ctrl a joint snaps to steps, to another joint, or to th
   CHECK(std::abs(by / 5 - std::round(by / 5)) < 1e-9);
   test.play("key Ctrl+Z");
 
-  // The ball's core is bone, 12 mm large about the middle of the world.
+  // The core of the ball is bone with a radius of 12 mm, around the origin.
   test.editor->transform_settings->snap = Snap::BoneMiddle;
   const ViewProjection view = test.view();
   const auto middle = middle_of_bone(test.editor->document(), view, view.pixel_of({3, 0, 4}).value());
@@ -133,7 +133,7 @@ TEST_CASE("rigging: pose, weights and names follow an edit, and come back with u
   test.play("key Ctrl+Z");
   CHECK(test.editor->document() == next);
   test.play("key Ctrl+Shift+Z");
-  // Weight of the removed bone goes to the one above; of a root there is none to go to.
+  // The weight of a removed bone goes to its parent. A root has no parent to take it.
   test.choose(1);
   test.play("move \"3D view/view\"\nkey X");
   CHECK(test.editor->document().weights->bones() == std::vector<std::string>{"Upper"});
@@ -171,7 +171,7 @@ TEST_CASE("rigging: the sidebar sets what a joint allows, one edit each, and res
       "click Joint/Kind/list\n click Joint/Kind/Hinge\n wait-idle\n click Joint/Axis/list\n click \"Joint/Axis/Local "
       "Z\"");
   CHECK(limits().axis == rest_axes(test.rig().bones[1])[2]);
-  // A range holds the rest pose: its lower end is not above zero.
+  // A range must contain the rest pose, so its lower end is not above zero.
   test.play(
       "double-click \"Joint/Angle from\"\n type \"20\"\n key Return\n double-click \"Joint/Angle to\"\n type \"140\"\n "
       "key Return");
@@ -190,7 +190,8 @@ TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tis
     REQUIRE(rig_check(*test.editor));
     CHECK(rig_check(*test.editor)->bones.empty());
     CHECK(test.fact("text:All in tissue") == "shown");
-    // The ball ends 40 mm below its middle: of the new 72 mm the last 32 are outside. Live, and gone again with Escape.
+    // The ball ends 40 mm below its middle, so 32 mm of the new 72 mm are outside. The share is updated live and reset
+    // by Escape.
     test.editor->transform_settings->part = TransformSettings::Part::Tail;
     test.play("move \"3D view/view\"\n key G\n key Z\n key -\n key 3\n key 6");
     CHECK(rig_check(*test.editor)->bones[0].share == doctest::Approx(40.0 / 72).epsilon(0.03));
@@ -246,7 +247,7 @@ TEST_CASE(
 
 namespace {
 
-// A trunk with an arm at each side.
+// Gives the trunk an arm on each side.
 void give_two_arms(RiggingEditor& test) {
   Document next = test.editor->document();
   Armature rig;
@@ -320,10 +321,11 @@ TEST_CASE("rigging: a bone mirrored to the other side keeps its weights and pose
   CHECK(!document.clips[0]->keys.bones.contains("Arm.L"));
   CHECK(same(document.poses[0]->rotation.at("Arm.R"), in_the_mirror));
   CHECK(document.anchors->pins == std::set<std::string>{"Arm.R"});
-  CHECK(glm::distance(document.anchors->poles.at("Arm.R"), {-7, 8, 9}) < 1e-9);  // the trunk stands in the middle
+  // The pole is mirrored at the trunk, which lies in the middle.
+  CHECK(glm::distance(document.anchors->poles.at("Arm.R"), {-7, 8, 9}) < 1e-9);
   CHECK(test.editor->selection.bones == std::set<int>{arm});
 
-  // And back: as before.
+  // Mirroring again restores the rig.
   test.play("key Ctrl+M");
   CHECK(test.rig() == *next.armature);
   CHECK(same(test.editor->document().pose->rotation[arm], raised));
@@ -363,7 +365,7 @@ TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, ea
     const int parent = test.rig().bones[test.rig().find(name).value()].parent;
     return parent < 0 ? std::string() : test.rig().bones[parent].name;
   };
-  // The child first, then the parent.
+  // Selects a child, and its future parent as the active bone.
   const auto choose_both = [&](const std::string& child, const std::string& parent) {
     test.choose(test.rig().find(parent).value());
     test.editor->selection.bones.insert(test.rig().find(child).value());
@@ -378,7 +380,7 @@ TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, ea
   choose_both("Hand.L", "Arm.L");
   test.play("click \"Edit/Bone/Connect to parent\"");
   CHECK(glm::distance(test.rig().bones[test.rig().find("Hand.R").value()].head, {-20, 0, 4}) < 1e-9);
-  // Onto the other side: each hangs on the other's, not on itself.
+  // Across the sides, each bone becomes the child of the other side's, not of itself.
   choose_both("Hand.L", "Arm.R");
   test.play("key Ctrl+P");
   CHECK(parent_of("Hand.L") == "Arm.R");
@@ -406,7 +408,7 @@ TEST_CASE("rigging: a bone's row is dragged onto its new parent, and onto the ar
         "release\n wait-idle\n expect edit \"Parent Arm.L to Arm.R\"");
     CHECK(parent_of("Arm.L") == "Arm.R");
     CHECK(parent_of("Arm.R") == "Trunk");
-    // A bone cannot hang on its own child; Escape leaves everything.
+    // A bone cannot become the child of its own child. Escape changes nothing.
     test.play("press \"Outliner/bone Arm.R/name\"\n move \"Outliner/bone Arm.L/name\"\n release\n wait-idle");
     CHECK(test.fact("error") != "none");
     test.play(
@@ -429,7 +431,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     const ViewProjection view = test.view();
     const glm::dvec3 head = test.rig().bones[1].head, handle = hinge_handle(*test.editor, view).value();
     CHECK(glm::distance(glm::normalize(handle - head), {1, 0, 0}) < 1e-9);
-    // From the x axis by 30 degrees towards z, in the plane of the front view.
+    // Drags the handle from the x axis by 30 degrees towards z, in the plane of the front view.
     const double reach = glm::distance(handle, head);
     const glm::dvec3 to = head + reach * glm::dvec3(std::cos(glm::radians(30.0)), 0, std::sin(glm::radians(30.0)));
     test.drag(view, handle, to);
@@ -448,7 +450,8 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
       test.host->events.push(ButtonChanged{MouseButton::Left, false});
       test.player.settle();
     };
-    // Ctrl takes the nearest of the bone's own axes, a letter one of the world's, Escape brings the old one back.
+    // Ctrl snaps to the nearest of the bone's own axes, a letter selects a world axis, and Escape restores the old
+    // axis.
     press_at(handle);
     test.play("key-down Ctrl");
     test.pointer_to(view.pixel_of(head + reach * glm::dvec3(0.2, 0, 1)).value());
@@ -459,7 +462,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     release();
     CHECK(test.rig() == *limber::test::small_limb().armature);
 
-    // Typed: as the picture is seen, from the front about the line of sight; then about z.
+    // A typed angle turns about the line of sight, then about z.
     press_at(handle);
     test.play("key 3\n key 0");
     CHECK(glm::distance(shown_rig(*test.editor)->bones[1].limits.axis,
@@ -472,7 +475,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     test.play("expect edit \"Hinge of Fore\"\n key Ctrl+Z");
     CHECK(test.rig() == *limber::test::small_limb().armature);
 
-    // The knob about the bone's middle: typed, and dropped.
+    // Tests the knob that rolls the bone, with a typed angle and with Escape.
     press_at(roll_handle(*test.editor, view).value());
     test.play("key 4\n key 0\n key Return");
     release();
@@ -587,8 +590,8 @@ TEST_CASE("rigging: an edit that moves the target bone of a constraint says so, 
   commit_rig(*test.editor, "Move tail", moved, {1});
   CHECK(warnings().find("Aim (sit)") != std::string::npos);
   CHECK(warnings().find("Free") == std::string::npos);
-  CHECK(warnings().find("Copy") == std::string::npos);  // a rotation is copied wherever its bone is
-  // A rig that is imported over it.
+  CHECK(warnings().find("Copy") == std::string::npos);  // copying a rotation does not depend on the bone's position
+  // Imports a rig over the current one.
   const TemporaryFolder folder;
   write_armature(test.rig(), folder / "same.json");
   moved.bones[1].tail.x += 5;

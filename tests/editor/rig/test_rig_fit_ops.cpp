@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Skeletons are laid into the volume.
+// Proves the operators that place and fit skeletons.
 #include <algorithm>
 
 #include "core/motion/constraint.h"
@@ -16,8 +16,8 @@ using namespace editor;
 
 namespace {
 
-// Two bars of bone that meet end to end, and a hinge in the middle of their section: bending drives a corner of one
-// into the other.
+// Opens two bars of bone that meet end to end. The hinge lies in the middle of their section, so bending drives a
+// corner of one bar into the other.
 void open_bars(Stage& stage) {
   stage.open_limb();
   Document document = stage.document();
@@ -52,7 +52,7 @@ std::vector<Proof> proofs_of_rig_fitting() {
                 check_rig(*s.document().volume, *s.document().armature).whole > 0.1;
        },
        Shows::InBody, rigging},
-      // A rig of names that mean nothing, so that it is over soon.
+      // The names of this rig mean nothing, so the fit is quick.
       {"rig.auto_fit",
        "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The current rig\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) {
@@ -116,7 +116,7 @@ TEST_CASE("joint axis: a joint without a hinge is fitted as the hinge it bends b
   Document document = stage.document();
   Armature rig = *document.armature;
   rig.bones[1].limits = {};
-  rig.bones[0].head = {-38, 14, 0};  // not in line, so that there is a way to bend
+  rig.bones[0].head = {-38, 14, 0};  // not in line, so that the joint has a bending direction
   document.armature = std::make_shared<const Armature>(rig);
   stage.editor().history.commit("Free", document);
   stage.play("wait-idle\n key Shift+J\n wait-job\n wait-idle");
@@ -142,7 +142,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
   const render::Scene& scene = stage.editor().views->scene;
   CHECK(scene.display == render::Display::XRay);
   REQUIRE(scene.weights);
-  // As many voxels are pink as collide; none once the axis is where it was found.
+  // As many voxels are pink as collide. Once the fitted axis is shown, none are.
   const auto pink = [&] {
     return std::count(scene.weights->field->begin(), scene.weights->field->end(), glm::u8vec3(0xFF, 0x3E, 0xA5));
   };
@@ -151,7 +151,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
   run(stage.editor(), "rig.joint_fit_after");
   stage.play("wait-idle");
   CHECK(pink() == 0);
-  // Elsewhere the body is seen as ever, and back here the proposal waits.
+  // Other workspaces show the body as usual. Back here the proposal is still there.
   stage.play("key Ctrl+4\n wait-idle");
   CHECK_FALSE(scene.weights);
   stage.play("key Ctrl+1\n wait-idle");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rig at rest is edited.
+// Proves the operators that edit the rig at rest.
 #include "editor/context/transform_settings.h"
 #include "editor/rig/rig_edits.h"
 #include "tests/editor/operator_proofs.h"
@@ -22,7 +22,7 @@ std::function<void(Stage&)> choose(std::set<int> bones, int active) {
   };
 }
 
-// As it was before any edit.
+// Opens the limb again and selects bones.
 std::function<void(Stage&)> anew(std::set<int> bones, int active) {
   return [=](Stage& s) {
     s.open_limb();
@@ -30,7 +30,7 @@ std::function<void(Stage&)> anew(std::set<int> bones, int active) {
   };
 }
 
-// One edit of that name, and what it made of the rig.
+// The effect is one edit with this label, and a rig that satisfies `made`.
 Effect edited(const std::string& label, std::function<bool(const Armature&)> made) {
   return [=](Stage& s, const Seen& b) {
     return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1 &&
@@ -153,7 +153,7 @@ std::vector<Proof> proofs_of_rigging() {
          rig.bones[1].name = "Arm.L";
          rig.bones[1].tail = {30, 0, 0};
          rig.bones[1].limits = {};
-         // The plane between the sides is that through the bones where no pair tells it.
+         // If no pair of bones defines the mirror plane, it is the plane through the middle bones.
          rig.bones.push_back({"Hip.L", 0, {10, 0, -20}, {20, 0, -30}, 0, {}});
          rig.bones.push_back({"Hip.R", 0, {-10, 0, -20}, {-20, 0, -30}, 0, {}});
          next.armature = std::make_shared<const Armature>(rig);

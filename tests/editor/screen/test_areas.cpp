@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the pointer is over owns the keys; what it points at stays where it is.
+// Keys go to the area under the pointer, and the widget under the pointer does not move.
 #include "editor/motion/timeline.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/small_clip.h"
@@ -85,7 +85,7 @@ TEST_CASE("areas: what is pointed at in the sidebar stays where it is when somet
   test.play("key Ctrl+1\nwait-idle\nmove Display/fold");
   const glm::vec2 before = place_of(*test.editor, "Display/fold");
   const float above = place_of(*test.editor, "Outliner/fold").y;
-  // A bone is chosen: its numbers come above.
+  // Selects a bone, so that its numbers appear above.
   test.editor->selection.bone = 1;
   test.editor->selection.bones = {1};
   test.player.step();
@@ -95,7 +95,7 @@ TEST_CASE("areas: what is pointed at in the sidebar stays where it is when somet
   test.player.step();
   CHECK(place_of(*test.editor, "Display/fold") == before);
   CHECK(place_of(*test.editor, "Outliner/fold").y == above);
-  // Left alone, all is as if it had come at once.
+  // Once the pointer leaves, the layout is as usual.
   test.editor->selection.bone = 1;
   test.editor->selection.bones = {1};
   test.play("move \"3D view/view\"");
@@ -159,7 +159,7 @@ TEST_CASE("areas: a word in a section's head is whole where the title leaves roo
   test.play("key Ctrl+1\nwait-idle");
   const Widget* fold = test.editor->widgets.find("Bone/fold");
   REQUIRE(fold);
-  // Pointing at a text that is cut shows it whole.
+  // Pointing at a text that is cut off shows all of it.
   test.play("move " + std::to_string(fold->rect.high.x + 20) + " " + std::to_string(fold->rect.centre().y) +
             "\nwait 2");
   CHECK(test.editor->tip.title != name);

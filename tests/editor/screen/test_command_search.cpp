@@ -30,7 +30,8 @@ TEST_CASE("search: a command is found by letters of its name and run with Return
 TEST_CASE("search: arrows choose, what cannot run now stands behind what can and says why when it is chosen") {
   SmallEditor test({1024, 640}, {}, false);
   auto found = find_commands(*test.editor, "fram");
-  std::erase_if(found, [](const FoundCommand& c) { return c.letters.empty(); });  // found by their descriptions
+  // Commands without matched letters were found by their descriptions.
+  std::erase_if(found, [](const FoundCommand& c) { return c.letters.empty(); });
   REQUIRE(found.size() >= 2);
   const auto cannot = std::find_if(found.begin(), found.end(), [](const FoundCommand& c) { return !c.reason.empty(); });
   CHECK(std::all_of(cannot, found.end(), [](const FoundCommand& c) { return !c.reason.empty(); }));
@@ -53,7 +54,7 @@ TEST_CASE("search: a command that is named stands before those that only speak o
   CHECK(found.front().op->id == "labels.brush");
   CHECK(std::any_of(found.begin(), found.end(),
                     [](const FoundCommand& c) { return c.op->id == "labels.new_tissue" && c.reason.empty(); }));
-  // What it says leads to where it can run.
+  // The message has a button that leads to the workspace in which the command can run.
   test.play(R"(
     key F3
     type "add constraint"

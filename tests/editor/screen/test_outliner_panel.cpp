@@ -8,7 +8,7 @@ using namespace limber::test;
 
 namespace {
 
-// The ball with three bones in a row, and two results.
+// Makes the ball with three bones in a row and two results.
 Document body_with_bones() {
   Document document = small_body();
   auto armature = std::make_shared<Armature>();
@@ -158,7 +158,7 @@ TEST_CASE("outliner: the search keeps parents, and finds nothing with a way back
 
 namespace {
 
-// A body with 60 bones, more than the list shows at once, the last of which has this name.
+// Makes a body with 60 bones, more than the list can show. The last bone has this name.
 Document body_with_many_bones(const std::string& last) {
   Document document = small_body();
   auto armature = std::make_shared<Armature>();

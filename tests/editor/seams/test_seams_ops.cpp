@@ -8,7 +8,7 @@ namespace limber::test {
 
 namespace {
 
-// The small limb as an arm, whose limbs touch nowhere.
+// Makes the small limb an arm whose parts touch nowhere.
 void make_arm(Stage& s) {
   Document next = s.document();
   Armature rig = *next.armature;
@@ -65,7 +65,7 @@ TEST_CASE("seams: the button finds them, the list says between what, a click on 
   test.play("click \"sidebar/sections/Seams/Find seams\"\nwait-job\nwait-idle");
   const std::int64_t faces = test.faces();
   CHECK(faces > 200);
-  CHECK_FALSE(test.editor->document().seams);  // what is found by itself is no edit
+  CHECK_FALSE(test.editor->document().seams);  // seams that were found are not stored as an edit
   test.play("wait-job\nwait-idle");
   const auto* pairs = counted_pairs(*test.editor);
   REQUIRE(pairs);
@@ -81,14 +81,14 @@ TEST_CASE("seams: a stroke of the brush cuts along its way and is one step to un
   test.play("click \"Edit/Weights/Find seams\"\nwait-job\nwait-idle\nclick \"strip/skin.seam_brush\"\nwait-idle");
   test.editor->skin->painting->radius = 20;
   const std::int64_t found = test.faces();
-  // Down the middle of the trunk's front.
+  // Draws a stroke down the middle of the trunk's front.
   test.stroke(test.at({-30, -40, 300}), test.at({-30, -40, 100}));
   CHECK(test.steps() == 1);
   CHECK(test.last_edit() == "Cut seam");
   const std::int64_t cut = test.faces();
   CHECK(cut > found + 50);
   REQUIRE(test.editor->document().seams);
-  // All of it lies in one sheet, no further than the radius below the surface.
+  // All of the cut lies in one sheet, no deeper than the brush radius below the surface.
   int beside = 0;
   const AffineTransform world = world_from_voxel(test.editor->document().volume->grid);
   test.editor->document().seams->for_each([&](const glm::ivec3& lower, int) {
@@ -106,7 +106,7 @@ TEST_CASE("seams: a stroke of the brush cuts along its way and is one step to un
   CHECK(test.last_edit() == "Erase seam");
   CHECK(test.faces() < cut);
   CHECK(test.faces() > found);
-  // Escape drops a stroke.
+  // Escape drops the running stroke.
   const int steps = test.steps();
   test.play("move " + test.at({-30, -40, 150}));
   test.host->events.push(ButtonChanged{MouseButton::Left, true});
@@ -115,7 +115,7 @@ TEST_CASE("seams: a stroke of the brush cuts along its way and is one step to un
   test.host->events.push(ButtonChanged{MouseButton::Left, false});
   test.player.settle();
   CHECK(test.steps() == steps);
-  // Another brush paints weights again.
+  // Choosing a weight brush ends the seam brush.
   test.play("click \"strip/skin.brush_add\"\nwait-idle");
   CHECK_FALSE(test.editor->seams->brush);
 }
@@ -174,7 +174,8 @@ TEST_CASE("seams: they are drawn in 3D and in slices, at rest alone, and can be 
 TEST_CASE("seams: those by hand go to weights, and to the worker that resamples") {
   GluedEditor test;
   Document next = test.editor->document();
-  next.seams = std::make_shared<const Seams>(next.volume->grid.size);  // none: the arm stays grown to the trunk
+  // Without seams, the arm stays connected to the trunk.
+  next.seams = std::make_shared<const Seams>(next.volume->grid.size);
   test.editor->history.commit("Remove seams", next);
   test.play("click \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
   REQUIRE(test.editor->document().weights);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Workspaces, layouts, displays, overlays, cameras and slices.
+// Proves the operators of workspaces, layouts, displays, overlays, cameras and slices.
 #include "tests/editor/operator_proofs.h"
 
 namespace limber::test {
@@ -17,19 +17,19 @@ std::function<bool(Stage&, const Seen&)> becomes(const char* fact, const char* v
 std::function<bool(Stage&, const Seen&)> goes(bool Views::*shown) {
   return [=](Stage& s, const Seen&) { return !(views(s).*shown); };
 }
-// The eye is on that side of the body, and the picture stands upright.
+// The effect is a camera that looks from this side of the body, with its picture upright.
 std::function<bool(Stage&, const Seen&)> looks_from(const char* name, const glm::dvec3& side) {
   return [=](Stage& s, const Seen&) {
     const glm::dvec3 from = glm::normalize(render::eye_of(camera(s)) - camera(s).centre);
     return s.is("view", name) && glm::distance(from, side) < 1e-6 && !views(s).body.move;
   };
 }
-// How far the eye has turned about the centre, degrees.
+// Returns the angle in degrees by which the eye has turned about the centre.
 double turned(Stage& s, const Seen& before) {
   const auto side = [](const render::Camera& c) { return glm::normalize(render::eye_of(c) - c.centre); };
   return glm::degrees(std::acos(glm::clamp(glm::dot(side(camera(s)), side(before.camera)), -1.0, 1.0)));
 }
-// How far the cross-hair went along z, mm.
+// Returns how far the cross-hair has moved along z, mm.
 double stepped(Stage& s, const Seen& before) { return views(s).cross_hair.z - before.cross_hair.z; }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Brush presets: kept between sittings, picked in the panel, and not lost or invented by a damaged file.
+// Brush presets are kept between sessions and used from the panel. A damaged file neither loses nor adds presets.
 #include "editor/skin/brush_presets.h"
 
 #include <doctest/doctest.h>
@@ -47,7 +47,7 @@ TEST_CASE("brush presets: one that is saved is there in the next sitting with ev
   CHECK(brush_preset_in_use(*next.editor) == 0);
   brush_of(next).strength = 0.2;
   CHECK(brush_preset_in_use(*next.editor) == -1);
-  save_brush_preset(*next.editor, wanted.name);  // replaces it
+  save_brush_preset(*next.editor, wanted.name);  // replaces the preset of this name
   REQUIRE(brush_presets(*next.editor).size() == 1);
   CHECK(brush_presets(*next.editor)[0].strength == 0.2);
   delete_brush_preset(*next.editor, wanted.name);
@@ -103,7 +103,7 @@ TEST_CASE("brush presets: what another program has saved, and what this one does
   one.editor->preferences_path = folder / "preferences.json";
   CHECK(disabled_reason(*one.editor, *find_operator(*one.editor, "skin.preset_use")) == "Save a brush preset first");
   CHECK(brush_presets(*one.editor).empty());
-  // What another program knows, which read the file before it was written.
+  // The presets as another running program knows them, which read the file earlier.
   auto of_other = std::make_shared<BrushPresets>();
   const auto other = [&]() -> Editor& {
     std::swap(brush_of(one).presets, of_other);
@@ -123,7 +123,7 @@ TEST_CASE("brush presets: what another program has saved, and what this one does
   CHECK(text.find("\"One\"") == std::string::npos);
   REQUIRE(brush_presets(*one.editor).size() == 2);
   CHECK(brush_presets(*one.editor)[1].name == "Third");
-  // What is no list of presets is not written over.
+  // A file that is not a list of presets is not overwritten.
   write_file_atomically(file, "no JSON");
   CHECK_THROWS_AS(save_brush_preset(*one.editor, "Fourth"), Error);
   CHECK(read_file(file) == "no JSON");

@@ -16,7 +16,7 @@ using namespace editor;
 
 namespace {
 
-// The arm of the phantoms with weights by heat.
+// Returns the phantom arm with weights by heat diffusion.
 Document weighted_arm() {
   Phantom phantom = make_arm_phantom(6);
   Document document;
@@ -29,7 +29,7 @@ Document weighted_arm() {
   return document;
 }
 
-// The sum of the sizes of the volume changes of skin, fat and muscle at some angles of the elbow, counted in resampled
+// Returns the sum of |volume change| of skin, fat and muscle at some angles of the elbow, by voxels of resampled
 // bodies.
 double change_of(const Document& document, Blend blend) {
   const std::vector<TissueKind> kinds = document.tissues->kinds();

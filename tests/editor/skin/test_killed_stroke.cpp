@@ -25,7 +25,7 @@ TEST_CASE(
   DocumentWriter writer;
   create_project({.document = document}, project, writer);
   const std::string script = home / "script", picture = home / "second.png", folder = home.folder.path();
-  // A layer, a stroke on it, and another one whose button is never let go.
+  // Makes a layer and a stroke on it, then begins another stroke whose button is never released.
   std::ofstream(script) << "key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle\nkey Shift+Ctrl+L\nwait-idle\n"
                            "press \"3D view/view\"\nrelease\nwait-idle\n"
                            "key ]\nkey ]\npress \"3D view/view\"\nmove \"3D view/view\"\nshot "
@@ -46,7 +46,7 @@ TEST_CASE(
   }
   REQUIRE(runs);
   REQUIRE(std::filesystem::exists(picture));
-  std::this_thread::sleep_for(std::chrono::seconds(1));  // a finished edit is on the disk within that
+  std::this_thread::sleep_for(std::chrono::seconds(1));  // a finished edit is on the disk within a second
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
 

@@ -24,7 +24,7 @@ void select(Editor& editor, Label label) {
   editor.selection.tissues = {label};
 }
 
-// A grey image on the grid of the ball: 1000 in its left half, 0 in the other.
+// Shows a grey image on the ball's grid: 1000 in its left half, 0 in the other.
 void show_halves(Editor& editor) {
   const Grid& grid = editor.document().volume->grid;
   std::vector<float> values(static_cast<std::size_t>(grid.voxel_count()));
@@ -32,7 +32,7 @@ void show_halves(Editor& editor) {
   show_image(editor, std::make_shared<const GreyLevels>(grey_levels(grid, values)), "image.nrrd");
 }
 
-// The ball in four views of the Skin workspace, with the label brush for bone.
+// The ball in four views of the Skin workspace, with the label brush set to bone.
 struct LabelEditor : LimbEditor {
   LabelEditor() : LimbEditor({1120, 620}) {
     select(*editor, 111);
@@ -40,7 +40,7 @@ struct LabelEditor : LimbEditor {
     editor->skin->painting->radius = 11;
     before = editor->document();
   }
-  // Moves the pointer to a world point in a view.
+  // Returns the script position of a world point in a view.
   std::string at(ViewId id, const glm::dvec3& point) {
     for (const ViewPlace& place : editor->layout.view_places)
       if (place.id == id) {
@@ -123,14 +123,14 @@ TEST_CASE("label brush: a stroke in a slice paints a capsule, and is one step th
   std::int64_t painted = 0;
   test.for_each([&](const glm::ivec3& v, const glm::dvec3& p) {
     const double away = to_segment(p, from, to);
-    if (std::abs(away - 11) < 0.01) return;  // pixels are whole numbers neither here nor in the script
+    if (std::abs(away - 11) < 0.01) return;  // too close to decide: pixel positions are rounded
     painted += away < 11;
     CHECK(test.volume().at(v) == (away < 11 ? 111 : test.before.volume->at(v)));
   });
   CHECK(painted > 200);
   const LabelVolume after = test.volume();
   test.play("key Ctrl+Z\nwait-idle");
-  // The textures were changed where the stroke was, and not uploaded anew.
+  // Only the changed part of the textures was updated; nothing was uploaded again.
   CHECK(test.editor->views->renderer.resources().uploads() == uploads);
   CHECK(test.volume().voxels == test.before.volume->voxels);
   CHECK(test.editor->history.position() == position);
@@ -176,7 +176,7 @@ TEST_CASE("label brush: it paints over what it may, in one slice, and in a range
   test.editor->skin->painting->radius = 38;
   const auto over = [&](const char* id, const std::function<bool(Label)>& may) {
     run(*test.editor, id);
-    const glm::dvec3 at(0, 16, z);  // in muscle
+    const glm::dvec3 at(0, 16, z);  // a point in muscle
     test.stroke(ViewId::Axial, at, at + glm::dvec3(0.5, 0, 0));
     std::int64_t changed = 0;
     test.for_each([&](const glm::ivec3& v, const glm::dvec3& p) {
@@ -198,7 +198,8 @@ TEST_CASE("label brush: it paints over what it may, in one slice, and in a range
   run(*test.editor, "labels.in_range");
   LabelBrush& brush = *test.editor->skin->painting->labels;
   const GreyLevels& image = *test.editor->views->image->image;
-  CHECK_FALSE(looks_like_ct(image));  // so the range is not that of bone in a CT
+  // The image is no CT, so the range does not start with that of bone.
+  CHECK_FALSE(looks_like_ct(image));
   CHECK(brush.low == image.least);
   CHECK(brush.high == image.most());
   brush.low = LabelBrush().low;
@@ -224,7 +225,7 @@ TEST_CASE("label brush: on the body's surface it paints a ball around the point 
     REQUIRE(test.editor->skin->painting->place);
     return test.editor->skin->painting->place->rest;
   }();
-  CHECK(std::abs(glm::length(point) - 40) < 5);  // on the skin
+  CHECK(std::abs(glm::length(point) - 40) < 5);  // mm: on the skin
   test.play("press\nwait-idle\nrelease\nwait-idle");
   CHECK(test.fact("edit") == "Paint Cortical bone");
   std::int64_t painted = 0;
@@ -284,7 +285,8 @@ TEST_CASE("label brush: run from another workspace it leads to the Skin workspac
   CHECK(brush_of(*test.editor).on);
   test.play("key Ctrl+3\nwait-idle");
   CHECK_FALSE(find_operator(*test.editor, "labels.brush")->checked(*test.editor));
-  run(*test.editor, "labels.brush");  // it was on, and is not switched off where it cannot be seen
+  // The brush is on but not visible in this workspace, so the command shows it instead of switching it off.
+  run(*test.editor, "labels.brush");
   CHECK(test.editor->workspace == Workspace::Skin);
   CHECK(brush_of(*test.editor).on);
   run(*test.editor, "labels.brush");
@@ -315,7 +317,7 @@ TEST_CASE(
   next.weights = half_weights(*next.volume);
   test.editor->history.commit("Weigh", next);
   const double z = test.plane_of(ViewId::Axial);
-  test.stroke(ViewId::Axial, {0, 0, z}, {10, 0, z});  // bone over muscle
+  test.stroke(ViewId::Axial, {0, 0, z}, {10, 0, z});  // paints bone over muscle
   CHECK(test.editor->document().weights == next.weights);
   run(*test.editor, "labels.erase_to_air");
   test.stroke(ViewId::Axial, {0, 0, z}, {5, 0, z}, "Ctrl");

@@ -27,8 +27,8 @@ TEST_CASE("painting: a stroke lands where the pointer is, in both projections an
       CHECK(test.last_edit() == "Add Fore");
       const auto [count, furthest] = test.painted(1, centre, true);
       CHECK(count > 20);
-      CHECK(furthest < 12 + 6);  // the radius, and a voxel's diagonal for where the surface lies
-      // Constant at full strength: wholly, not nearly; and every sum is exact.
+      CHECK(furthest < 12 + 6);  // mm: the radius, and a voxel's diagonal as the tolerance of the surface
+      // With constant falloff at full strength, the bone gets all of the weight, and each sum is exact.
       test.for_each([&](const glm::dvec3& p, const glm::ivec3&, const Influence& i) {
         CHECK(i.weight[0] + i.weight[1] + i.weight[2] + i.weight[3] == kFullWeight);
         if (glm::distance(p, centre) < 5) CHECK(i == rigid_influence(1));
@@ -48,7 +48,7 @@ TEST_CASE(
         BrushKind::Average, BrushKind::Smear, BrushKind::JointCapsule}) {
     PaintEditor test(1, parallel);
     INFO(name_of(kind), ", parallel ", parallel);
-    // Something to sharpen and to drag: a blend that falls along the ball.
+    // Weights that change smoothly along the ball, so that there is something to sharpen and to smear.
     Document blended = test.editor->document();
     SkinWeights weights = *blended.weights;
     const TissueVoxels tissue(*blended.volume);
@@ -97,14 +97,15 @@ TEST_CASE(
     test.play("key Ctrl+Shift+Z");
     CHECK(test.weights() == seen);
 
-    // With the other bone locked there is nothing to take from: not one bit.
+    // If the other bone is locked, there is nothing to take from, so no bit changes.
     test.play("key Ctrl+Z");
     toggle_lock(*test.editor, 0);
     const int unlocked = test.steps();
     test.stroke(test.at(-6, 4), test.at(8, 3));
     CHECK(test.steps() == unlocked);
     CHECK(*test.editor->document().weights == *before);
-    parallel = !parallel;  // by turns: where strokes land is the same in both
+    // Perspective and parallel views alternate: strokes land at the same points in both.
+    parallel = !parallel;
   }
 }
 
@@ -136,19 +137,19 @@ TEST_CASE(
   CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->strength = 0.4; }).most ==
         doctest::Approx(0.4).epsilon(1e-3));
   CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 6; }).voxels < 0.4 * plain.voxels);
-  // Fading, a brush does less; the sharper, the less.
+  // With a falloff, a brush adds less weight: least with a sharp one.
   const auto smooth = painted_by([](PaintEditor&t) { run(*t.editor, "skin.falloff_smooth"); }),
              sharp = painted_by([](PaintEditor&t) { run(*t.editor, "skin.falloff_sharp"); });
   CHECK(smooth.weight < 0.8 * plain.weight);
   CHECK(sharp.weight < 0.8 * smooth.weight);
-  // Reach: the surface alone, then down to a depth, then through.
+  // The reach is the surface only, then a depth below it, then through the body.
   const auto surface = painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_surface"); });
   const auto depth =
       painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_depth"), t.editor->skin->painting->depth_mm = 8; });
   CHECK(surface.deepest > depth.deepest);
   CHECK(depth.deepest > plain.deepest);
   CHECK(depth.deepest > 40 - 8 - 4);
-  // Coming over a place again adds up only where it is asked to.
+  // Going over the same point again adds weight only if accumulation is on.
   const auto twice = [](PaintEditor& t) {
     t.play("move " + t.at(0, 20));
     t.press();
@@ -158,13 +159,13 @@ TEST_CASE(
   const auto weak = [](PaintEditor& t) { t.editor->skin->painting->strength = 0.05; };
   CHECK(painted_by(weak, twice).most == doctest::Approx(0.05).epsilon(1e-3));
   CHECK(painted_by([&](PaintEditor& t) { weak(t), run(*t.editor, "skin.accumulate"); }, twice).most > 0.2);
-  // Wide apart, dabs leave gaps on the way.
+  // Dabs with a large spacing leave gaps along the stroke.
   const auto way = [](PaintEditor& t) { t.stroke(t.at(-18, 20), t.at(18, 20)); };
   const auto close_by = painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 5; }, way);
   CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 5, t.editor->skin->painting->spacing = 4; },
                    way)
             .voxels < 0.8 * close_by.voxels);
-  // What is hidden keeps its weights where only what is seen is painted.
+  // If only the visible surface is painted, clipped voxels keep their weights.
   CHECK(painted_by(
             [](PaintEditor& t) {
               run(*t.editor, "skin.paint_visible");
@@ -196,9 +197,9 @@ TEST_CASE(
   CHECK(test.editor->document().weights == before);
   CHECK(test.steps() == steps);
 
-  test.stroke(test.at(0, -20), test.at(0, -25));  // there already
+  test.stroke(test.at(0, -20), test.at(0, -25));  // the bone has all of the weight there already
   CHECK(test.steps() == steps);
-  test.stroke("300 90", "310 90");  // beside the body
+  test.stroke("300 90", "310 90");  // the stroke misses the body
   CHECK(test.steps() == steps);
   CHECK(test.editor->messages.toasts.empty());
 }
@@ -278,7 +279,7 @@ TEST_CASE("painting: radius, strength and value are set with the pointer, typed,
   test.play("key 2\nkey 5\nkey Return");
   CHECK(!test.editor->modal);
   CHECK(painting.radius == 25);
-  // The pointer goes a radius further from the middle: twice as large.
+  // The pointer moves away from the centre by another radius, which doubles the radius.
   const double millimetres = body_seen(*test.editor)->millimetres_per_pixel({0, -38.7, 10});
   test.play("key F");
   const glm::vec2 from = test.editor->input.pointer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Brushes are chosen, set and painted with.
+// Proves the operators that choose and set brushes, and paints with them.
 #include "editor/skin/brush_presets.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
@@ -12,7 +12,7 @@ using namespace editor;
 
 namespace {
 
-// The lower half follows the second bone, which is the active one.
+// Makes the lower half follow the second bone, which is active.
 void weigh(Stage& s) {
   Document next = s.document();
   next.weights = test::half_weights(*next.volume);
@@ -117,7 +117,7 @@ std::vector<Proof> proofs_of_painting() {
       {"skin.falloff_smooth", "click \"Edit/Brush/Falloff/Smooth falloff\"",
        is(&Painting::falloff, FalloffShape::Smooth)},
   };
-  // Brushes without a key of their own.
+  // Covers the brushes that have no key of their own.
   for (const BrushRule& rule : brush_rules())
     if (const std::string id = operator_of(rule);
         std::none_of(all.begin(), all.end(), [&](const Proof& proof) { return proof.id == id; }))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How skin weights are shown, which bones they are about, and their locks.
+// Proves the operators that show skin weights, select their bones, and lock them.
 #include "core/skin/skin_weights.h"
 #include "editor/context/views.h"
 #include "editor/files/project_session.h"
@@ -15,7 +15,7 @@ namespace {
 
 using Effect = std::function<bool(Stage&, const Seen&)>;
 
-// The ball follows Upper above and Fore below, with a blend of 24 mm between them.
+// Returns weights of the ball that follow Upper above and Fore below, with a blend of 24 mm between.
 std::shared_ptr<const SkinWeights> blended_weights(const Document& document) {
   const LabelVolume& volume = *document.volume;
   const TissueVoxels tissue(volume);
@@ -41,13 +41,13 @@ void weigh(Editor& editor) {
   editor.selection.bones = {1};
 }
 
-// The Skin workspace with weights and the pointer over the body's upper half.
+// Opens the Skin workspace with weights, and moves the pointer over the body's upper half.
 void ready(Stage& s) {
   if (!s.document().weights) weigh(s.editor());
   s.play("key Ctrl+2\n move \"3D view/view\"\n wait-idle");
 }
 
-// The other bone than the pointer is over.
+// Selects the bone that the pointer is not over.
 void choose_other(Stage& s) {
   s.editor().skin->searching = false;
   ready(s);
@@ -200,7 +200,7 @@ TEST_CASE("skin: the weights under the pointer stand beside it with their sum, t
     CHECK(test.fact("text:Sum") == "shown");
     CHECK(test.fact("text:1.000") == "shown");
   }
-  // In the middle of the ball: as deep as its radius.
+  // The depth at the middle of the ball is its radius.
   const LabelVolume& volume = *test.editor->document().volume;
   const glm::ivec3 middle(glm::round(voxel_from_world(volume.grid) * glm::dvec3(0)));
   CHECK(depth_of(volume, middle) == doctest::Approx(38).epsilon(0.1));
@@ -255,7 +255,7 @@ TEST_CASE("skin: an isolated region is all that rays, slices and the pointer fin
   CHECK(tissue_shown() == fore);
   CHECK(fore < all);
   CHECK(test.fact("weights") == "active");
-  // Later edits change what it is, beside the window where the body is large.
+  // Later edits change the count too. In a large body this happens in the background.
   const auto shown_of_large = [&](std::int64_t at_once) {
     test.editor->skin->painting->edited_at_once = at_once;
     Document next = test.editor->document();

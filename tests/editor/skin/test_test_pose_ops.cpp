@@ -74,12 +74,12 @@ TEST_CASE("test pose: a joint is bent on trial, the project's pose stays, and an
   CHECK(why_not_bend(*test.editor) == "A bone without a parent cannot be bent: select another bone");
   CHECK(test.editor->trial->degrees == 60);
   CHECK(shows_pose(*test.editor));
-  // In the sidebar, with the way back.
+  // The sidebar shows the bend and a button to undo it.
   for (const char* folded : {"Steps", "Bones", "Layers"}) test.editor->open_sections[folded] = false;
   test.play("key N\nwait-idle\nclick \"sidebar/sections/Brush/skin.unbend\"\nwait-idle");
   CHECK_FALSE(shows_pose(*test.editor));
   CHECK(!test.editor->views->scene.pose);
-  // The pose of the project shows in its own workspace alone, as it is.
+  // The project's pose is not affected: its own workspace shows it as it is.
   set_bend(*test.editor, 0);
   test.choose(1);
   set_bend(*test.editor, 60);
@@ -97,7 +97,7 @@ TEST_CASE(
     REQUIRE(test.editor->views->scene.pose);
     const auto map = test.editor->views->scene.pose;
     test.choose(0);
-    // A point of the lower half, on its surface; in the slice within it.
+    // Takes a point on the surface of the lower half; for slices, a point inside it.
     const double angle = glm::radians(slice ? -80.0 : -60.0), radius = slice ? 25 : 40;
     const glm::dvec3 rest(0, -radius * std::cos(angle), radius * std::sin(angle));
     const glm::dvec3 seen = posed(test, rest);
@@ -132,7 +132,7 @@ TEST_CASE(
     CHECK(furthest < 12 + 6 + 6);
     CHECK(test.editor->views->scene.pose);
     CHECK(test.editor->views->scene.pose != map);
-    // What was painted goes back with the upper half: the pointer is over other tissue, or none.
+    // The painted tissue now moves with the upper half, so the pointer is over other tissue or none.
     test.play("move " + pixel + "\nwait-idle");
     const auto after = test.editor->skin->painting->place;
     CHECK((!after || glm::distance(after->rest, rest) > 6));
@@ -159,7 +159,7 @@ TEST_CASE("test pose: Tab shows rest and brings back what was bent on trial, pos
   CHECK(bend(*test.editor) == 60);
   CHECK_FALSE(test.editor->trial->posed);
   CHECK(shows_pose(*test.editor));
-  // Unbent for good, only the pose is there to be shown.
+  // After the bend is cleared, only the pose remains to be shown.
   clear_bend(*test.editor);
   test.editor->trial->posed = false;
   test.play("move \"3D view/view\"\nkey Tab");

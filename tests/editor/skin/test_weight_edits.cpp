@@ -18,7 +18,7 @@ namespace {
 
 constexpr Label kMuscle = 17, kBlood = 65, kBone = 111, kSkin = 143;
 
-// The ball, of which the upper half follows the upper bone wholly; the lower bone is active.
+// The ball whose upper half follows the upper bone and whose lower half the lower one, which is active.
 struct EditEditor : LimbEditor {
   EditEditor() : LimbEditor({1000, 600}) {
     Document next = editor->document();
@@ -56,7 +56,7 @@ struct EditEditor : LimbEditor {
         body(world * glm::dvec3(voxel), volume.at(voxel), weights().chunk(brick)[place - tissue.bricks()[brick].first]);
       });
   }
-  // Every voxel is as that says: the lower bone's weight where it was 1 below and 0 above.
+  // Counts the voxels whose weight of the lower bone differs from `expected`. At first it is 1 below and 0 above.
   template <class Expected>
   int wrong(const Expected& expected) const {
     int count = 0;
@@ -81,9 +81,9 @@ TEST_CASE("weight editing: a flood does what the brush does in all it may reach,
   test.play("key Ctrl+X\nwait-idle");
   CHECK(test.steps() == steps + 1);
   CHECK(test.last_edit() == "Flood Fore");
-  CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.25; }) ==
-        0);  // bone tissue stays as it is
-  // Another value and kind, still one step.
+  // Bone tissue keeps its weights.
+  CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.25; }) == 0);
+  // Another value and another kind are still the same step.
   std::vector<FormField> fields = test.editor->last_operation->fields;
   REQUIRE(fields.size() == 3);
   fields[0].chosen = 3;
@@ -138,7 +138,7 @@ TEST_CASE("weight editing: the part under the pointer, or all of a tissue, follo
   const int steps = test.steps();
   test.play("move \"3D view/view\"\nwait-idle");
   REQUIRE(test.editor->views->hover.label == kSkin);
-  test.painting().tissue = PaintedTissue::Chosen;  // what is named need not be among the brush's tissues
+  test.painting().tissue = PaintedTissue::Chosen;  // the part need not belong to the brush's tissues
   test.play("key L\nwait-idle");
   CHECK(test.last_edit() == "Fill part with Fore");
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kSkin ? 1 : before(p); }) == 0);
@@ -173,7 +173,7 @@ TEST_CASE(
   fields[1].value = 0.75;
   redo_last_operator(*test.editor, fields);
   fields[1].value = 0.5;
-  redo_last_operator(*test.editor, fields);  // the first is cancelled
+  redo_last_operator(*test.editor, fields);  // cancels the one before
   test.play("wait-job\nwait-idle");
   CHECK(test.steps() == steps + 1);
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.5; }) == 0);
@@ -215,7 +215,7 @@ TEST_CASE(
   CHECK(test.steps() == steps);
   button(false);
   REQUIRE(test.steps() == steps + 1);
-  // A pixel is half a millimetre: the ends are that exact.
+  // A pixel is half a millimetre, which limits how exactly the ends are placed.
   const double allowed = 0.03;
   const auto away = [&](const auto& expected) {
     double most = 0;
@@ -229,7 +229,7 @@ TEST_CASE(
   fields[0].chosen = 1;
   redo_last_operator(*test.editor, fields);
   CHECK(test.steps() == steps + 1);
-  // Its beginning lies on the skin, where it was pressed.
+  // The gradient begins on the skin, where the button was pressed.
   const glm::dvec3 from(0, -std::sqrt(1600 - 400), 20);
   CHECK(away([&](const glm::dvec3& p) { return std::clamp(1 - glm::distance(p, from) / 40, 0.0, 1.0); }) < 0.12);
 }
@@ -258,7 +258,7 @@ TEST_CASE("weight editing: brushes and floods keep to the region, drawn in 3D an
   std::size_t place = 0;
   test.for_each(
       [&](const glm::dvec3& p, Label, const Influence&) { wrong += (*first)[place++] != (p.x > 0.5 && p.z > 0.5); });
-  CHECK(wrong < 40);  // at its border, a pixel wide
+  CHECK(wrong < 40);  // voxels at the region's border, which is a pixel wide
   CHECK(test.editor->views->scene.weights->region == first);
   const SkinWeights before_all = test.weights();
 
@@ -276,7 +276,7 @@ TEST_CASE("weight editing: brushes and floods keep to the region, drawn in 3D an
   test.play("key Ctrl+Z");
   CHECK(test.weights() == before_all);
 
-  // A stroke over its border.
+  // Paints a stroke across the region's border.
   test.painting().kind = BrushKind::Add;
   test.painting().radius = 15;
   test.painting().depth = BrushDepth::Through;
@@ -300,7 +300,7 @@ TEST_CASE("weight editing: brushes and floods keep to the region, drawn in 3D an
   draw("B", {-60, 0, 60}, {0.5, 0, 0.5}, "Ctrl");
   CHECK(std::abs(painted_region_voxels(*test.editor) - right) < 40);
   const auto kept = painted_region(*test.editor);
-  draw("C", {60, 0, 60}, {61, 0, 61});  // nothing lies there
+  draw("C", {60, 0, 60}, {61, 0, 61});  // this rectangle contains nothing
   CHECK(painted_region(*test.editor) == kept);
   test.play("key Alt+A\nwait-idle");
   CHECK(!painted_region(*test.editor));
@@ -314,7 +314,7 @@ TEST_CASE("weight editing: a mirror tells what it found no match for, and that c
   next.armature = std::make_shared<const Armature>(rig);
   SkinWeights weights({"Arm.L", "Arm.R"}, TissueVoxels(*next.volume));
   next.weights = std::make_shared<const SkinWeights>(weights);
-  // A lump at the right that the left has not.
+  // The right side has a part that the left side lacks.
   auto volume = std::make_shared<LabelVolume>(*next.volume);
   const AffineTransform world = world_from_voxel(volume->grid);
   TissueVoxels whole(*volume);
@@ -337,7 +337,7 @@ TEST_CASE("weight editing: a mirror tells what it found no match for, and that c
   CHECK(unmatched > 0);
   run(*test.editor, "skin.region_unmatched");
   CHECK(painted_region_voxels(*test.editor) == static_cast<std::int64_t>(unmatched));
-  // What has a match on the other side follows the other bone; what has none stays.
+  // Voxels with a match on the other side follow the other bone. Voxels without one keep theirs.
   const TissueVoxels tissue(*volume);
   const auto region = painted_region(*test.editor);
   std::size_t place = 0;
@@ -354,7 +354,7 @@ TEST_CASE("brush ring: it lies on the skin of a ball, and is flat where the ball
   place.normal = {0, -1, 0};
   for (const RingPoint& point : ring_on_body(*test.editor, place, 20, 64)) {
     CHECK(point.on_body);
-    CHECK(std::abs(glm::length(point.at) - 40) < 4);  // voxels of 4 x 5 x 3 mm
+    CHECK(std::abs(glm::length(point.at) - 40) < 4);  // mm; voxels are 4 x 5 x 3 mm
     CHECK(std::hypot(point.at.x, point.at.z) == doctest::Approx(20));
   }
   int lost = 0;
@@ -369,7 +369,7 @@ TEST_CASE("painting: below the bone a brush changes nothing where other bones ha
   EditEditor test;
   Document next = test.editor->document();
   Armature rig = *next.armature;
-  rig.bones.push_back({"Other", -1, {40, 0, 0}, {60, 0, 0}});  // no relative of the two
+  rig.bones.push_back({"Other", -1, {40, 0, 0}, {60, 0, 0}});  // not related to the other two bones
   next.armature = std::make_shared<const Armature>(rig);
   const TissueVoxels tissue(*next.volume);
   SkinWeights weights({"Upper", "Fore", "Other"}, tissue);
@@ -404,7 +404,7 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   test.play("click \"Edit/Brush/Falloff/Custom falloff\"\nwait-idle");
   REQUIRE(painting.falloff_curve.size() == 5);
   CHECK(std::abs(falloff_of(painting)(0.5f) - smooth(0.5f)) < 1e-3);
-  // Its middle point, half as high as the box, goes down to the bottom.
+  // Drags the curve's middle point, at half the height of the box, down to the bottom.
   const Rect box = test.editor->widgets.find("Brush/curve")->rect;
   const auto drag = [&](const glm::vec2& from, const glm::vec2& to) {
     test.host->events.push(PointerMoved{from});
@@ -420,11 +420,11 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   REQUIRE(painting.falloff_curve.size() == 5);
   CHECK(painting.falloff_curve[2].y == 0);
   CHECK(falloff_of(painting)(0.5f) < 0.01f);
-  // A new one between the first two, as high as the pointer is.
+  // Adds a point between the first two, at the height of the pointer.
   drag({box.low.x + box.width() * 0.16f, box.centre().y}, {box.low.x + box.width() * 0.16f, box.centre().y});
   REQUIRE(painting.falloff_curve.size() == 6);
   CHECK(painting.falloff_curve[1].y == doctest::Approx(0.5).epsilon(0.05));
-  // It cannot pass the next one.
+  // A point cannot be dragged past its neighbour.
   drag({box.low.x + box.width() * 0.16f, box.centre().y}, {box.high.x - 10, box.centre().y});
   CHECK(painting.falloff_curve[1].x < painting.falloff_curve[2].x);
   CHECK(painting.falloff_curve[1].x > painting.falloff_curve[0].x);
@@ -467,7 +467,8 @@ TEST_CASE("painting: with X-mirror a stroke paints the bone of the other side th
     CHECK((influence.of(2) == 0 || p.x < 0));
   });
   CHECK(left > 20);
-  CHECK(std::abs(left - right) <= left / 5);  // the plane lies between voxels, and rays end where they end
+  // The plane lies between voxels, and rays hit the sides at slightly different points, so the counts differ a little.
+  CHECK(std::abs(left - right) <= left / 5);
   test.play("key Ctrl+Z");
   test.for_each([&](const glm::dvec3&, Label, const Influence& influence) { CHECK(influence == rigid_influence(0)); });
 }

@@ -19,7 +19,7 @@ bool comes_out(const PaintEditor& test) { return test.weights() == composed(laye
 std::string dab(const PaintEditor& test) { return test.at(0, 20); }
 void stroke(PaintEditor& test, const std::string& at) { test.stroke(at, at); }
 
-// A stroke that comes out as it was shown while the button was down.
+// Paints a stroke, and checks that the result equals the preview while the button was down.
 void stroke_as_shown(PaintEditor& test, const std::string& at) {
   test.play("move " + at);
   test.press();
@@ -29,7 +29,7 @@ void stroke_as_shown(PaintEditor& test, const std::string& at) {
   CHECK(test.weights() == seen);
 }
 
-// Two layers, of which the upper is painted.
+// Prepares weights and a brush for layers.
 void layer(Stage& s) {
   Document next = s.document();
   next.weights = half_weights(*next.volume);
@@ -112,8 +112,8 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
   CHECK(layers(test).base == base);
   CHECK(comes_out(test));
   CHECK(test.steps() == steps + 2);
-  CHECK(test.weights() == *painted);  // without a layer
-  // A second stroke on it goes on from the first.
+  CHECK(test.weights() == *painted);  // the weights without a layer
+  // A second stroke on the layer continues from the first.
   test.editor->skin->painting->kind = BrushKind::Smooth;
   stroke(test, test.at(0, 10));
   CHECK(comes_out(test));
@@ -122,7 +122,7 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
   CHECK(layers(test).layers.size() == 1);
   test.play("key Ctrl+Z\nwait-idle");
   CHECK(!test.editor->document().layers);
-  // The active layer is gone: strokes go to what is there.
+  // The active layer no longer exists, so strokes paint the weights themselves.
   stroke(test, test.at(0, 10));
   CHECK(!test.editor->document().layers);
 }
@@ -148,7 +148,7 @@ TEST_CASE(
   stroke_as_shown(test, dab(test));
   CHECK(comes_out(test));
   CHECK(share_at_centre(1) == doctest::Approx(0.6).epsilon(1e-3));
-  // The other bone gets what room is left, and then no more.
+  // The other bone gets only the rest that is left in the layer.
   test.choose(0);
   painting.value = 1;
   stroke(test, dab(test));
@@ -160,7 +160,7 @@ TEST_CASE(
   CHECK(test.steps() == steps);
   REQUIRE(test.editor->messages.toasts.size() == 1);
   CHECK(test.editor->messages.toasts[0].line == "The layer already covers this place completely");
-  // The base has nothing to leave it to.
+  // The base has nothing below it, so weights are normalized at once.
   choose_layer(*test.editor, std::nullopt);
   CHECK(normalize_of(*test.editor) == Normalize::Unlocked);
   CHECK(!disabled_reason(*test.editor, *find_operator(*test.editor, "skin.normalize_off")).empty());
@@ -191,7 +191,7 @@ TEST_CASE("layers: opacity, eye and mask are edits in the sidebar, and a hidden 
   CHECK(comes_out(test));
   CHECK(test.weights() != full);
 
-  // Strokes change the mask: what is taken away shows the base again, to the bit.
+  // Strokes change the mask. Where the layer is taken away, the base shows again, exactly.
   test.play("click \"sidebar/sections/Layers/layer 0/mask\"\nwait-idle");
   CHECK(test.editor->skin->painting->mask);
   test.editor->skin->painting->kind = BrushKind::Subtract;

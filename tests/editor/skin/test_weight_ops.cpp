@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Weights are edited in the whole body or a part of it.
+// Proves the operators that edit weights in the whole body or a part of it.
 #include "core/project/project_io.h"
 #include "editor/skin/painted_region.h"
 #include "editor/skin/painting.h"
@@ -15,7 +15,7 @@ namespace {
 
 using Effect = std::function<bool(Stage&, const Seen&)>;
 
-// The lower half follows the second bone, which is the active one; no tissue is chosen.
+// Makes the lower half follow the second bone, which is active. No tissue is selected.
 void weigh(Stage& s) {
   Document next = s.document();
   next.armature = small_limb().armature;
@@ -33,7 +33,7 @@ Effect edit_is(const char* label) {
   };
 }
 
-// Everywhere the two bones and two more that the rig gets, by 97, 1, 1 and 1 %.
+// Adds two bones and gives every voxel the weights 97, 1, 1 and 1 % of the four.
 void weigh_by_four(Stage& s) {
   weigh(s);
   Document next = s.document();
@@ -61,7 +61,7 @@ int most_influences(Stage& s) {
   return most;
 }
 
-// Beside it a project of the same body, all of which follows the second bone.
+// Also writes a project of the same body in which every voxel follows the second bone.
 void weigh_with_other(Stage& s) {
   weigh(s);
   Document other = small_limb();
@@ -73,7 +73,7 @@ void weigh_with_other(Stage& s) {
   create_project({other, "", "", {}, {}}, s.home / "other.limber", writer);
 }
 
-// Of two bones beside one another all follows the left one.
+// Makes the whole body follow the left one of two bones that lie side by side.
 void weigh_left(Stage& s) {
   Document next = s.document();
   Armature rig;
@@ -125,7 +125,7 @@ std::vector<Proof> proofs_of_weight_edits() {
 }
 
 std::vector<Proof> proofs_of_regions() {
-  // A box over the upper left of the ball as it is seen from the front.
+  // Draws a box over the upper left of the ball, seen from the front.
   const std::string box = "key B\n press \"3D view/view\"\n move 300 150\n release\n wait-idle",
                     lasso = "key C\n press \"3D view/view\"\n move 300 180\n move 320 380\n release\n wait-idle";
   const auto has_region = [](Stage& s, const Seen&) { return painted_region(s.editor()) != nullptr; };

@@ -10,7 +10,7 @@ using namespace editor;
 
 namespace {
 
-// Half weights with a clean cut, and an island of the lower bone in the upper half.
+// Returns weights of two halves with a sharp border, and an island of the lower bone in the upper half.
 std::shared_ptr<const SkinWeights> bad_weights(const LabelVolume& volume) {
   SkinWeights weights = *half_weights(volume);
   const TissueVoxels tissue(volume);
@@ -119,7 +119,7 @@ TEST_CASE(
   CHECK(test.editor->document().weights == before);
   CHECK(problems_stale(*test.editor));
 
-  // A lock in the way is named.
+  // A message names the locked bone.
   toggle_lock(*test.editor, 0);
   test.play("click \"sidebar/sections/Problems/skin.find_problems\"\nwait-job\nwait-idle");
   test.editor->messages.toasts.clear();

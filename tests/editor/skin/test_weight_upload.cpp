@@ -10,7 +10,7 @@ using limber::test::LimbEditor;
 
 namespace {
 
-// A block of 1.5 million voxels of tissue, more than one frame brings to the card.
+// A block of 1.5 million tissue voxels, more than one frame uploads to the graphics card.
 struct LargeEditor : LimbEditor {
   LargeEditor() : LimbEditor({1000, 600}) {
     Document next = editor->document();
