@@ -99,7 +99,7 @@ def draw(vtk, path, view):
 
     def wait():
         pixels = vtk.vtkUnsignedCharArray()
-        window.GetPixelData(0, 0, 0, 0, 0, pixels, 0)  # one pixel: everything before it has been drawn
+        window.GetPixelData(0, 0, 0, 0, 0, pixels, 0)  # reading one pixel waits until everything is drawn
         return pixels
 
     turn(view["cameras"][-1])

@@ -125,7 +125,7 @@ def quaternion(axis, degrees):
 def empty_scene():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.preferences.addon_enable(module="limber_blender")
-    bpy.context.scene.render.fps = 30  # as the motion's
+    bpy.context.scene.render.fps = 30  # the motion's frame rate
 
 
 def setUpModule():
@@ -401,7 +401,7 @@ class InBlender(unittest.TestCase):
         if not blender:
             print("SKIPPED: the add-on for Blender (blender is not installed)", flush=True)
             self.skipTest("blender is not installed")
-        with tempfile.TemporaryDirectory() as folder:  # where Blender keeps add-ons and settings
+        with tempfile.TemporaryDirectory() as folder:  # for Blender's add-ons and settings
             # Debian's Blender takes its modules from the first python3 of the PATH, which must be Debian's.
             places = {"BLENDER_USER_SCRIPTS": folder, "BLENDER_USER_CONFIG": folder,
                       "PATH": f"{Path(blender).parent}{os.pathsep}{os.environ['PATH']}"}

@@ -83,7 +83,7 @@ def kill(process):
     try:
         os.kill(process, signal.SIGKILL)
     except ProcessLookupError:
-        pass  # it ended by itself
+        pass  # the process had ended by itself
 
 
 def free_port():

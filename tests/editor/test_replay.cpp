@@ -411,14 +411,14 @@ TEST_CASE("replay: a face of the clip box follows its handle, shown while dragge
     test.host->events.push(editor::PointerMoved{at + glm::vec2(0, 12.0f * i)});
     test.player.settle();
   }
-  CHECK(box() == before);  // not yet an edit
+  CHECK(box() == before);  // still a preview, no edit
   REQUIRE(test.editor->views->preview_visibility);
   CHECK(test.editor->views->preview_visibility->clip_box.high.z < before.high.z);
   test.play("release\n expect edit \"Move clip box\"");
   CHECK(box().high.z < before.high.z);
   CHECK(box().low == before.low);
   CHECK(test.editor->history.steps().size() == steps + 1u);
-  // The face is where the pointer is, to a voxel.
+  // The face follows the pointer to within a voxel.
   glm::dvec2 pixel;
   const AffineTransform world = world_from_voxel(test.editor->document().volume->grid);
   glm::dvec3 face = (box().low + box().high) * 0.5;
@@ -524,7 +524,7 @@ TEST_CASE("replay: Escape closes menus") {
 TEST_CASE("replay: tissues without a name are listed by their label") {
   TemporaryFolder folder;
   LabelVolume volume = *small_body().volume;
-  for (Label& label : volume.voxels) label += label ? 1000 : 0;  // which no built-in table knows
+  for (Label& label : volume.voxels) label += label ? 1000 : 0;  // labels that no built-in table names
   write_volume(volume, folder / "ball.mha");
   SmallEditor test({1600, 900}, {}, false);
   test.editor->to_open = {folder / "ball.mha"};

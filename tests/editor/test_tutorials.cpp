@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Scripts in assets/tutorials are played as they stand.
+// Plays the scripts of assets/tutorials unchanged.
 #include <algorithm>
 
 #include "core/base/file.h"
@@ -41,5 +41,5 @@ TEST_CASE("tutorials: an arm is rigged from nothing, weighted and bent in twelve
         doctest::Approx(150));
   CHECK(glm::degrees(2 * std::acos(std::abs(document.pose->rotation[*rig.find("Forearm")].w))) == doctest::Approx(60));
   CHECK(limit_excess(forearm, document.pose->rotation[*rig.find("Forearm")]) < 1e-9);
-  CHECK(sitting.editor().history.steps().size() < 9);  // each an edit that can be undone
+  CHECK(sitting.editor().history.steps().size() < 9);  // number of edits, each of which can be undone
 }

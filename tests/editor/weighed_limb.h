@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The small limb with weights: what lies below its joint follows the second bone wholly, the rest the first.
+// The small limb with weights: voxels below its joint have weight 1 for the second bone, all others for the first.
 #pragma once
 
 #include "tests/editor/small_limb.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Rig files of every kind; the first byte chooses which.
+// Fuzzes the readers of rig files. The first byte selects the file format.
 #include <string>
 
 #include "core/base/error.h"

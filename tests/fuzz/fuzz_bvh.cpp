@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// BVH texts: refused with an Error, or read, posed, written and read again as the same.
+// Fuzzes the BVH reader: a text is refused with Error, or it is read, posed, written, and read again unchanged.
 #include <cstdlib>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tables of comma-separated values: landmarks, and dielectric properties of the user's. They are read into numbers that
-// can be reckoned with, or refused with Error.
+// Fuzzes the readers of comma-separated tables: landmarks, and a user's dielectric properties. A table is read into
+// finite numbers, or refused with Error.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

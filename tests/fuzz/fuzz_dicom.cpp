@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever GDCM says of the images of a series: they become a volume whose grid can be believed and whose voxels are
-// all there, or are refused with Error. GDCM itself, which has a process of its own for what it does on damaged files,
-// is not in here: the two functions that the program takes from it read a plain list of elements instead.
+// Fuzzes the import of a DICOM series, with images whose elements are arbitrary: they become a volume with a valid grid
+// and all of its voxels, or are refused with Error. GDCM itself is not fuzzed: a separate process runs it because of
+// its behaviour on damaged files. The two functions that the program calls in it are replaced by functions that read a
+// plain list of elements.
 //   an image: its number of elements, then for each group and element (4 bytes), length (1 byte) and bytes; then pixels
 #include <array>
 #include <cmath>
@@ -41,7 +42,7 @@ struct Image {
 };
 }  // namespace
 
-// In the place of the module's.
+// Replaces the function of the module that calls GDCM.
 extern "C" int limber_dicom_elements(const LimberDicomFile* file, LimberDicomElement visit, void* context) {
   Image image(*file);
   for (std::size_t left = image.byte(); left > 0; --left) {
@@ -65,7 +66,7 @@ std::optional<Path> find_own_program(const std::string&) { return std::nullopt; 
 std::optional<Path> find_program(const std::string&) { return std::nullopt; }
 }  // namespace limber
 
-// Images come one after another, each behind its length (two bytes).
+// The input is a sequence of images. Each follows its length (two bytes).
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace limber;
   static const Path folder = [] {

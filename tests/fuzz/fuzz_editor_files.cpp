@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the editor keeps as JSON beside projects: it is read within its ranges, or refused with Error. The first byte
-// says what the rest is:
+// Fuzzes the readers of the JSON files that the editor keeps outside projects: a file is read with all values in their
+// ranges, or refused with Error. The first byte says what the rest is:
 //   P  preferences     K  a key map     T  a theme     R  what is remembered of recent files     A  an arrangement
 #include <cstdint>
 #include <cstdlib>
@@ -46,7 +46,7 @@ void read_preferences_text(const std::string& text) {
   require(preferences.jobs_at_once >= 1 && preferences.jobs_at_once <= 8);
   require(preferences.recent_commands.size() <= Preferences::kMostRecent);
   check(preferences.arrangements);
-  // What is read once is written and read again as the same.
+  // Whatever was read is written and read again unchanged.
   require(preferences_from_json(to_json(preferences), problem) == preferences || !problem.empty());
 }
 

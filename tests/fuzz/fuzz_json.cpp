@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Our JSON: poses, rigs, maps and bone maps; the first byte chooses which.
+// Fuzzes the readers of the program's JSON files: poses, rigs, maps and bone maps. The first byte selects one.
 #include <string>
 
 #include "core/base/error.h"

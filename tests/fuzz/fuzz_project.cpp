@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever stands in a project or a journal: it is read, or refused with Error. The first byte says what the rest is:
-//   P  a project file       J  a journal       C  chunks whose hashes are right, so that what they say is reached
+// Fuzzes the readers of projects and journals: any bytes are read, or refused with Error. The first byte says what the
+// rest is:
+//   P  a project file       J  a journal       C  chunks with correct hashes, so that their contents are parsed
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -27,7 +28,7 @@ Path file_of(const std::string& bytes) {
   return path;
 }
 
-// Only what read_document promises: parts that fit each other.
+// Checks only what read_document guarantees: the parts of the document fit each other.
 void check(const Document& document) {
   if (document.volume && document.volume->grid.voxel_count() != std::ssize(document.volume->voxels)) std::abort();
   if (document.weights && (!document.volume || TissueVoxels(*document.volume).size() != document.weights->size()))
@@ -37,8 +38,9 @@ void check(const Document& document) {
     std::abort();
 }
 
-// Chunks one after another, the root last: number of nodes, of leaves (a byte each), which earlier chunks they are (a
-// byte each), length (two bytes), bytes. A chunk that names none is a leaf when the length's highest bit is set.
+// Reads chunks, one after another, the root last. Each is: number of child nodes (a byte), number of leaves (a byte),
+// the index of the earlier chunk for each of these (a byte each), length (two bytes), bytes. A chunk without children
+// is a leaf if the highest bit of the length is set.
 struct Chunks final : ChunkSource {
   std::map<std::array<std::uint8_t, 32>, std::string> packed;
   std::vector<ChunkHash> hashes;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever a reader that a file has taken over may say, and whatever it may be told: a message is refused, or taken as
-// what would be sent again in the same bytes. The first byte says which message:
+// Fuzzes the messages between the program and limber_reader, which a malicious file may control: a message is refused,
+// or it is read as a value that is sent again in the same bytes. The first byte says which message:
 //   O  an order     P  a protection     H  a header     T  texts
 #include <cmath>
 #include <cstdint>
@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 'H': {
         const VolumeHeader header = header_from(bytes, "f", refuse);
         check(header);
-        // Keys may come twice and in any order; they are sent once and sorted.
+        // A message may have keys twice and in any order. The program sends each key once, sorted.
         const std::string sent = bytes_of(header);
         require(bytes_of(header_from(sent, "f", refuse)) == sent);
         break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Descriptions of studies, and files of scores: read into cells that can be computed and scores that can be averaged,
-// or refused with Error.
+// Fuzzes the readers of study descriptions and of score files: they are read into cells that can be computed and scores
+// that can be averaged, or refused with Error.
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Surfaces of every format: refused with an Error, or read into triangles of vertices that are there, finite and used.
-// The first byte chooses the format, so that the seeds of one format are changed as that format.
+// Fuzzes the readers of surface files: a file is refused with Error, or read into triangles whose vertices exist, are
+// finite and are all used. The first byte selects the format, so that mutated seeds keep their format.
 #include <cmath>
 #include <cstdlib>
 #include <string>

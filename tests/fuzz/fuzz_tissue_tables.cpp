@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever a label table holds: it is read into tissues with finite materials, or refused with Error.
+// Fuzzes the readers of label tables: a table is read into tissues with finite materials, or refused with Error.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

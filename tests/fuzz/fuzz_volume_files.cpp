@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whole volume files, header and data: read, or refused with Error, within the memory that libFuzzer is given.
+// Fuzzes the readers of volume files with header and data: a file is read within libFuzzer's memory limit, or refused
+// with Error.
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -12,7 +13,7 @@
 #include "core/volume_io/vector_volume_io.h"
 #include "core/volume_io/volume_io.h"
 
-// A bar of 4 x 3 x 2 voxels, all tissue but one, whose seams a file may hold.
+// Returns a bar of 4 x 3 x 2 voxels, all tissue but one. A file may hold seams that fit it.
 static const limber::LabelVolume& body() {
   static const limber::LabelVolume volume = [] {
     limber::LabelVolume made;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever bytes stand in front of voxels: a header parser returns a grid that passed every check, or throws Error.
+// Fuzzes the parsers of volume headers: a parser returns a grid that passed every check, or throws Error.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever a W.nrrd holds: it is read into weights that sum to one over bones of the rig, or refused with Error;
-// seams lie in the volume.
+// Fuzzes the reader of weight files (NRRD): a file is read into weights that sum to one over bones of the rig, or
+// refused with Error. Seams in the file lie within the volume.
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
@@ -12,7 +12,7 @@
 #include "core/skin/weights_io.h"
 
 namespace {
-// The bar the seeds belong to: 9 x 2 x 2 voxels, all tissue, two bones.
+// The bar that the seed files belong to: 9 x 2 x 2 voxels, all tissue, two bones.
 struct Bar {
   limber::LabelVolume volume;
   limber::Armature armature;

@@ -36,7 +36,7 @@ CPU_SECONDS = 5
 EDITOR_SECONDS = 20
 WALL_SECONDS = 60
 MEMORY_KB = 1_000_000
-ADDRESS_BYTES = 4 << 30  # so that a claim of everything is refused by the system and not by the machine's end
+ADDRESS_BYTES = 4 << 30  # limit of the address space: a huge allocation fails instead of exhausting the machine's memory
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 NUMBERS = [b"-1", b"0", b"65536", b"4294967295", b"2147483648", b"9223372036854775807", b"1e308", b"-1e308", b"nan", b"inf", b"1e999"]
 
@@ -83,7 +83,8 @@ class Samples:
 
     def __init__(self, program, folder):
         self.folder = folder
-        # (file to be damaged, or FILE#STATE for a state inside a project; words with {} for the file and {out} for the output's folder)
+        # Pairs: the file to damage (or FILE#STATE for a state inside a project), and the command line, in which {} is
+        # the file and {out} the folder of the output.
         self.cases = []
         self.program = program
         self.has_editor = subprocess.run([program, "editor", "--help"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0
@@ -295,7 +296,7 @@ def environment_of(folder, work):
 
 def limit(cpu_seconds):
     resource.setrlimit(resource.RLIMIT_CPU, (cpu_seconds, cpu_seconds))
-    if "LIMBER_ADDRESS_SANITIZER" not in os.environ:  # which reserves terabytes of addresses
+    if "LIMBER_ADDRESS_SANITIZER" not in os.environ:  # the sanitizer reserves terabytes of addresses
         resource.setrlimit(resource.RLIMIT_AS, (ADDRESS_BYTES, ADDRESS_BYTES))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
@@ -335,10 +336,10 @@ def problems_of(code, out, err, memory, before, after, folder):
     if re.search(rb"[\x00-\x08\x0b-\x1f\x7f]|\xc2[\x80-\x9f]", out + err):
         problems.append("control character printed")
     named = str(folder / "work" / "out") + os.sep
-    # What the editor remembers, what it sets aside there, its small pictures of files, the journal of what it opened, and its note
-    # of a journal that it has set aside.
+    # Files that the editor may write: its settings and the damaged ones that it renamed, thumbnails, the journal of the
+    # opened project, and its note of a journal that it renamed.
     own = tuple(str(folder / part) for part in ("work/config/limber/", "home/limber", "work/edited.limber-edits", "home/.local/state/limber/edits/"))
-    # The folders in which the program notes what it has not finished; no note may stay.
+    # Folders for the program's notes of unfinished files. No note may remain in them.
     notes = [str(folder / "home" / part) for part in (".local", ".local/state", ".local/state/limber", ".local/state/limber/unfinished", ".local/state/limber/edits")]
     for path in sorted(set(before) | set(after)):
         if after.get(path) == "folder" and path in notes:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Crossings of a surface, found by CGAL as well.
+// Compares the program's crossings of a surface with those that CGAL finds.
 #include "core/mesh/crossings.h"
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Surface {
   Eigen::MatrixX3i F;
 };
 
-// A closed tube along x, `around` by `along` places.
+// Returns a closed tube along x, with `around` vertices in each of its `along` circles.
 Surface tube(int around, int along) {
   Surface s;
   s.V.resize(around * along + 2, 3);
@@ -67,7 +67,7 @@ Pairs by_cgal(const Surface& s) {
   return pairs;
 }
 
-// The tube bent by an angle around its middle, as by linear blending.
+// Returns the tube bent at its middle by an angle, as linear blend skinning bends it.
 Surface bent(double degrees) {
   Surface s = tube(24, 41);
   for (Eigen::Index i = 0; i < s.V.rows(); ++i) {
@@ -98,8 +98,9 @@ TEST_CASE("crossings: CGAL finds the same pairs in a tube whose places are shake
     const double most = 0.3 * (1 << seed % 6);
     for (Eigen::Index i = 0; i < s.V.rows(); ++i)
       for (int k = 0; k < 3; ++k) s.V(i, k) += std::uniform_real_distribution<double>(-most, most)(random);
-    if (seed % 3 == 2) s.V = (s.V / 4).array().round() * 4;  // corners upon each other, flat triangles, shared planes
-    // CGAL leaves out triangles without an area; they have no inside to cross.
+    // Rounding makes corners coincide, flattens triangles, and moves triangles into shared planes.
+    if (seed % 3 == 2) s.V = (s.V / 4).array().round() * 4;
+    // CGAL omits triangles without area, which cannot be crossed.
     const Pairs expected = by_cgal(s);
     if (seed % 3 != 2) CHECK(crossing_pairs(s.V, s.F) == expected);
     else CHECK(crossing_pairs(s.V, s.F).empty() == expected.empty());

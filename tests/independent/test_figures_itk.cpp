@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Figures of reports, found by ITK as well: voxels, pieces, enclosed air and label overlap.
+// Compares figures of reports (voxels, pieces, enclosed air, label overlap) with those that ITK computes.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -24,7 +24,7 @@ namespace {
 
 using Image = itk::Image<Label, 3>;
 using Pieces = itk::Image<std::uint32_t, 3>;
-constexpr std::int64_t kSmallest = 50;  // as take_census has it
+constexpr std::int64_t kSmallest = 50;  // voxels of the smallest piece that take_census counts
 
 template <class Of>
 Image::Pointer image_of(const LabelVolume& volume, const Of& value, int margin = 0) {
@@ -42,7 +42,7 @@ Image::Pointer image_of(const LabelVolume& volume, const Of& value, int margin =
   return image;
 }
 
-// Voxels of each piece of what is not 0, most first.
+// Returns the number of voxels of each connected piece of nonzero voxels, in descending order.
 std::vector<std::int64_t> pieces_of(Image::Pointer mask, bool across_corners) {
   auto connect = itk::ConnectedComponentImageFilter<Image, Pieces>::New();
   connect->SetInput(mask);
@@ -55,7 +55,7 @@ std::vector<std::int64_t> pieces_of(Image::Pointer mask, bool across_corners) {
 }
 
 std::int64_t enclosed_air(const LabelVolume& volume) {
-  // With a margin the air outside is one piece, and the largest here.
+  // With a margin of air around the volume, the outside air is one piece, and here the largest.
   const auto pieces = pieces_of(image_of(
                                     volume, [](Label label) -> Label { return label == 0; }, 8),
                                 false);
@@ -90,7 +90,7 @@ void check(const LabelVolume& before, const LabelVolume& after, const TissueTabl
   for (const TissueChange& tissue : ours.tissues) {
     INFO(tissue.name);
     CHECK(overlap->GetDiceCoefficient(tissue.label) == doctest::Approx(dice[tissue.label]));
-    // Theirs is 2 (source - target) / (source + target).
+    // ITK's similarity is 2 (source - target) / (source + target).
     const double change = double(tissue.voxels_after - tissue.voxels_before),
                  sum = double(tissue.voxels_before + tissue.voxels_after);
     CHECK(std::abs(overlap->GetVolumeSimilarity(tissue.label)) == doctest::Approx(std::abs(2 * change / sum)));

@@ -24,7 +24,7 @@ def read(path):
     sizes = [int(size) for size in fields["sizes"].split()]
     vectors = [[float(x) for x in word.strip("()").split(",")] for word in fields["space directions"].split() if word != "none"]
     origin = [float(x) for x in fields["space origin"].strip("()").split(",")]
-    # z slowest
+    # In the array, z is the first index.
     return np.frombuffer(data, TYPES[fields["type"]]).reshape(sizes[::-1]), np.array(vectors), np.array(origin)
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The sources of the program and of its tests, and what they include, for tests of how the tree is built.
+// Lists the source files of the program and of its tests, and their includes, for tests of the dependencies.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,12 @@ namespace limber::layers {
 namespace fs = std::filesystem;
 
 struct Include {
-  std::string file;  // from the root, "core/rig/bvh.cpp"
+  std::string file;  // relative to the root, such as "core/rig/bvh.cpp"
   std::string header;
 };
 
 fs::path root();
-// Headers and sources below folders of the root, in order of their paths.
+// Returns the headers and sources in some folders of the root, sorted by path.
 std::vector<fs::path> sources(const std::vector<std::string>& folders = {"core", "render", "editor", "tests"});
 std::vector<Include> includes_of(const fs::path& file);
 std::vector<std::string> lines_of(const fs::path& file);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The floors of the house: editor above render above core. No file includes upward, and each heavy library is included
-// only behind its own door.
+// Checks the layers: render may include core, and editor may include both, never the other way. Each heavy library may
+// be included only by the files listed for it.
 #include <algorithm>
 #include <filesystem>
 #include <regex>
@@ -17,8 +17,8 @@ namespace {
 
 struct Door {
   std::string library;
-  std::vector<std::string> headers;  // beginnings
-  std::vector<std::string> allowed;  // beginnings of file paths
+  std::vector<std::string> headers;  // prefixes of include paths
+  std::vector<std::string> allowed;  // prefixes of the paths of files that may include them
 };
 
 const std::vector<Door> kDoors = {
@@ -86,7 +86,7 @@ TEST_CASE("layers: core's own folders are used from the command line downward, n
 }
 
 namespace {
-// The sources of the program that hold `pattern`, with the line.
+// Returns the program's source lines that match `pattern`, with file and line number.
 std::vector<std::string> lines_with(const std::regex& pattern) {
   std::vector<std::string> found;
   for (const auto& file : sources()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Names that the field does not know, and that were replaced by its own, do not come back as names of functions, types,
-// fields or files. As words in sentences they may stand.
+// Checks that private names which were replaced by terms of the field are not used again for functions, types, members
+// or files. As words in comments and strings they are allowed.
 #include <map>
 #include <regex>
 #include <string>
@@ -16,7 +16,7 @@ namespace {
 
 struct Replaced {
   std::string name, by;
-  std::string below = "";  // the folder where it is no name; empty: everywhere
+  std::string below = "";  // the folder in which the name is not allowed; empty: everywhere
 };
 
 const std::vector<Replaced> kReplaced = {
@@ -52,7 +52,7 @@ const std::vector<std::string> kFiles = {"sitting",     "facts",      "handling"
                                          "seen_from",   "places",     "soft_body",     "mend",   "principal",
                                          "draw_inside", "fit_starts", "joint_reading", "decks",  "moving_tissue"};
 
-// The code of a line: without what stands in quotes, and without a comment.
+// Returns the code of a line without quoted text and comments.
 std::string code_of(const std::string& line) {
   static const std::regex quoted(R"("([^"\\]|\\.)*"|'([^'\\]|\\.)+')");
   const std::string plain = std::regex_replace(line, quoted, "");
@@ -88,8 +88,8 @@ TEST_CASE("names: no file has a name that was replaced") {
     }
 }
 
-// Two types of one name in one namespace are undefined behaviour, even in files that do not include each other: the
-// linker keeps one of two inline functions, such as the destructors.
+// Two types of one name in one namespace violate the one-definition rule, even in files that do not include each other:
+// the linker keeps only one of two inline functions, such as the destructors.
 TEST_CASE("names: no two types of one namespace have the same name") {
   static const std::regex opens(R"(^namespace\s*([\w:]*)\s*\{)"), closes(R"(^\}.*// namespace)"),
       type(R"(^(?:struct|class|union|enum class|enum)\s+(\w+)(?:\s+final)?\s*(?::[^:].*)?\{)");
@@ -102,7 +102,7 @@ TEST_CASE("names: no two types of one namespace have the same name") {
       else if (std::regex_search(line, closes) && !inside.empty()) inside.pop_back();
       if (!std::regex_search(line, found, type)) continue;
       std::string name;
-      bool is_local = false;  // in an unnamed namespace
+      bool is_local = false;  // true: the type is in an unnamed namespace
       for (const std::string& one : inside) is_local |= one.empty(), name += one + "::";
       if (is_local) continue;
       name += found[1];

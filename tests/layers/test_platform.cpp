@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What only some operating systems have stands in core/platform, whose page platform.h says what others would need.
+// Checks that code for one operating system is only in core/platform. platform.h says what other systems would need.
 #include <algorithm>
 #include <regex>
 #include <string>
@@ -22,7 +22,7 @@ std::vector<std::string> files_outside() {
   return files;
 }
 
-// Checks that no line of the code outside the room, without its comments, matches the pattern.
+// Checks that no code outside core/platform matches the pattern. Comments are ignored.
 void check_none(const std::string& pattern) {
   static const std::regex comment(R"((^|\s)//.*)");
   const std::regex forbidden(pattern);
@@ -55,7 +55,7 @@ TEST_CASE("platform: functions, signals and handles of the system are used only 
       R"(posix_\w+|flock|fsync|fdatasync|pwrite|pread|readlink|realpath|setenv|unsetenv|gethostname|uname|fcntl|)"
       R"(ioctl|lstat|fstat|fchmod|chmod|fchown|ftruncate|linkat|closefrom|clock_gettime|malloc_trim|mallopt|)"
       R"(sigaction|sigemptyset|syscall)\()");
-  check_none(R"(\bSIG(?!INT\b|TERM\b|GRAPH)[A-Z]{3,}\b)");  // C++ has SIGINT and SIGTERM
+  check_none(R"(\bSIG(?!INT\b|TERM\b|GRAPH)[A-Z]{3,}\b)");  // SIGINT and SIGTERM are standard C++
   check_none(R"(\b(pid_t|off_t|mode_t|uid_t|gid_t)\b|(^|[^:\w])ssize_t\b)");
   check_none(R"(\b(handle\(\)|read_end|write_end|ours|its)\.native\()");
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rooms of each floor, in order: a room includes only rooms that come before it in its list. A newcomer reads a
-// floor from the top of its list to the bottom.
+// Lists the folders of each layer in order: files include only files of folders that come before theirs in the list. A
+// newcomer can read a layer from the top of its list to the bottom.
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -18,7 +18,7 @@ namespace {
 
 struct Floor {
   std::string name;
-  std::vector<std::string> rooms;  // "" for the floor's own files
+  std::vector<std::string> rooms;  // folders; "" for the files directly in the layer's folder
 };
 
 const std::vector<Floor> kFloors = {
@@ -35,10 +35,10 @@ const std::vector<Floor> kFloors = {
 
 std::string room_of(const std::string& file) { return fs::path(file).parent_path().generic_string(); }
 
-// A header and the source of the same name are one unit.
+// Returns the name of a file's unit: a header and the source of the same name are one unit.
 std::string unit_of(const std::string& file) { return file.substr(0, file.rfind('.')); }
 
-// Which units each unit includes, of the program's own.
+// Returns for each unit the program's own units that it includes.
 std::map<std::string, std::set<std::string>> included_units() {
   std::map<std::string, std::set<std::string>> included;
   const std::vector<fs::path> files = sources({"core", "render", "editor"});
@@ -51,7 +51,7 @@ std::map<std::string, std::set<std::string>> included_units() {
   return included;
 }
 
-// Units that include one another in a circle, by Tarjan's algorithm [1972]; one list for each circle.
+// Finds the units that include one another in a cycle, by Tarjan's algorithm [1972]. Gives one list per cycle.
 class Circles {
  public:
   explicit Circles(const std::map<std::string, std::set<std::string>>& included) : included_(included) {

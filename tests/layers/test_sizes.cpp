@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Files and lines that can be read at a glance.
+// Checks that files and lines are short enough to read easily.
 #include <map>
 #include <string>
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostLines = 500, kMostColumns = 120;
 
-// Longer files, each with its reason.
+// Files that may be longer, each with its reason.
 const std::map<std::string, std::string> kLong = {
     {"core/autorig/articulated_fit.cpp", "one solver, whose steps share their state"},
     {"core/autorig/joint_axis_fit.cpp", "one solver, whose steps share their state"},
@@ -34,7 +34,7 @@ const std::map<std::string, std::string> kLong = {
     {"tests/render/textures/test_weights.cpp", "cases on one small body"},
 };
 
-// Characters of UTF-8, not bytes.
+// Returns the number of UTF-8 characters in a line, not of bytes.
 std::size_t columns_of(const std::string& line) {
   std::size_t columns = 0;
   for (const char c : line) columns += (static_cast<unsigned char>(c) & 0xC0) != 0x80;

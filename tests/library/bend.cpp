@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// bend VOLUME TISSUES RIG BONE DEGREES OUT: weights a body, bends one joint, writes the posed volume.
+// bend VOLUME TISSUES RIG BONE DEGREES OUT: computes weights of a body, bends one joint, and writes the posed volume.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

@@ -25,7 +25,7 @@ Json read_truth(const Path& folder) {
   throw Error("this is no truth of a body", path.string(), "give a body of make_hard.py");
 }
 
-// Numbers on the voxels of a body.
+// A volume with one number for each voxel of a body, read from a file.
 class Numbers {
  public:
   Numbers(const Path& path, const LabelVolume& volume) : file_(read_volume(path)) {
@@ -43,7 +43,7 @@ class Numbers {
   std::map<Label, int> value_;
 };
 
-// By the number of a true bone, its rig bone.
+// Returns the rig bone for each number of a true bone.
 std::map<int, int> rig_bones(const Path& folder, const Armature& armature) {
   std::map<int, int> bone_of;
   const Json truth = read_truth(folder);
@@ -58,7 +58,7 @@ std::map<int, int> rig_bones(const Path& folder, const Armature& armature) {
   return bone_of;
 }
 
-// body(voxel) for every voxel of tissue.
+// Calls body(voxel) for every voxel of tissue.
 template <class Body>
 void for_each_voxel(const LabelVolume& volume, const Body& body) {
   const glm::ivec3 size = volume.grid.size;
@@ -68,14 +68,14 @@ void for_each_voxel(const LabelVolume& volume, const Body& body) {
         if (volume.at({x, y, z}) != 0) body(glm::ivec3(x, y, z));
 }
 
-// The part of the body that each voxel belongs to. Some voxels of bone are told to be of the part beside them, which
-// would leave a bridge between two parts: a bone is whole of the part that its rig bone belongs to.
+// Finds the part of the body that each voxel belongs to. The file gives some voxels of a bone to an adjacent part,
+// which would connect two parts, so all voxels of a bone are given to the part that its rig bone belongs to.
 class PartsOfBody {
  public:
   PartsOfBody(const Path& folder, const Json& truth, const LabelVolume& volume)
       : bone_(folder / "truth.nrrd", volume),
         part_(folder / "parts.nrrd", volume) {
-    std::map<int, std::map<int, std::int64_t>> voxels;  // by true bone and part
+    std::map<int, std::map<int, std::int64_t>> voxels;  // number of voxels, by true bone and part
     for_each_voxel(volume, [&](const glm::ivec3& v) { ++voxels[bone_.at(v)][part_.at(v)]; });
     for (const auto& [number, bone] : truth.at("bones_in_truth_nrrd").items()) {
       const int part = part_of(truth, bone.at("rig").at(0), voxels[std::stoi(number)]);
@@ -88,7 +88,8 @@ class PartsOfBody {
   }
 
  private:
-  // Of the parts that may follow the rig bone, the one that has most of the true bone; 0 where there is none.
+  // Returns the part with most voxels of the true bone among the parts that may follow the rig bone; 0 if there is
+  // none.
   static int part_of(const Json& truth, const std::string& rig_bone, std::map<int, std::int64_t>& voxels) {
     int best = 0;
     for (const auto& [number, part] : truth.at("parts_in_parts_nrrd").items()) {
@@ -104,7 +105,7 @@ class PartsOfBody {
   std::map<int, int> part_of_bone_;
 };
 
-// The limbs of a rig that are parts of the body.
+// Those limbs of a rig that are parts of the body.
 class FreeLimbs {
  public:
   FreeLimbs(const Json& truth, const Armature* armature) : armature_(armature) {
@@ -113,7 +114,7 @@ class FreeLimbs {
       for (const auto& [number, part] : truth.at("parts_in_parts_nrrd").items())
         if (is_within(limb, part.at("rig").get<std::set<std::string>>())) limb_of_part_[std::stoi(number)] = limb;
   }
-  // Whether a part of the body is a limb, and a point (world, mm) lies where that is free.
+  // Returns true if a part of the body is a limb that is free at a point (world, mm).
   bool has(int part, const glm::dvec3& point) const {
     const auto limb = limb_of_part_.find(part);
     return limb != limb_of_part_.end() && is_free(limb->second, *armature_, point);

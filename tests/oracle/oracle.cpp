@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// An oracle: Limber that is told which bone each voxel truly is and where tissue truly touches without being one. What
-// it still gets wrong is not the fault of parting bones or of finding seams: it is what blending costs. Never shipped.
+// The oracle: a variant of Limber that reads the true bone of each voxel, and the places where parts only touch, from
+// files. Errors that remain are not caused by finding bone parts or seams, but by blending. It is never shipped.
 //
-// It takes the command line of `limber weights` and `limber resample`, VOLUME first, and finds the truth of a hard body
-// beside the volume [body_truth.h]. So the check of the hard bodies judges it in place of the program:
+// It takes the command line of `limber weights` and `limber resample`, VOLUME first, and finds the ground truth of a
+// test body beside the volume [body_truth.h]. The check of the hard bodies can therefore run it instead of the program:
 //   check_hard.py BODY --limber build/tests/limber_oracle --rows 3
-// Only bone parts and seams are replaced; weights come from the same heat, and everything after is the program's own
-// command. LIMBER_ORACLE_BONES=found and LIMBER_ORACLE_SEAMS=found or none in the environment take back one of the two
-// truths, which tells what each is worth; with both found it is the program itself. Unset, they are `truth`.
+// Only bone parts and seams are replaced: weights are computed by the same heat diffusion, and everything after that is
+// the program's own command. The environment variables LIMBER_ORACLE_BONES=found and LIMBER_ORACLE_SEAMS=found or none
+// disable one of the two truths, to measure the effect of each. With both `found` it is the program itself. Default:
+// `truth`.
 //
-// glue.nrrd leaves out what lies within 50 mm (5 mm for fingers) of where two parts are one by nature, so a glued face
-// there stays joined here: seams that Limber finds may reach further than the true ones. LIMBER_ORACLE_SEAMS=free also
-// cuts the faces between glued parts there, where the limb is free by nature.
+// glue.nrrd leaves out places within 50 mm (5 mm for fingers) of where two parts are naturally connected, so glued
+// faces there stay joined. Seams that Limber finds may reach further than the true ones. LIMBER_ORACLE_SEAMS=free also
+// cuts the faces between glued parts there, if the limb is naturally free.
 #include <unistd.h>
 
 #include <cstdio>
@@ -55,7 +56,7 @@ struct Options {
   std::string weights, output;
 };
 
-// A body with its bones and seams told.
+// A body whose bone parts and seams come from the ground truth.
 struct ToldBody {
   Body body;
   TissueVoxels tissue;
@@ -83,7 +84,7 @@ struct ToldBody {
   }
 };
 
-// A folder of its own, gone with it.
+// A temporary folder, which the destructor removes.
 class Scratch {
  public:
   Scratch() : folder_(std::filesystem::temp_directory_path() / ("limber-oracle-" + std::to_string(getpid()))) {
@@ -123,7 +124,7 @@ int run_limber(std::vector<std::string> words) {
   return cmd::run(app, static_cast<int>(pointers.size()), pointers.data());
 }
 
-// The program's own command, with seams as a file, and weights where none were given.
+// Runs the program's own command, with seams given as a file, and with weights if the user gave none.
 //   words  the oracle's command line
 int resample(const Options& options, std::vector<std::string> words) {
   const Scratch scratch;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What tests of pictures share: a context with a renderer, bodies built in code, and rays followed on the CPU.
+// Shared by tests of pictures: a context with a renderer, bodies built in code, and rays traced on the CPU.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ inline Grid grid_of(const glm::ivec3& size, const glm::dvec3& spacing = glm::dve
   return {.size = size, .spacing = spacing};
 }
 
-// The label that `at` gives for each voxel's centre in the world.
+// Returns a volume in which `at` gives the label of each voxel for the voxel's centre in the world.
 inline std::shared_ptr<const LabelVolume> painted(const Grid& grid, const std::function<Label(const glm::dvec3&)>& at) {
   auto volume = std::make_shared<LabelVolume>();
   volume->grid = grid;
@@ -37,7 +37,7 @@ inline std::shared_ptr<const LabelVolume> painted(const Grid& grid, const std::f
   return volume;
 }
 
-// Labels 1 to 3 in red, green and blue; 3 stays solid in X-ray.
+// Returns looks in which labels 1 to 3 are red, green and blue, and label 3 stays solid in X-ray.
 inline std::shared_ptr<render::LabelLooks> plain_looks() {
   auto looks = std::make_shared<render::LabelLooks>(4);
   (*looks)[0].visible = false;
@@ -94,8 +94,8 @@ inline int covered(const render::Image& image) {
   return count;
 }
 
-// How two pictures of the same size differ: the mean over all channels, and the share of channels that differ by more
-// than 8.
+// The difference of two pictures of one size: the mean absolute difference over all channels (0 to 255), and the
+// fraction of channels that differ by more than 8.
 struct Difference {
   double mean = 0, share = 0;
 };
@@ -112,7 +112,7 @@ inline Difference difference(const render::Image& a, const render::Image& b) {
   return result;
 }
 
-// The first voxel along the ray whose label `seen` accepts, in steps of a fiftieth of a voxel.
+// The first voxel along a ray whose label `seen` accepts. The ray advances by a fiftieth of a voxel per step.
 struct CpuHit {
   glm::ivec3 voxel;
   glm::dvec3 point;

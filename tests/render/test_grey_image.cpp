@@ -17,7 +17,7 @@ namespace {
 
 const glm::ivec2 kSize(96, 80);
 
-// Values that differ from voxel to voxel by little, so that pictures can be compared after interpolation.
+// Returns an image whose values change slowly, so that interpolated pictures can be compared.
 GreyVolume waves(const Grid& grid) {
   GreyVolume image;
   image.grid = grid;
@@ -48,7 +48,7 @@ std::shared_ptr<const LabelVolume> air_on(const Grid& grid) {
 
 int grey_at(const Image& image, const glm::ivec2& at) { return pixel_of(image, at).r; }
 
-// An image of 64^3 voxels whose values depend on the distance from its middle, in voxels.
+// Returns an image of 64^3 voxels whose values depend on the distance from its centre, in voxels.
 GreyVolume round_image(const std::function<float(double)>& value_at) {
   GreyVolume image;
   image.grid = grid_of({64, 64, 64});
@@ -87,7 +87,7 @@ TEST_CASE("grey image: slices show its values through the window, on another gri
         worst = std::max(worst, std::abs(grey_at(picture, {x, y}) - 255 * (wave_at(world) / 2000 + 0.5)));
       }
     CHECK(seen > 1500);
-    CHECK(worst < 4);  // of 255: what linear interpolation between voxels of 2 mm leaves
+    CHECK(worst < 4);  // of 255 grey levels; error of linear interpolation between voxels of 2 mm
   }
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("grey image: tissues lie over it with their opacity, and outlines stay
   const auto volume = painted(grid, [](const glm::dvec3& p) -> Label { return p.x < 20 ? 1 : 0; });
   Scene scene = scene_of(volume);
   scene.grey = shown(image);
-  scene.grey->level = 500;  // shown as middle grey
+  scene.grey->level = 500;  // this value is shown as middle grey
   const SliceCamera camera{.axis = SliceAxis::Axial, .centre = {20, 20, 20}, .millimetres_per_pixel = 0.5};
   const auto red_at = [&](float tissues, int x) {
     scene.grey->tissues = tissues;
@@ -159,7 +159,7 @@ TEST_CASE("grey image: in 3D a ball of bone covers what a ball covers, and flesh
   const double bone = share(GreyRendering::Bone), skin = share(GreyRendering::Skin);
   CHECK(skin / bone == doctest::Approx(28.0 * 28 / (12 * 12)).epsilon(0.06));
   CHECK(bone > 1000);
-  // Where bone is cut away by the clip plane, nothing is left of it.
+  // The clip plane removes half of the bone from the picture.
   scene.clip.plane = {glm::dvec3(31.5), glm::dvec3(1, 0, 0)};
   CHECK(share(GreyRendering::Bone) / bone == doctest::Approx(0.5).epsilon(0.06));
 }
@@ -181,7 +181,7 @@ TEST_CASE("grey image: the largest value along each line of sight is the brighte
   const Image picture = picture_of(studio.renderer, scene, camera_of(grid, Projection::Orthographic), {120, 120});
   int brightest = 0;
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) brightest = std::max<int>(brightest, picture.rgba[i]);
-  CHECK(brightest > 200);  // 800 is shown as 230
+  CHECK(brightest > 200);  // the image's value 800 is shown as 230
   CHECK(brightest <= 231);
 }
 
@@ -217,7 +217,7 @@ TEST_CASE("grey image: a posed body carries it along, as resampling with the ima
       const glm::dvec2 off = (glm::dvec2(x, y) + 0.5 - glm::dvec2(size) / 2.0) * camera.millimetres_per_pixel;
       const glm::dvec3 world = camera.centre + frame.right * off.x + frame.down * off.y;
       const glm::ivec3 voxel(glm::floor(to_voxel * world + 0.5));
-      // Away from the skin and from bones, whose surfaces the preview rounds.
+      // Voxels next to the skin or to bones are not compared, because the preview rounds their surfaces.
       bool inner = true;
       for (int k = 0; k < 27 && inner; ++k)
         inner = posed.volume.at_or_air(voxel + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1) != 0;
@@ -229,7 +229,8 @@ TEST_CASE("grey image: a posed body carries it along, as resampling with the ima
   std::sort(off_by.begin(), off_by.end());
   const double usual = off_by[off_by.size() / 2], most = off_by[off_by.size() * 95 / 100];
   INFO("grey levels of 255: median " << usual << ", 95 % " << most);
-  // A voxel of 3 mm is 12 levels wide where the waves are steepest; the pixel lies anywhere in it.
+  // Where the waves are steepest, the grey level changes by 12 across a voxel of 3 mm, and the pixel lies anywhere in
+  // it.
   CHECK(usual < 5);
   CHECK(most < 16);
 }
@@ -259,14 +260,14 @@ TEST_CASE(
     FAIL("never complete");
   };
   scene.display = Display::Solid;
-  view.draw(scene, camera, size, now += 0.06, 4);  // a coarse picture of the body
+  view.draw(scene, camera, size, now += 0.06, 4);  // draws a coarse picture of the body
   refine(Display::Image);
   CHECK(difference(view.read(), whole).share < 0.05);
   refine(Display::Solid);
   refine(Display::Image);
   CHECK(difference(view.read(), whole).share < 0.05);
 
-  // Two images by turns, as when two results are compared.
+  // Two images are drawn by turns, as in a comparison of two results.
   SliceView a(studio.renderer), b(studio.renderer);
   Scene other = scene;
   other.grey = shown(image);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures whose light at rest is computed by rays.
+// Pictures with fine light, which rays compute while the view is at rest.
 #include "core/volume_io/volume_io.h"
 #include "tests/render/studio.h"
 #include "tests/support/shared_data.h"
@@ -10,14 +10,14 @@ using namespace limber::test;
 
 namespace {
 
-// Draws until the picture is complete, 60 frames a second.
+// Draws at 60 frames a second until the picture is complete.
 Image rested(View3D& view, const Scene& scene, const Camera& camera, const glm::ivec2& size, double& now) {
   do view.draw(scene, camera, size, now += 1.0 / 60);
   while (!view.complete());
   return view.read();
 }
 
-// The mean light of the pixels that show the body, linear.
+// Returns the mean linear brightness of the pixels that show the body.
 double brightness(const Image& image) {
   double sum = 0;
   int count = 0;
@@ -29,7 +29,7 @@ double brightness(const Image& image) {
   return sum / count;
 }
 
-// A ball that stands on a plate.
+// Returns a scene of a ball on a plate.
 Scene ball_on_plate() {
   return scene_of(painted(grid_of({96, 96, 48}), [](const glm::dvec3& p) {
     return Label(p.z < 8.5 ? 1 : glm::length(p - glm::dvec3(47.5, 47.5, 20.5)) < 12 ? 2 : 0);
@@ -125,14 +125,14 @@ TEST_CASE("fine light: what is solid has it in every display, and the ghost of X
     const Image draft = rested(view, scene, from_above(scene), size, now);
     studio.renderer.light_at_rest(Light::Fine);
     const Image fine = rested(view, scene, from_above(scene), size, now);
-    // In X-ray nothing here is bone, so that all is the ghost, which has no light.
+    // In X-ray every tissue here is a ghost, because there is no bone, and a ghost has no light.
     CHECK((fine.rgba != draft.rgba) == (display != Display::XRay));
   }
 }
 
 namespace {
 
-// The picture of a body cut by the plane y = 20.5, seen from the front, eight pixels a voxel.
+// Returns the picture of a body cut by the plane y = 20.5, seen from the front, with eight pixels per voxel.
 Image cut_open(Studio& studio, const std::function<Label(const glm::dvec3&)>& at) {
   Scene scene = scene_of(painted(grid_of({40, 40, 40}), at));
   scene.clip.plane = {glm::dvec3(20, 20.5, 20), glm::dvec3(0, -1, 0)};
@@ -151,12 +151,13 @@ bool is_red(const glm::ivec4& pixel) { return pixel.r > pixel.g; }
 
 TEST_CASE("fine light: on a cut face a slanted border between tissues is straight, with a line on it, not stairs") {
   Studio studio;
-  // The border runs along z = 19.5 + 0.3 (x - 19.5); in the picture, y goes down and x, at this side, to the right.
+  // The border is the line z = 19.5 + 0.3 (x - 19.5). In the picture, seen from this side, y goes down and x to the
+  // right.
   const auto body = [](const glm::dvec3& p) -> Label {
     if (glm::any(glm::lessThan(p, glm::dvec3(3))) || glm::any(glm::greaterThan(p, glm::dvec3(36)))) return 0;
     return p.z < 19.5 + 0.3 * (p.x - 19.5) ? 1 : 2;
   };
-  // How far the border is from a straight line, pixels: the range of its distances from the true one.
+  // Returns how much the border deviates from a straight line, pixels: the range of its distances from the true one.
   const auto roughness = [](const Image& image) {
     double lowest = 1e9, highest = -1e9;
     for (int x = 80; x < 240; ++x) {
@@ -174,7 +175,7 @@ TEST_CASE("fine light: on a cut face a slanted border between tissues is straigh
   INFO("the border's roughness is ", roughness(smooth), " pixels, in the draft ", roughness(stairs));
   CHECK(roughness(smooth) < 3.5);
   CHECK(roughness(smooth) < 0.6 * roughness(stairs));
-  // Away from the border, a cut face has the tissue's own colour, as a legend has it.
+  // Away from the border, a cut face has exactly the tissue's colour, which a legend shows.
   CHECK(pixel_of(smooth, {160, 250}) == glm::ivec4(230, 26, 26, 255));
   CHECK(pixel_of(smooth, {160, 70}) == glm::ivec4(26, 230, 26, 255));
   int darkest = 255;
@@ -200,7 +201,7 @@ TEST_CASE("fine light: sheets and threads of one voxel do not vanish from a cut 
         if (!is_red(pixel_of(image, at + glm::ivec2(x, y)))) return true;
     return false;
   };
-  // Voxel v has its middle at pixel 8 v + 4.
+  // The centre of voxel v is at pixel 8 v + 4.
   for (int z = 6; z < 34; ++z) CHECK(has_green({8 * 12 + 4, 319 - (8 * z + 4)}));
   CHECK(has_green({8 * 28 + 4, 319 - (8 * 20 + 4)}));
   for (int x = 16; x < 26; ++x)
@@ -211,7 +212,7 @@ TEST_CASE("fine light: sheets and threads of one voxel do not vanish from a cut 
 TEST_CASE("fine light: a picture is the same whatever the view showed before, up to the body's edges") {
   Studio studio;
   studio.renderer.light_at_rest(Light::Fine);
-  // A cut face of tissue 1 around tissue 2: seen from near it is all 2, from afar 1 lies at its edges.
+  // The cut face shows tissue 2 inside tissue 1: a close view shows only 2, and a distant one shows 1 at the edges.
   Scene scene = scene_of(painted(grid_of({40, 40, 40}), [](const glm::dvec3& p) -> Label {
     return std::abs(p.x - 19.5) < 8 && std::abs(p.z - 19.5) < 8 ? 2 : 1;
   }));
@@ -226,7 +227,8 @@ TEST_CASE("fine light: a picture is the same whatever the view showed before, up
   double now = 0;
   View3D fresh(studio.renderer), used(studio.renderer);
   const Image expected = rested(fresh, scene, camera, size, now);
-  // Moves until the view draws in full resolution while it moves, so that its buffers keep their size and contents.
+  // Moves the camera until the view draws moving pictures in full resolution, so that its buffers keep their size and
+  // contents.
   for (int i = 0; i < 20 && used.scale() != 1; ++i)
     used.draw(scene, zoomed(near, 1 + 0.001 * i), size, now += 1.0 / 60);
   if (used.scale() != 1) MESSAGE("too slow to move at full resolution, so that no stale pixels could be met");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a moving picture of a posed body shows and costs, on real volumes.
+// Measures errors and costs of the picture of a posed body during camera motion, on real volumes.
 #include <ctime>
 
 #include <algorithm>
@@ -18,9 +18,9 @@ using namespace limber::test;
 namespace {
 
 constexpr glm::ivec2 kSize{800, 450};
-constexpr int kBand = 2;  // pixels beside the border of a label that are not judged
+constexpr int kBand = 2;  // pixels this near to a border between labels are not compared
 
-// A body bent at some bones, by the map that is drawn while it moves and by the one that is drawn at rest.
+// A body bent at some bones: the scene with the preview map of a moving picture, and the one with the map at rest.
 struct BentBody {
   Scene moving, resting;
   Camera camera;
@@ -44,7 +44,7 @@ struct BentBody {
   }
 };
 
-// By pixel, row by row; 0 beside the body.
+// Returns the label at each pixel, row by row; 0 outside the body.
 std::vector<int> labels_of(const View3D& view, const Image& seen) {
   std::vector<int> labels(seen.rgba.size() / 4, 0);
   for (std::size_t i = 0; i < labels.size(); ++i) {
@@ -55,7 +55,7 @@ std::vector<int> labels_of(const View3D& view, const Image& seen) {
   return labels;
 }
 
-// Whether all pixels within the band show the same label.
+// Returns true if all pixels within the band around a pixel show the same label.
 bool lies_within(const std::vector<int>& labels, int x, int y) {
   if (x < kBand || y < kBand || x + kBand >= kSize.x || y + kBand >= kSize.y) return false;
   for (int row = y - kBand; row <= y + kBand; ++row)
@@ -64,7 +64,8 @@ bool lies_within(const std::vector<int>& labels, int x, int y) {
   return true;
 }
 
-// The share of the silhouette's pixels, the band apart, that show another label.
+// Returns the fraction of the silhouette's pixels that show another label. Pixels in the band at borders are not
+// counted.
 double share_of_others(const std::vector<int>& labels, const std::vector<int>& at_rest) {
   int covered = 0, others = 0;
   for (int y = 0; y < kSize.y; ++y)
@@ -78,7 +79,8 @@ double share_of_others(const std::vector<int>& labels, const std::vector<int>& a
   return double(others) / covered;
 }
 
-// CPU seconds of the whole process: a software driver draws on several threads, and other programs may run.
+// Returns CPU seconds of the whole process. A software driver draws on several threads, and other programs may be
+// running.
 double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 double median(std::vector<double> values) {
@@ -86,7 +88,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// At every resolution that a moving picture may have.
+// Compares the tissues at every resolution that a moving picture may have.
 void check_tissues(Studio& studio, const BentBody& body) {
   View3D rest(studio.renderer), view(studio.renderer);
   const Image whole = draw(rest, body.resting, body.camera, kSize);
@@ -100,12 +102,12 @@ void check_tissues(Studio& studio, const BentBody& body) {
   }
 }
 
-// Against the volume at the resolution of the moving picture, and at the full one.
+// Compares the cost with that of drawing the unposed volume, at the moving picture's resolution and at the full one.
 void check_cost(Studio& studio, const BentBody& body) {
   View3D view(studio.renderer), volume(studio.renderer);
   Camera camera = body.camera;
   const auto cost = [&](View3D& drawn, int scale) {
-    camera.distance *= 1.0001;  // so that it is drawn again
+    camera.distance *= 1.0001;  // a small change, which makes the view draw again
     const double begin = cpu_seconds();
     drawn.draw(body.moving, camera, kSize, 0, scale);
     studio.renderer.finish();
@@ -117,7 +119,7 @@ void check_cost(Studio& studio, const BentBody& body) {
     REQUIRE(view.scale() >= 1);
     REQUIRE(view.scale() <= View3D::kCoarsest);
     const double same = cost(volume, view.scale()), full = cost(volume, 1);
-    if (i < 2) continue;  // the driver translates its programs
+    if (i < 2) continue;  // the driver compiles its shaders in the first two frames
     moving.push_back(took);
     alike.push_back(same);
     whole.push_back(full);

@@ -17,7 +17,7 @@ using namespace limber::test;
 
 namespace {
 
-// The arm at 2 mm with its weights.
+// The arm at 2 mm with its skin weights.
 struct Arm {
   std::shared_ptr<const LabelVolume> volume;
   TissueTable tissues;
@@ -59,14 +59,14 @@ const Arm& arm() {
   return made;
 }
 
-// The share of the pixels of `b`'s silhouette that only one of the two covers.
+// Returns the pixels that only one of the two silhouettes covers, as a fraction of the silhouette of `b`.
 double silhouette_difference(const Image& a, const Image& b) {
   int apart = 0;
   for (size_t i = 3; i < a.rgba.size(); i += 4) apart += (a.rgba[i] > 127) != (b.rgba[i] > 127);
   return double(apart) / covered(b);
 }
 
-// The share of the pixels covered in both whose colours are near.
+// Returns the fraction of pixels with similar colours among those that both pictures cover.
 double colours_agree(const Image& a, const Image& b) {
   int both = 0, near = 0;
   for (size_t i = 0; i < a.rgba.size(); i += 4) {
@@ -81,13 +81,13 @@ double colours_agree(const Image& a, const Image& b) {
 
 constexpr glm::ivec2 kSize{480, 480};
 
-// What resample() found out of every voxel, as a map that can be drawn: the result before its voxels are cut anew.
+// Returns the displacements that resample() found for each voxel as a preview map, before the labels are resampled.
 std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Posed& posed) {
   auto map = std::make_shared<PreviewMap>();
   map->step = 1;
   map->grid = volume.grid;
   const AffineTransform to_voxel = voxel_from_world(volume.grid);
-  constexpr int kAround = 3;  // voxels
+  constexpr int kAround = 3;  // margin around the result, in voxels
   map->first = glm::ivec3(glm::round(to_voxel * posed.volume.grid.origin)) - kAround;
   map->size = posed.volume.grid.size + 2 * kAround;
   map->low = glm::dvec3(-16);
@@ -97,7 +97,7 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
   map->cubes.assign(count, PreviewMap::kNothing);
   map->apart.assign(count, 0);
   map->reach.resize(count);
-  std::vector<glm::dvec3> moved(count);  // voxels
+  std::vector<glm::dvec3> moved(count);  // displacement, in voxels
   const auto set = [&](const glm::ivec3& n, const glm::dvec3& by) {
     const glm::dvec3 rest = glm::dvec3(map->first + n) - by, fraction = (rest - map->low) / map->extent;
     if (glm::any(glm::lessThan(fraction, glm::dvec3(0))) || glm::any(glm::greaterThan(fraction, glm::dvec3(1)))) return;
@@ -115,7 +115,7 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
     if (posed.volume.at_or_air(v) != 0)
       set(n, to_voxel.linear * glm::dvec3(posed.displacement[posed.volume.grid.index(v)]));
   });
-  // What lies just outside carries on straight.
+  // Displacements are extrapolated linearly to the voxels just outside.
   for (int ring = 0; ring < 2; ++ring) {
     std::vector<std::pair<glm::ivec3, glm::dvec3>> found;
     each([&](const glm::ivec3& n) {
@@ -157,8 +157,8 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
   return map;
 }
 
-// Turning a body's voxels into others shifts its outline by itself, by 0.2 to 1.1 % of its area where an arm only
-// turns; so the labels' own outline is asked for no more than what the dense map's differs from it.
+// Resampling alone moves the outline of a body, by 0.2 to 1.1 % of its area if an arm only rotates. The outline of the
+// labels therefore may differ as much as the dense map's outline does.
 void check_outline(const std::shared_ptr<const LabelVolume>& volume, const TissueTable& tissues, const Armature& rig,
                    const TissueVoxels& tissue, const SkinWeights& weights, const Pose& pose, bool linear) {
   Studio studio;
@@ -214,7 +214,7 @@ TEST_CASE("posed body: at rest the light by rays is that of the volume itself") 
     return view.read();
   };
   const Scene still = arm().scene(), posed = arm().posed(rest_pose(arm().rig), Blend::Linear);
-  // Posed bodies have light at every other pixel, averaged over a larger square.
+  // A posed body's light is computed at every second pixel and averaged over a larger square.
   const Difference apart = difference(rested(posed, Light::Fine), rested(still, Light::Fine)),
                    without = difference(rested(still, Light::Draft), rested(still, Light::Fine));
   INFO("mean ", apart.mean, ", share ", apart.share, "; of the light itself ", without.mean, ", ", without.share);

@@ -18,7 +18,7 @@ using namespace limber::test;
 
 namespace {
 
-// A folder with a small volume.
+// A temporary folder with a small volume.
 class Folder {
  public:
   Folder() {
@@ -120,7 +120,7 @@ TEST_CASE(
     int apart = 0;
     for (size_t i = 3; i < whole.rgba.size(); i += 4) apart += (whole.rgba[i] > 127) != (preview.rgba[i] > 127);
     CHECK(covered(whole) > 1000);
-    CHECK(apart < covered(whole) / 50);  // of voxels of 5 mm
+    CHECK(apart < covered(whole) / 50);  // the voxels are 5 mm
   }
 }
 
@@ -142,7 +142,7 @@ TEST_CASE("render command: what cannot be drawn is refused in one line, and leav
 }
 
 TEST_CASE("render command: a driver older than OpenGL 3.3 is named in one line") {
-  // Only Mesa can pretend to be older than it is.
+  // Only Mesa can simulate an older OpenGL version.
   const std::string driver = [] {
     const render::HeadlessContext context;
     return std::string(reinterpret_cast<const char*>(glGetString(GL_VERSION)));

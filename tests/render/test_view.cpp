@@ -18,7 +18,7 @@ namespace {
 
 const glm::ivec2 kSize(200, 200);
 
-// A ball of label 1 with a core of label 3, both about the middle of the grid.
+// Returns a ball of label 1 with a core of label 3, both in the centre of the grid.
 std::shared_ptr<const LabelVolume> ball(const Grid& grid, double radius, double core = 0) {
   const glm::dvec3 middle = world_from_voxel(grid) * (glm::dvec3(grid.size - 1) / 2.0);
   return painted(grid, [=](const glm::dvec3& p) -> Label {
@@ -27,7 +27,7 @@ std::shared_ptr<const LabelVolume> ball(const Grid& grid, double radius, double 
   });
 }
 
-// A body without symmetry: three overlapping balls of different labels, and a thread of one voxel.
+// Returns a body without symmetry: three overlapping balls of different labels, and a thread one voxel thick.
 std::shared_ptr<const LabelVolume> lump(const Grid& grid) {
   const AffineTransform to_voxel = voxel_from_world(grid);
   const glm::dvec3 size(grid.size);
@@ -40,7 +40,7 @@ std::shared_ptr<const LabelVolume> lump(const Grid& grid) {
   });
 }
 
-// How well picks agree with rays followed on the CPU.
+// Counts how well picks agree with rays that are traced on the CPU.
 struct Agreement {
   int both = 0, only_one = 0, far = 0, other_label = 0;
 };
@@ -55,7 +55,7 @@ Agreement compare_with_cpu(const View3D& view, const Scene& scene, const Camera&
       const auto cpu = cpu_hit(x, y);
       const auto gpu = view.pick({x, y});
       if (cpu.has_value() != gpu.has_value()) {
-        // At the rim the smooth surface runs within the voxels.
+        // Rays at the rim are not compared, because the smooth surface lies inside the voxels' surface.
         bool rim = false;
         for (const glm::ivec2 off : {glm::ivec2(5, 0), glm::ivec2(-5, 0), glm::ivec2(0, 5), glm::ivec2(0, -5)})
           rim |= cpu_hit(x + off.x, y + off.y).has_value() != cpu.has_value();
@@ -123,7 +123,7 @@ TEST_CASE("view: threads and sheets of one voxel are not lost") {
   const Grid grid = grid_of({40, 40, 40});
   const auto thin = painted(grid, [](const glm::dvec3& p) -> Label {
     if (p.x == 10 && p.y == 20) return 1;                                    // a thread along z
-    return p.x == 26 && p.z > 8 && p.z < 30 && p.y > 8 && p.y < 30 ? 2 : 0;  // a sheet
+    return p.x == 26 && p.z > 8 && p.z < 30 && p.y > 8 && p.y < 30 ? 2 : 0;  // a sheet one voxel thick
   });
   const Camera camera = orbited(camera_of(grid, Projection::Orthographic), {60, 0});
   View3D view(studio.renderer);
@@ -217,7 +217,7 @@ TEST_CASE("view: the arm looks the same when textures may have 256 texels an axi
 }
 
 TEST_CASE("view: a volume too large for the driver is drawn coarser, and says so") {
-  Studio studio(36);  // one block a texture, four textures
+  Studio studio(36);  // textures of one block each, so four textures are used
   const Grid grid = grid_of({90, 90, 90});
   const Scene scene = scene_of(ball(grid, 38));
   const Camera camera = camera_of(grid, Projection::Orthographic);
@@ -243,7 +243,7 @@ TEST_CASE("view: a volume beyond the limit of memory is drawn coarser, and says 
   const Image half = picture(whole - 1, "1/2");
   CHECK(difference(full, half).share > 0);
   CHECK(difference(full, half).share < 0.05);
-  picture(1, "1/8");  // as coarse as it gets: it is drawn all the same
+  picture(1, "1/8");  // this is the coarsest resolution, so it is drawn even if it takes too long
 }
 
 TEST_CASE("view: a volume for which there is no room at all is refused in one sentence") {
@@ -301,7 +301,7 @@ TEST_CASE("view: hiding a label shows what lies beneath, and showing it again gi
   const Image again = draw(view, scene_of(volume, all), camera, kSize);
   CHECK(difference(first, again).share < 0.001);
 
-  // As when nothing had ever been visible before.
+  // The picture equals that of a renderer that never showed the hidden labels.
   Studio fresh;
   CHECK(difference(changed, picture_of(fresh.renderer, scene_of(volume, some), camera, kSize)).share < 0.001);
 }
@@ -310,7 +310,7 @@ TEST_CASE("view: a clip box cuts the body open, and the cut shows labels as they
   Studio studio;
   const Grid grid = grid_of({64, 64, 64});
   Scene scene = scene_of(ball(grid, 26, 12));
-  scene.clip.box = {glm::dvec3(-0.5, 31.5, -0.5), glm::dvec3(63.5, 63.5, 63.5)};  // the half behind
+  scene.clip.box = {glm::dvec3(-0.5, 31.5, -0.5), glm::dvec3(63.5, 63.5, 63.5)};  // shows the half behind y = 31.5
   const Camera camera = camera_of(grid, Projection::Orthographic);
   View3D view(studio.renderer);
   const Image image = draw(view, scene, camera, kSize);
@@ -322,7 +322,7 @@ TEST_CASE("view: a clip box cuts the body open, and the cut shows labels as they
   CHECK(core->normal == glm::dvec3(0));
   CHECK(core->point.y == doctest::Approx(31.5).epsilon(0.01));
   CHECK(glm::all(glm::lessThan(glm::abs(pixel_of(image, {100, 100}) - glm::ivec4(26, 26, 230, 255)),
-                               glm::ivec4(3))));  // 0.1, 0.1, 0.9
+                               glm::ivec4(3))));  // the colour (0.1, 0.1, 0.9) of label 3
 }
 
 TEST_CASE("view: a clip plane hides its normal's side") {
@@ -411,7 +411,7 @@ TEST_CASE("view: a moving picture is refined only after a rest of 100 ms, a fini
   CHECK(view.complete());
   CHECK(view.read().rgba == finished.rgba);
 
-  // A bone that is hovered changes the picture, not the body's refinement.
+  // Hovering over a bone changes the picture, but does not restart the refinement of the body.
   Scene with_bones = scene;
   auto armature = std::make_shared<Armature>();
   armature->bones.push_back({.name = "Bone", .head = {10, 25, 10}, .tail = {40, 25, 40}});
@@ -434,7 +434,7 @@ TEST_CASE("view: an empty volume, no volume, and an eye inside the body are draw
                            scene_of(painted(grid_of({1, 1, 1}), [](const glm::dvec3&) { return Label{1}; })),
                            camera_of(grid_of({1, 1, 1})), kSize)) > 100);
 
-  // Within a shell: its inner wall is all around.
+  // The camera is inside a shell, so its inner wall fills the picture.
   const auto shell = painted(grid, [](const glm::dvec3& p) -> Label {
     const double r = glm::length(p - glm::dvec3(19.5));
     return r > 13 && r < 18 ? 2 : 0;
@@ -485,7 +485,7 @@ TEST_CASE(
   REQUIRE(project(camera, {0, 0, 0}, kSize, head));
   REQUIRE(project(camera, {0, 0, 100}, kSize, tail));
   const double length = glm::distance(head, tail);
-  // Pixels that are covered across the bone there.
+  // Returns the number of pixels that the bone's drawing is wide at a point of its line.
   const auto width = [&](const Image& image, double t) {
     const int y = static_cast<int>(std::lround(glm::mix(head.y, tail.y, t)));
     int count = 0;
@@ -517,7 +517,7 @@ TEST_CASE("view: at twice the scale bones' lines and joints are twice as wide, a
   REQUIRE(project(camera, {0, 0, 0}, kSize, head));
   REQUIRE(project(camera, {0, 0, 100}, kSize, tail));
   struct Seen {
-    double line = 0, joint = 0;  // pixels that are covered across the middle and the head
+    double line = 0, joint = 0;  // width in pixels of the bone at its middle and at its head
     int beside = 0;              // pixels from the line within which the bone is picked
   };
   const auto seen = [&](float scale) {
@@ -611,7 +611,7 @@ TEST_CASE("view: every OpenGL object is gone with the views and the renderer") {
     slice.draw(scene, {.centre = glm::dvec3(20)}, SliceDisplay::Labels, kSize);
     CHECK(gl::live_objects() > 0);
     const int before = gl::live_objects();
-    for (int i = 0; i < 3; ++i) {  // a volume that nobody holds any more makes room for the next
+    for (int i = 0; i < 3; ++i) {  // an unused volume is freed when the next one is uploaded
       Scene next = scene_of(ball(grid, 10 + i));
       draw(view, next, camera_of(grid), kSize);
     }

@@ -21,12 +21,12 @@ inline double distance_of(const PlainPoint& a, const PlainPoint& b) {
   return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-// A joint of a frame: its place, and the columns of its rotation in the file's axes.
+// A joint in a frame: its position, and the columns of its rotation matrix in the file's axes.
 struct PlacedJoint {
   PlainPoint place;
   std::array<std::array<double, 3>, 3> columns;
 
-  // Where a point is that lies at `offset` from the joint while nothing is turned.
+  // Returns the position of a point that is at `offset` from the joint if no joint is turned.
   PlainPoint carried(const std::array<double, 3>& offset) const {
     std::array<double, 3> sum{place.x, place.y, place.z};
     for (int c = 0; c < 3; ++c)

@@ -57,7 +57,7 @@ Bone bone(const char* name, int parent, const glm::dvec3& head, const glm::dvec3
 
 void add_arms(LabelVolume& volume) {
   fill_both(volume, {48, 7, 46}, {58, 17, 92}, kFigureMuscle, kFigureMuscle);
-  fill_both(volume, {44, 7, 82}, {48, 17, 92}, kFigureMuscle, kFigureMuscle);  // muscle of the shoulders
+  fill_both(volume, {44, 7, 82}, {48, 17, 92}, kFigureMuscle, kFigureMuscle);  // muscles of the shoulders
 }
 
 void add_arm_bones(LabelVolume& volume) {

@@ -14,7 +14,8 @@ from pathlib import Path
 import getfem as gf
 import numpy as np
 
-# In words of GetFEM. A patch's pressure p is an unknown of its own: with p = K (mean of J - 1) the last two terms are the patch's.
+# The energy in GetFEM's language. The pressure p of a patch is an additional unknown: for p = K (mean of J - 1) the
+# last two terms are the patch's energy of compression.
 F = '(Id(3)+Grad_u)'
 J = f'Det{F}'
 TET = f'mu/2*(Norm_sqr{F} - 3) - mu*log({J}) + k/2*sqr({J} - 1) - 2*weak*half_sqr_pos_part(1 - {J}/below)*log({J}/below)'
@@ -37,7 +38,7 @@ class Flesh:
         node_at = {self.rest[v].tobytes(): v for v in np.unique(T)}
         places = np.ascontiguousarray(self.field.basic_dof_nodes().T)
         assert all(np.array_equal(places[0::3], places[c::3]) for c in (1, 2)) and len(places) == 3 * len(node_at)
-        self.node = np.array([node_at[p.tobytes()] for p in places[::3]])  # of every three unknowns
+        self.node = np.array([node_at[p.tobytes()] for p in places[::3]])  # node of every three unknowns
         self.u = (moved - self.rest)[self.node].ravel()
         pins = read('pins.f64').reshape(-1, 4)[self.node]
         self.stiffness, self.target = np.repeat(pins[:, 0], 3), (pins[:, 1:] - self.rest[self.node]).ravel()

@@ -20,7 +20,7 @@ class NearestPoint {
     for (std::size_t i = 0; i < points.size(); ++i) cells_[cell_of(points[i])].push_back(i);
   }
 
-  // The nearest point within four cubes, else null.
+  // Returns the nearest point within four cubes, or null if there is none.
   const glm::dvec3* find(const glm::dvec3& p) const {
     const glm::dvec3* nearest = nullptr;
     double least = std::numeric_limits<double>::infinity();
@@ -31,8 +31,8 @@ class NearestPoint {
     return nearest;
   }
 
-  // The mean of the points around p, each with the weight of a normal distribution; p itself if there are none. Unlike
-  // the nearest point it moves evenly with p, so that a search does not rest between two layers of voxels.
+  // Returns the mean of the points around p, weighted by a Gaussian; p itself if there are none. Unlike the nearest
+  // point, the mean changes smoothly with p, so that the registration does not get stuck between two layers of voxels.
   glm::dvec3 mean_around(const glm::dvec3& p, double deviation) const {
     glm::dvec3 sum(0);
     double weights = 0;
@@ -70,7 +70,7 @@ struct Pairing {
 
 Eigen::Vector3d eigen(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 
-// The rigid motion that brings rest points nearest to their partners [Kabsch 1976].
+// Returns the rigid motion that brings the rest points nearest to their partners, by least squares [Kabsch 1976].
 Registration best_motion(const std::vector<Pairing>& pairs) {
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;
   for (const Pairing& pair : pairs)
@@ -125,7 +125,7 @@ Registration register_points(const std::vector<glm::dvec3>& rest, const std::vec
       pairs.push_back({p, iteration < kByNearest ? *partner : nearest.mean_around(moved, 0.75 * spacing), squared});
     }
     if (pairs.size() * 10 < std::min(rest.size(), kPoints) * 9) {
-      found.residual_mm = std::numeric_limits<double>::infinity();  // most of the bone is not there
+      found.residual_mm = std::numeric_limits<double>::infinity();  // more than a tenth of the bone has no partner
       return found;
     }
     const auto kept = static_cast<std::ptrdiff_t>(pairs.size() * 7 / 10);
@@ -156,7 +156,7 @@ glm::dvec3 rotation_vector_of(const glm::dmat3& R) {
 }
 
 LimbAngles limb_angles(const glm::dvec3& upper, const glm::dvec3& lower, double out, double bends, bool raised) {
-  // All limbs are measured as left ones.
+  // Vectors of right limbs are mirrored, so all limbs are measured as left ones.
   const auto as_left = [&](const glm::dvec3& v) { return glm::normalize(glm::dvec3(out * v.x, v.y, v.z)); };
   const glm::dvec3 u = as_left(upper), s = as_left(lower);
   LimbAngles angles;
@@ -165,7 +165,7 @@ LimbAngles limb_angles(const glm::dvec3& upper, const glm::dvec3& lower, double 
                a = raised ? std::atan2(u.x, -u.z) : std::atan2(u.x, std::hypot(u.y, u.z));
   angles.flexion = glm::degrees(f);
   angles.abduction = glm::degrees(a);
-  // The limb's axes without rotation: across the limb in the plane of abduction, and backwards.
+  // Axes of the limb at zero rotation: across the limb in the plane of abduction, and backwards.
   const glm::dvec3 across(std::cos(a), std::sin(a) * std::sin(f), std::sin(a) * std::cos(f)),
       back(0, std::cos(f), -std::sin(f));
   angles.rotation = glm::degrees(std::atan2(bends * glm::dot(s, across), bends * glm::dot(s, back)));
@@ -176,7 +176,7 @@ double pronation_angle(const glm::dvec3& upper, const glm::dvec3& forearm, const
                        double out) {
   const glm::dvec3 along = glm::normalize(forearm), elbow = glm::normalize(glm::cross(upper, forearm));
   const glm::dvec3 palm = index_to_little - along * glm::dot(index_to_little, along);
-  // In a left arm both run to the body's right when the palm faces up.
+  // At pronation 0, both vectors point to the body's right in a left arm.
   const glm::dvec3 zero = out * elbow;
   return out * glm::degrees(std::atan2(glm::dot(glm::cross(zero, palm), along), glm::dot(zero, palm)));
 }

@@ -18,24 +18,24 @@
 
 namespace limber::test {
 
-// Centres of the voxels of some labels that have a face neighbour of another label, mm.
+// Returns the centres, mm, of those voxels of some labels that have a face neighbour of another label.
 std::vector<glm::dvec3> surface_of_labels(const LabelVolume& volume, const std::set<Label>& labels);
 
 struct Registration {
   glm::dmat3 rotation{1};
   glm::dvec3 shift{0};     // posed = rotation * rest + shift
-  double residual_mm = 0;  // root mean square of the kept distances
+  double residual_mm = 0;  // root mean square distance of the points that were not left out
 };
 
-// Registers points of a bone at rest to the surface that holds the bone in the posed volume. A fifth of the points,
-// those that lie furthest off, are left out at each iteration: other bones hide them at the joints.
-//   start    where the search begins
-//   spacing  of the voxels, mm
+// Registers points of a bone at rest to the surface of the labels that contain the bone in the posed volume. Each
+// iteration ignores the fifth of the points that lie furthest off, because other bones hide them at the joints.
+//   start    initial rotation and shift of the search
+//   spacing  size of a voxel, mm
 Registration register_points(const std::vector<glm::dvec3>& rest, const std::vector<glm::dvec3>& posed,
                              const Registration& start, double spacing);
 
 struct LimbAngles {
-  double flexion = 0, abduction = 0;  // of the upper limb from hanging straight down
+  double flexion = 0, abduction = 0;  // of the upper limb; both are 0 if it hangs straight down
   double rotation = 0;                // internal; only meaningful where the lower limb is bent
   double bend = 0;                    // between upper and lower limb; 0: straight
 };

@@ -109,7 +109,7 @@ def absorbed_by_series():
     """W, of the field inside integrated over the ball."""
     r, wr = gauss(0, RADIUS, 40)
     mu, wm = gauss(-1, 1, 40)
-    phi = np.arange(4) * np.pi / 4 + 0.1  # cos and sin squared: four are exact
+    phi = np.arange(4) * np.pi / 4 + 0.1  # four angles integrate cos and sin squared exactly
     r, mu, phi = np.meshgrid(r, mu, phi, indexing="ij")
     side = r * np.sqrt(1 - mu**2)
     sar = sar_at(side * np.cos(phi), side * np.sin(phi), r * mu)
@@ -198,7 +198,7 @@ def compare(cell, most_of_average, most_in_depth, most_at_front, most_of_peak):
     off = averages[front] / average_behind(x[front], y[front], -RADIUS) - 1
     check(abs(off) < most_at_front, f"{name}: the average at the front is off by {off}")
 
-    peak = np.nanmax(averages) / cube_average((0, 0, 0), side) - 1  # the ball focuses the wave on its middle
+    peak = np.nanmax(averages) / cube_average((0, 0, 0), side) - 1  # the ball focuses the wave on its centre
     check(abs(peak) < most_of_peak, f"{name}: the peak is off by {peak}")
     print(f"{name}: whole {whole:+.5f}, front {off:+.4f}, peak {peak:+.4f}", file=sys.stderr)
 

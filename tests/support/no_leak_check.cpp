@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// For builds with sanitizers: a program that parses files without rights may not do what the search for leaks needs (it
-// starts a process that stops this one), so it does without. It ends by the signal of a crash, as the tests of crashes
-// expect, instead of by a report. All other checks stay.
+// For builds with sanitizers: turns off the leak check in a program that parses files in a sandbox. The check starts a
+// process that stops this one, which the sandbox forbids. Other errors end the program by the signal of a crash, as the
+// tests of crashes expect, instead of by a report.
 #include "tests/support/sanitizer.h"
 
 #ifdef LIMBER_ADDRESS_SANITIZER

@@ -22,7 +22,7 @@ NEAR = 1e-9
 
 class Body:
     def __init__(self, size, mass, power):
-        self.size, self.mass, self.power = size, mass, power  # dictionaries by place; what is not there is air
+        self.size, self.mass, self.power = size, mass, power  # mass and power: dictionaries by cell; a missing cell is air
 
     def cells(self):
         return sorted(self.mass)
@@ -188,12 +188,13 @@ def filled(size, is_tissue, mass=lambda c: 0.001, power=lambda c: 1.0):
 
 
 def by_hand():
-    # One gram a cell. A cube of tissue, all alike: 10 g hold 10 W wherever they lie, and the very middle's cube is valid.
+    # A uniform cube of tissue with one gram and one watt per cell: any 10 g hold 10 W, and the cube about the middle
+    # cell is valid.
     sar, found = compare(filled((7, 7, 7), lambda c: True), 10, "all tissue")
     check(np.allclose(sar, 1000) and found[3, 3, 3] == peak_sar.VALID and found[0, 0, 0] == peak_sar.UNUSED, "all tissue")
 
-    # Power rises by 1 W a layer: the cube about a deep cell has its own layer's average, that of the last layer's cells, whose
-    # cubes of 10 cells lie below their own face, that of half a side below it.
+    # Power rises by 1 W per layer. The cube about a deep cell has the average of the cell's layer. A cube for a cell of
+    # the last layer lies below the cell's outer face, so it has the average at half a side below that face.
     half = filled((9, 9, 9), lambda c: c[2] < 5, power=lambda c: float(c[2] + 1))
     sar, found = compare(half, 10, "half-space")
     check(abs(sar[4, 4, 2] - 3000) < 1e-6 and found[4, 4, 2] == peak_sar.VALID, "half-space, deep")
@@ -201,15 +202,16 @@ def by_hand():
     below = (5 * 1 + 4 * 1 + (side - 2) * 3) / side
     check(found[4, 4, 4] == peak_sar.UNUSED and abs(sar[4, 4, 4] - 1000 * below) < 1e-6, "half-space, surface")
 
-    # A row of one cell's width: no cube is valid, and one from the end cell along the row needs ten cells.
+    # A row that is one cell wide: no cube is valid, and the cube from the end cell along the row needs ten cells.
     sar, found = compare(filled((1, 1, 12), lambda c: True, power=lambda c: 1.0 if c[2] < 10 else 5.0), 10, "row")
     check((found == peak_sar.UNUSED).all() and abs(sar[0, 0, 0] - 1000) < 1e-6, "row")
 
-    # The corner of a body: its cell has three cubes alike that stay inside as far as they can, the other three are larger.
+    # The corner of a body: of the six cubes on its cell's faces, three reach into the body and are equal, the others
+    # are larger.
     sar, found = compare(filled((6, 6, 6), lambda c: True, power=lambda c: 10.0 if c == (0, 0, 0) else 1.0), 10, "corner")
     check(found[0, 0, 0] == peak_sar.UNUSED and sar[0, 0, 0] > 1000, "corner")
 
-    # A hole of one cell in 27 is less air than a cube may hold, one of 26 cells is more.
+    # A cube may contain a hole of one cell in 27, but not one of 26 cells.
     def holed(radius):
         return filled((7, 7, 7), lambda c: max(abs(v - 3) for v in c) >= radius or c == (2, 3, 3))
 
@@ -219,11 +221,13 @@ def by_hand():
     _, found = compare(one, 26, "a hole of one cell")
     check(found[2, 3, 3] == peak_sar.VALID and found[3, 3, 3] == peak_sar.AIR, "a hole of one cell")
 
-    # Light cells: cubes of 3.2 cells about the cells of the third layer are valid and hold those of the second whole.
+    # Light cells: cubes with sides of 3.2 cells about the third layer's cells are valid, and contain the second layer's
+    # cells fully.
     sar, found = compare(filled((6, 6, 6), lambda c: True, mass=lambda c: 0.0003, power=lambda c: float(c[0] + 1)), 10, "light cells")
     check(found[1, 2, 2] == peak_sar.USED and abs(sar[1, 2, 2] - 10000) < 1e-6 and found[0, 2, 2] == peak_sar.UNUSED, "light cells")
 
-    # A cell that alone weighs more than 10 g is averaged over a part of itself; what weighs less in all has no average.
+    # A cell that weighs more than 10 g is averaged over a part of itself. A body that weighs less than 10 g has no
+    # average.
     sar, found = compare(filled((3, 3, 3), lambda c: True, mass=lambda c: 0.02, power=lambda c: 1.0 + c[0]), 10, "heavy cells")
     check(found[0, 0, 0] == peak_sar.VALID and abs(sar[2, 0, 0] - 150) < 1e-6, "heavy cells")
     sar, found = compare(filled((2, 2, 2), lambda c: True), 10, "eight grams")

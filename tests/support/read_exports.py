@@ -107,7 +107,8 @@ elif kind == 'openems':
     lines = [vtk_to_numpy(c).astype(float) for c in (grid.GetXCoordinates(), grid.GetYCoordinates(), grid.GetZCoordinates())]
     data = grid.GetPointData() if grid.GetPointData().GetNumberOfArrays() else grid.GetCellData()
     arrays = {data.GetArrayName(i).lower(): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
-    # openEMS gives, at each mesh node and for each direction, the mean over the four cells around the node's edge.
+    # At each mesh node and for each axis, openEMS gives the mean of the four cells around the edge that starts at the
+    # node.
     shape = tuple(len(c) for c in lines)
     check(shape == tuple(n + 1 for n in labels.shape), f'mesh {shape}')
     worst = 0
@@ -115,7 +116,7 @@ elif kind == 'openems':
         found = arrays[key].reshape(shape[2], shape[1], shape[0], 3).transpose(2, 1, 0, 3)
         cell = of_label(column)
         cell[labels == 0] = air
-        # Inner nodes, the edge along z: cells (x-1, x) by (y-1, y) at the same z.
+        # At inner nodes, the edge along z is surrounded by the cells (x-1, x) by (y-1, y) at the same z.
         mean = (cell[:-1, :-1, :] + cell[1:, :-1, :] + cell[:-1, 1:, :] + cell[1:, 1:, :]) / 4
         error = np.abs(found[1:-1, 1:-1, :-1, 2] - mean).max() / cell.max()
         worst = max(worst, error)
@@ -143,7 +144,8 @@ elif kind == 'surfaces':
         low, high = origin + spacing * (mask.min(0) - 0.5), origin + spacing * (mask.max(0) + 0.5)
         check((place > low - 0.5 * spacing).all() and (place < high + 0.5 * spacing).all(), f'{node["name"]}: bounds')
         check((place.min(0) < low + spacing).all() and (place.max(0) > high - spacing).all(), f'{node["name"]}: reach')
-        # Outside is outside: the flux of the places through the surface is three times the volume.
+        # Checks the orientation of the triangles: the flux of the position vector through the surface is three times
+        # the volume.
         corners = vtk_to_numpy(mesh.GetPolys().GetConnectivityArray()).reshape(-1, 3)
         a, b, c = (place[corners[:, i]] for i in range(3))
         volume = (np.cross(a, b) * c).sum() / 6

@@ -13,7 +13,7 @@
 
 namespace limber::test {
 
-// Legs and arms without anything else. The body looks along -y.
+// Returns a rig of legs and arms only. The body looks along -y.
 inline Armature walker() {
   Armature rig;
   const auto add = [&](const char* name, int parent, const glm::dvec3& head, const glm::dvec3& tail) {
@@ -39,7 +39,8 @@ inline Armature walker() {
   return rig;
 }
 
-// Steps on the spot that drift forward, as a bad recording does: feet that stand slide along with the body.
+// Returns poses of stepping in place with a forward drift, as in a bad recording: standing feet slide along with the
+// body.
 inline std::vector<Pose> sliding_steps(const Armature& rig, int frames, double tremble = 0) {
   RandomNumbers random(7);
   std::vector<Pose> poses;

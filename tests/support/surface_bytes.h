@@ -49,12 +49,12 @@ inline std::string glb_file(std::string json, std::string data) {
   return bytes.append("BIN\0", 4) + data;
 }
 
-// A corner of a cube of 10 mm.
+// Returns a tetrahedron: a corner cut off a cube, with edges of 10 mm along the axes.
 inline TriangleMesh tetrahedron() {
   return {{{0, 0, 0}, {0, 10, 0}, {10, 0, 0}, {0, 0, 10}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {2, 1, 3}}};
 }
 
-// The positions in glTF's axes and metres as floats, and the indices as one byte each.
+// Returns the tetrahedron's glTF buffer: positions in glTF's axes and metres as floats, and indices as one byte each.
 inline std::string tetrahedron_data() {
   std::string data;
   for (const glm::dvec3& v : tetrahedron().V)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 # blender -b --factory-startup --python-exit-code 1 --python blender_gltf.py -- IN.glb OUT.txt  ANIMATION SECONDS ...
-# Opens a glTF file in Blender and writes where its animations carry the vertices of its mesh at those times: a line a
-# vertex, x y z in Blender's own axes, all vertices for the first time, then for the next.
+# Opens a glTF file in Blender and writes the positions of its mesh's vertices at the given times of its animations: x y
+# z in Blender's own axes, a line per vertex, all vertices at the first time, then at the next.
 import sys
 
 import numpy

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 # blender -b --factory-startup --python-exit-code 1 --python blender_surfaces.py -- FOLDER
-# Writes an object, stretched and turned, in every format that is read as a surface, and the corners of its triangles,
-# one after another, to triangles.txt: a line each, in mm along Blender's own axes.
+# Writes a scaled and rotated object in every surface format that the program reads, and the corners of its triangles to
+# triangles.txt: one corner per line, in mm along Blender's own axes.
 import sys
 
 import bpy

@@ -71,10 +71,12 @@ void check_poses(const Body& body, double tolerance = 0.1) {
     near(upper(sit), hanging(10, 10, side), "sit, upper arm");
     CHECK(degrees_between(upper(sit), fore(sit)) == doctest::Approx(80));
     CHECK(glm::dot(fore(sit), kFront) > 0.9);
+
     const Pose squat = posed(body.rig, "squat");
     near(thigh(squat), hanging(110, 15, side), "squat, thigh");
     CHECK(degrees_between(thigh(squat), shank(squat)) == doctest::Approx(120));
     CHECK(glm::dot(shank(squat), kUpwards) < -0.9);
+
     const Pose walk = posed(body.rig, "walk");
     near(thigh(walk), hanging(side > 0 ? -12 : 25, 0, side), "walk, thigh");
     near(shank(walk), hanging(side > 0 ? -27 : 20, 0, side), "walk, shank");

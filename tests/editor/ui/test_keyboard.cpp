@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A text field owns the keyboard from the moment it is asked for until it is left, whatever appears meanwhile and
-// however slow the frames are.
+// Keyboard input belongs to a text field from the moment the field is requested until the user leaves it, whatever
+// windows or messages appear meanwhile and however slow the frames are.
 #include "tests/editor/keyboard.h"
 #include "tests/editor/sitting.h"
 #include "tests/editor/small_limb.h"
@@ -13,7 +13,7 @@ namespace {
 
 std::string name_of_bone(const Editor& editor, int bone) { return editor.document().armature->bones[bone].name; }
 
-// A bone's new name is being typed; its first letters stand in the field.
+// An editor in which the user is typing a bone's new name. The first letters are in the field.
 struct RenamedBone : LimbEditor {
   RenamedBone() {
     play(R"(
@@ -57,7 +57,7 @@ TEST_CASE("keyboard: a job that ends or fails while a name is typed takes no let
   REQUIRE(ended);
   CHECK(test.fact("error") == "none");
   test.finish();
-  // The message came when the name was done.
+  // The message waited until the name was entered.
   test.play("expect \"text:The file is empty\"\nkey Return\nexpect error none");
   CHECK(name_of_bone(*test.editor, 1) == "Forx");
 }
@@ -77,7 +77,7 @@ TEST_CASE("keyboard: letters that follow F3 at once reach the search, those afte
 
 TEST_CASE("keyboard: letters that follow Ctrl+O at once, and those after a folder was entered, reach the file dialog") {
   const Home home;
-  // Each is the second in its folder, so that Return alone finds another.
+  // Each of these folders is the second of its folder's list, so Return without another key would open a different one.
   for (const char* folder : {"a first one", "scans/second", "scans/a first one"})
     std::filesystem::create_directories(home / folder);
   std::filesystem::copy_file(home / "scans/ball.nrrd", home / "scans/second/a first one.nrrd");

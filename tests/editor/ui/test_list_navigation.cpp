@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lists walked by the keyboard, once they were clicked.
+// Lists in which the arrow keys move the selection after a click.
 #include "editor/resample/results.h"
 #include "tests/editor/small_limb.h"
 
@@ -24,7 +24,7 @@ TEST_CASE("lists: arrows go through the history") {
   CHECK(test.editor->history.position() == 0);
   test.play("key End\n wait-idle");
   CHECK(test.editor->history.position() == 3);
-  // Elsewhere the arrows are commands again.
+  // Outside the list, the arrow keys are shortcuts again.
   test.play("move \"3D view/view\"\n key Escape\n key Up\n wait-idle");
   CHECK(test.editor->history.position() == 3);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Clip box and plane by handle and by number.
+// The clip box and the clip plane, set by dragging handles and by typing numbers.
 #include <fstream>
 
 #include "editor/files/export.h"
@@ -52,7 +52,7 @@ TEST_CASE(
   CHECK_FALSE(hides(within));
   CHECK_FALSE(hides(within + glm::dvec3(0, 0, 200)));
   CHECK_FALSE(hides(within - glm::dvec3(300, 0, 200)));
-  CHECK(hides({within.x, last.y - within.y, within.z}));  // the front half
+  CHECK(hides({within.x, last.y - within.y, within.z}));  // a point of the front half
   test.play("drag \"Clip face z+\" 0 40");
   CHECK(hides(within + glm::dvec3(0, 0, 200)));
   CHECK_FALSE(hides(within - glm::dvec3(0, 0, 200)));

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// The two bones, with hardly a body round them: pictures are drawn quickly.
+// An editor with the two bones and a body of very few voxels, so that pictures are drawn quickly.
 struct GizmoEditor : LimbEditor {
   explicit GizmoEditor(float scale = 1, bool parallel = false)
       : LimbEditor(scale > 1 ? glm::ivec2(1240, 840) : glm::ivec2(800, 560), preferences_of(scale)) {
@@ -30,7 +30,7 @@ struct GizmoEditor : LimbEditor {
     editor->preferences.reduce_motion = true;
     play("key N\nkey Ctrl+3\nkey Num1\nwait-idle");
     if (parallel) play("key Num5\nwait-idle");
-    // Askew, so that no ring is seen edge on.
+    // The view is oblique, so that no ring is seen edge-on.
     editor->views->body.camera = render::orbited(editor->views->body.camera, {60, 35});
     editor->selection.bone = 1;
     editor->selection.bones = {1};
@@ -49,10 +49,10 @@ struct GizmoEditor : LimbEditor {
     REQUIRE(gizmo);
     return *gizmo;
   }
-  // Of the projection of the ring of that axis, 86 pixels large.
+  // Returns the pixel of a point of an axis's ring, whose radius is 86 pixels.
   glm::dvec2 on_ring(int axis, double angle) const { return view().pixel_of(ring(axis).at(angle)).value(); }
   Ring ring(int axis) const { return ring_of(view(), editor->look.scale, gizmo().centre, gizmo().axes[axis], 86); }
-  // Where the ring is nearest to the eye.
+  // Returns the angle at which the ring is nearest to the eye.
   double front(int axis) const {
     const auto [begin, by] = ring(axis).front(view());
     return begin + by / 2;
@@ -163,7 +163,7 @@ TEST_CASE("gizmos: the ring about the line of sight turns like the pointer goes 
     test.press();
     for (int degrees = 100; degrees <= 300; degrees += 50) test.pointer_to(at(degrees));
     test.release();
-    // More than half a turn is 160 degrees the other way.
+    // A drag by 200 degrees is the same rotation as 160 degrees the other way.
     CHECK(std::abs(std::abs(test.degrees(1, to_eye)) - 160) < 0.1);
   }
 }
@@ -176,15 +176,15 @@ TEST_CASE(
   const glm::dvec2 centre = test.view().pixel_of(test.gizmo().centre).value();
   for (int axis = 0; axis < 3; ++axis) {
     CHECK(at(test.on_ring(axis, test.front(axis))) == GizmoPart{GizmoPart::Kind::Ring, axis});
-    // The half behind the ball cannot be taken hold of.
+    // The half of a ring that is behind the ball cannot be picked.
     const auto behind = at(test.on_ring(axis, test.front(axis) + kPi));
     CHECK(!(behind == GizmoPart{GizmoPart::Kind::Ring, axis}));
   }
   CHECK(at(centre + glm::dvec2(108, 0) * 1.0) == GizmoPart{GizmoPart::Kind::ViewRing});
   CHECK(at(centre) == GizmoPart{GizmoPart::Kind::Trackball});
   CHECK(!at(centre + glm::dvec2(130, 0)));
-  // Where two rings cross, the nearer one. The axis towards the eye is the middle of neither: their crossing is along
-  // an axis.
+  // Where two rings cross, the ring nearer to the eye is picked. The projected axis towards the eye is the middle of
+  // the visible half of neither ring: the rings cross on an axis.
   const glm::dmat3 axes = test.gizmo().axes;
   const glm::dvec3 to_eye = test.view().direction_to_eye(test.gizmo().centre);
   int nearest = 0;
@@ -202,7 +202,7 @@ TEST_CASE("gizmos: a ring seen edge on is not taken hold of") {
   GizmoEditor test(1, true);
   test.play("key Num1\nwait-idle");
   test.editor->tool = Tool::Rotate;
-  // Seen from the front the rings about x and z are lines across the ball.
+  // From the front, the rings about x and z are seen as lines across the ball.
   const glm::dvec2 centre = test.view().pixel_of(test.gizmo().centre).value();
   CHECK(part_at(test.gizmo(), test.view(), 1, centre + glm::dvec2(0, 40)) == GizmoPart{GizmoPart::Kind::Trackball});
   CHECK(part_at(test.gizmo(), test.view(), 1, centre + glm::dvec2(40, 0)) == GizmoPart{GizmoPart::Kind::Trackball});
@@ -280,7 +280,7 @@ TEST_CASE("gizmos: rings and locks go by the chosen space") {
   test.editor->transform_settings->space = Space::View;
   CHECK(glm::distance(test.gizmo().axes[2], test.view().towards_eye) < 1e-9);
 
-  // The first press of the key takes the chosen space, the second the world where that is another.
+  // The first press of the axis key uses the selected space, and the second uses the world's axes if they differ.
   test.play("key Ctrl+Z\nkey R\nkey Z\nkey 2\nkey 0\nkey Return");
   CHECK(std::abs(test.degrees(1, test.view().towards_eye) - 20) < 1e-6);
   test.play("key Ctrl+Z\nkey R\nkey Z\nkey Z\nkey 2\nkey 0\nkey Return");
@@ -308,7 +308,7 @@ TEST_CASE("gizmos: an arrow moves the body along its axis, a square in its plane
     CHECK(glm::distance(test.pose().root_translation * glm::dvec3(1, 1, 0), glm::dvec3(0)) < 1e-9);
     CHECK(std::abs(test.pose().root_translation.z - 17) < 0.05);
     test.play("key Ctrl+Z");
-    // The square across y.
+    // Dragging the square across y keeps y unchanged.
     drag(head + glm::dvec3(28 * unit, 0, 28 * unit), {9, 0, -5});
     CHECK(std::abs(test.pose().root_translation.y) < 1e-9);
     CHECK(glm::distance(test.pose().root_translation, glm::dvec3(9, 0, -5)) < 0.05);
@@ -332,7 +332,7 @@ TEST_CASE("gizmos: any joint is dragged with the reach tool, and pinned ones sta
   };
   CHECK(glm::distance(test.view().pixel_of(tip()).value(), to) < 1);
 
-  // The body goes, the pinned tip stays.
+  // The body moves, and the pinned tip stays in place.
   const glm::dvec3 before = tip();
   test.play("move \"3D view/view\"\nkey Shift+P");
   CHECK(test.last_edit() == "Pin Fore");
@@ -378,7 +378,7 @@ TEST_CASE("gizmos: a pole is dragged as one edit with the limb that turns to it,
 TEST_CASE("gizmos: in X-ray a bone behind the volume is picked") {
   LimbEditor test({900, 600});
   test.play("key Ctrl+3\nkey Num1\nclick view.xray_display\nwait-idle");
-  // Inside the ball: skin and muscle lie before it.
+  // The pixel shows a point inside the ball of bone, with skin and muscle in front of it.
   const glm::dvec2 pixel = body_seen(*test.editor).value().pixel_of({0, 0, -18}).value();
   test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\nwait-idle");
   CHECK(test.editor->views->hover.inside);
@@ -411,7 +411,7 @@ TEST_CASE("gizmos: bones' names stand clear of the gizmo and of one another, at 
                              "key Ctrl+3\n click strip/tool.rotate"}) {
       INFO("scale ", scale, ", ", std::string(tool));
       GizmoEditor test(scale);
-      // A fan of bones about the gizmo, more than there is place for.
+      // Bones that radiate from the gizmo, more of them than there is space for names.
       Document fan = test.editor->document();
       auto rig = std::make_shared<Armature>(*fan.armature);
       for (int i = 0; i < 12; ++i) {
@@ -448,7 +448,7 @@ TEST_CASE("gizmos: bones' names stand clear of the gizmo and of one another, at 
 TEST_CASE("gizmos: what lies under the pointer is listed nearest first, bones among tissues") {
   LimbEditor test;
   test.play("key Ctrl+1\n key Num1\n wait-idle");
-  // Through the muscle above the ball of bone, in which the upper bone runs.
+  // The pixel shows muscle above the ball of bone that the upper bone runs through.
   const glm::dvec2 pixel = body_seen(*test.editor)->pixel_of({-2.5, 0, 20}).value();
   test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");
   run(*test.editor, "select.pick_list");
@@ -483,7 +483,7 @@ TEST_CASE(
   const auto point_at = [&](const glm::dvec2& pixel) {
     test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");
   };
-  // Chosen where the pose shows it, not where it rests.
+  // A bone is picked where its posed line is drawn, not where its rest line is.
   point_at(view.pixel_of(posed[1] * glm::dvec3(0, 0, -20)).value());
   CHECK(bone_at_pointer(*test.editor) == 1);
   point_at(view.pixel_of(glm::dvec3(0, 0, -30)).value());
@@ -493,7 +493,7 @@ TEST_CASE(
   const auto gizmo = gizmo_in(*test.editor, view);
   REQUIRE(gizmo);
   CHECK(glm::distance(gizmo->centre, posed[1] * glm::dvec3(0, 0, 0)) < 1e-9);
-  // A quarter of the ring that faces the slice.
+  // The pointer is on the ring that is parallel to the slice.
   const Ring ring = ring_of(view, test.editor->look.scale, gizmo->centre, gizmo->axes[0], 86);
   point_at(view.pixel_of(ring.at(0.3)).value());
   test.host->events.push(ButtonChanged{MouseButton::Left, true});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Moving through the 3D view: about a point, by a pad, on foot; and how the window is found again at the next start.
+// Navigation in the 3D view: orbiting about a point, a trackpad, and walking. Also, the window's place is restored at
+// the next start.
 #include "editor/context/cursor_wrap.h"
 #include "tests/editor/small_limb.h"
 
@@ -24,7 +25,7 @@ TEST_CASE(
     "pointer wrap: the sum of the moves is what the hand did, with leaps and moves from before them in any order") {
   PointerWrap wrap(Rect{{100, 100}, {500, 400}}, 2);
   glm::vec2 seen{300, 250}, sum(0), hand(0), shift(0);
-  std::vector<glm::vec2> late;  // moves that the window reported before a leap
+  std::vector<glm::vec2> late;  // moves that the window reported before a jump of the pointer
   for (int i = 0; i < 400; ++i) {
     const glm::vec2 step{17, i % 50 < 25 ? -9 : 11};
     hand += step;
@@ -34,7 +35,7 @@ TEST_CASE(
     const glm::vec2 leap = wrap.leap(seen);
     if (leap != glm::vec2(0)) {
       hand += step;
-      to = glm::vec2(300, 250) + hand + shift;  // still at the old place
+      to = glm::vec2(300, 250) + hand + shift;  // the pointer has not jumped yet
       sum += wrap.moved(seen, to);
       seen = to;
       shift += leap;
@@ -157,12 +158,12 @@ TEST_CASE("replay: walking goes by keys, looks by the mouse, changes speed by th
 
   const glm::dvec3 there = render::eye_of(camera_of(test));
   test.play("move 700 250");
-  CHECK(glm::distance(render::eye_of(camera_of(test)), there) < 1e-6);  // looks round, goes nowhere
+  CHECK(glm::distance(render::eye_of(camera_of(test)), there) < 1e-6);  // looking around does not move the eye
   CHECK_FALSE(camera_of(test).world_from_view == before.world_from_view);
   test.play("key-down E\n wait 0.2\n key-up E");
   CHECK(render::eye_of(camera_of(test)).z > there.z);
 
-  // Ten steps of the wheel are faster.
+  // Each step of the wheel makes walking 1.25 times as fast. Four steps are made here.
   const auto go = [&] {
     const glm::dvec3 from = render::eye_of(camera_of(test));
     test.play("key-down S\n wait 0.2\n key-up S");

@@ -14,7 +14,7 @@ using namespace editor;
 
 namespace {
 
-// A ring of triangles between two circles.
+// Adds the triangles between two circles of one centre.
 void add_ring(const glm::vec2& middle, float inner, float outer, std::vector<glm::vec2>& points,
               std::vector<glm::u32vec3>& corners) {
   constexpr int kParts = 60;

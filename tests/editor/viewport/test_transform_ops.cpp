@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What bones are taken hold of with, and poses drawn towards others.
+// Tools that transform bones, and operators that blend a pose with other poses.
 #include "editor/context/transform_settings.h"
 #include "editor/pose/pose_edits.h"
 #include "tests/editor/operator_proofs.h"
@@ -27,7 +27,7 @@ Effect space_is(Space space) {
   return [=](Stage& s, const Seen&) { return s.editor().transform_settings->space == space; };
 }
 
-// The edit's name, and how far the fore limb is bent.
+// Returns a check of the last edit's name and of the angle by which the forelimb is bent, degrees.
 Effect bent(const char* edit, double degrees) {
   return [=](Stage& s, const Seen& before) {
     const double angle = glm::degrees(glm::angle(pose_of(s.document()).rotation[1]));

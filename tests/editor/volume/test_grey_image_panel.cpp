@@ -11,7 +11,7 @@ using namespace limber::test;
 
 namespace {
 
-// A noisy ball of tissue in air, in 8-bit values, which might also be labels.
+// Returns a noisy ball of tissue in air. Its 8-bit values could also be mistaken for labels.
 GreyVolume scan() {
   GreyVolume image;
   image.grid = {{24, 24, 24}, {2, 2, 2}, {-24, -24, -24}, glm::dmat3(1)};

@@ -16,7 +16,7 @@ namespace {
 
 using editor::Views;
 
-// A CT of the ball of small_body() on a grid of its own: flesh around bone, in air.
+// Returns a CT of the ball of small_body(), on a grid of its own: soft tissue around bone, in air.
 GreyVolume scan() {
   GreyVolume image;
   image.grid = {{40, 40, 40}, {2.5, 2.5, 2.5}, {-49, -49, -49}, glm::dmat3(1)};
@@ -52,7 +52,7 @@ std::function<bool(Stage&, const Seen&)> renders(render::GreyRendering rendering
   };
 }
 
-// A result that stands for one made together with the image.
+// Adds a result that was made together with a posed image.
 void add_posed_scan(Stage& stage) {
   Document next = stage.document();
   auto result = std::make_shared<Result>();
@@ -171,7 +171,7 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
 TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and keeps the tools that need no tissue") {
   const Home home;
   GreyVolume mr = scan();
-  // A background from 0.5 to 16.5, and a body. Fractions are no labels.
+  // The background has values from 0.5 to 16.5. Values with fractions cannot be labels.
   for (float& value : mr.voxels) value = value < -500 ? 1000.5f + value : 400.5f;
   mr.type = {"NRRD", "float", true};
   write_grey_volume(mr, home / "mr.nrrd");
@@ -257,7 +257,7 @@ TEST_CASE("image: resampling poses it, to the voxel as the command line does, an
   CHECK(ours.voxels == theirs.voxels);
   CHECK(kept->levels->grid == theirs.grid);
 
-  // The views show the posed image with the result, and none with a result that was made without one.
+  // For a result with a posed image the views show that image. For a result without one they show none.
   e.comparison.b = result->name;
   sitting.play("key 2\n wait-idle");
   REQUIRE(e.views->scene.volume == result->volume);
@@ -293,7 +293,7 @@ TEST_CASE("image: its form says so when the image is closed under it, and anothe
   sitting.play("wait-idle\n expect dialog yes\n key Escape\n wait-idle");
   sitting.editor().views->image = image;
   sitting.play(form);
-  sitting.editor().jobs.set_at_once(0);  // the job waits until the other body is open
+  sitting.editor().jobs.set_at_once(0);  // the job runs only after the other body is open
   sitting.play("click \"Make labels\"");
   const Document other = small_body();
   sitting.editor().history.reset(other, "Open ball");
@@ -351,7 +351,7 @@ TEST_CASE("image: a project shows its image again, from beside the project too, 
     sitting.play("wait-job\n wait-job\n wait-idle\n expect error none");
     CHECK_FALSE(sitting.editor().views->image);
     CHECK(sitting.test.fact("text:The image of this project is not shown: ct.nrrd") == "shown");
-    // Saved without its image, the project goes on naming it.
+    // If the project is saved while its image is not shown, it still refers to the image.
     editor::save_project(sitting.editor());
     sitting.play("wait-job\n wait-idle");
   }

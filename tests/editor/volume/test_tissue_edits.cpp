@@ -11,7 +11,7 @@ TEST_CASE("tissue panel: a kind is chosen from the list, takes its usual materia
   editor::Editor& e = *test.editor;
   const auto muscle = [&] { return *e.document().tissues->find(17); };
   Tissue own = muscle();
-  own.young_modulus = 77;  // set by hand
+  own.young_modulus = 77;  // as if the user had set it
   editor::set_tissue(e, "Stiffness of Muscle", own);
   editor::select_tissue(e, 17, false);
   test.play(
@@ -29,6 +29,6 @@ TEST_CASE("tissue panel: a kind is chosen from the list, takes its usual materia
   CHECK(muscle().kind == TissueKind::Muscle);
   CHECK(muscle().poisson_ratio == own.poisson_ratio);
   const auto edits = e.history.position();
-  editor::set_kind(e, 17, TissueKind::Muscle);  // what it is already
+  editor::set_kind(e, 17, TissueKind::Muscle);  // the tissue already has this kind
   CHECK(e.history.position() == edits);
 }

@@ -68,7 +68,7 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
   REQUIRE(test.editor->document().weights);
   const auto weights = test.editor->document().weights;
 
-  // The same voxels are tissue: weights stay.
+  // Merging tissues changes no voxel from tissue to air or back, so the weights are kept.
   test.play(R"--(
     click "Edit/Prepare volume/Merge tissues..."
     click "Tissue/list"

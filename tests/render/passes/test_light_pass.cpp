@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Light by rays, against the light that geometry gives in closed form.
+// Compares the light that rays find with closed-form solutions of simple scenes.
 #include "render/passes/light_pass.h"
 
 #include <numbers>
@@ -15,13 +15,13 @@ using namespace limber::test;
 
 namespace {
 
-// What rays found at each pixel, averaged over pictures; rows from the bottom up.
+// The light that rays found at each pixel, averaged over several pictures. Rows run from the bottom up.
 struct Found {
   glm::ivec2 size{0};
-  std::vector<glm::vec2> light;  // shares of the key light and of the sky
+  std::vector<glm::vec2> light;  // fractions of the key light and of the sky that reach the pixel
   std::vector<float> depth;      // mm; kNothingDepth: no hit
 
-  // The mean over a square around a pixel, without the pixels that show nothing.
+  // Returns the mean over a square around a pixel, without pixels of the background.
   glm::dvec2 around(const glm::dvec2& pixel, int reach) const {
     glm::dvec2 sum(0);
     int count = 0;
@@ -70,10 +70,10 @@ Found light_of(Studio& studio, const Scene& scene, const Camera& camera, const g
   return found;
 }
 
-// Whether a share is what geometry gives, but for a part of it.
+// Returns true if a fraction of light deviates from the expected one by at most the relative error `part`.
 bool is_about(double share, double expected, double part) { return std::abs(share / expected - 1) <= part; }
 
-// A camera without perspective that looks down on the middle of a grid; `width` mm fill the picture.
+// Returns an orthographic camera that looks down on a point. The picture is `width` mm wide.
 Camera above(const glm::dvec3& centre, double width) {
   Camera camera;
   camera.projection = Projection::Orthographic;
@@ -100,9 +100,9 @@ TEST_CASE("light: in the open, on a plane at any slant and on a ball, nothing is
 }
 
 TEST_CASE("light: in the middle of a round pit the sky has the share of its form factor") {
-  // A disc of the sky of radius R, seen from a depth h below its middle, has the form factor R^2 / (R^2 + h^2).
+  // A disc of the sky of radius R, seen from a point h below its centre, has the form factor R^2 / (R^2 + h^2).
   Studio studio;
-  // The voxels' surface has round edges, which let through a little more.
+  // The smooth surface of the voxels has rounded edges, which let a little more light through.
   for (const double h : {20.0, 40.0, 80.0}) {
     constexpr double kRadius = 40;
     const glm::dvec3 middle(47.5, 47.5, 0);
@@ -119,15 +119,15 @@ TEST_CASE("light: in the middle of a round pit the sky has the share of its form
 }
 
 TEST_CASE("light: inside a hollow half ball every place sees the same share of the sky") {
-  // A point on the inside of a sphere sees a cap of it with the cap's share of the sphere's area, wherever it lies: one
-  // half for the opening of a half ball.
+  // From any point inside a sphere, the form factor of a cap is the cap's fraction of the sphere's area: one half for
+  // the opening of a hemisphere.
   Studio studio;
   const glm::dvec3 middle(63.5, 63.5, 70.5);
   const auto bowl = painted(grid_of({128, 128, 72}), [&](const glm::dvec3& p) {
     return Label(p.z < middle.z && glm::length(p - middle) > 54 ? 1 : 0);
   });
   const Found found = light_of(studio, scene_of(bowl), above(middle, 120), {160, 160}, 12);
-  for (const double off : {0.0, 20.0, 40.0, 52.0}) {  // pixels of 0.75 mm
+  for (const double off : {0.0, 20.0, 40.0, 52.0}) {  // distance from the centre in pixels of 0.75 mm
     const double sky = found.around({79.5 + off, 79.5}, 4).y;
     INFO(off, " pixels beside the middle: ", sky);
     CHECK(is_about(sky, 0.5, 0.06));
@@ -141,18 +141,19 @@ TEST_CASE(
   const auto scene = scene_of(painted(grid_of({96, 96, 48}), [&](const glm::dvec3& p) {
     return Label(p.z < 10.5 || glm::length(p - ball) < 12 ? 1 : 0);
   }));
-  // The picture shows x to the right and y down, so that the light from the upper left moves the shadow to the right
-  // and down, by the ball's height times 0.428 / 0.713 and 0.556 / 0.713.
+  // In the picture x points right and y points down, so light from the upper left shifts the shadow to the right and
+  // down, by the ball's height times 0.428 / 0.713 and 0.556 / 0.713.
   const Found found = light_of(studio, scene, above({47.5, 47.5, 20}, 90), {180, 180}, 6);
   const double lift = ball.z - 10.5;
   const glm::dvec2 middle(89.5, 89.5), fallen = middle + 2.0 * lift * glm::dvec2(0.428, -0.556) / 0.713;
-  // Beyond the ball itself, in the shadow's own direction.
+  // This point of the shadow is outside the ball's own outline.
   const glm::dvec2 shadow = fallen + glm::normalize(fallen - middle) * 10.0;
   CHECK(found.around(shadow, 1).x < 0.1);
   CHECK(found.around(middle - (shadow - middle), 1).x > 0.99);
   CHECK(found.around({20, 20}, 3).x > 0.99);
   CHECK(found.around({20, 20}, 3).y > 0.97);
-  // The ball over the plane covers the sky by (r / d)^2 cos of its direction, d from the ball's middle.
+  // The ball above the plane hides (r / d)^2 cos(angle to the vertical) of the sky, where d is the distance to its
+  // centre.
   for (const double side : {16.0, 24.0}) {
     const double d = std::hypot(side, lift), cover = 144 / (d * d) * (lift / d);
     const double sky = found.around(middle + glm::dvec2(-2 * side, 0), 2).y;

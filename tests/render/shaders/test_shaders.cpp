@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shaders by themselves, by another compiler than the driver's.
+// Compiles the shaders with a compiler that is independent of the graphics driver.
 #include "render/gl/shader_source.h"
 
 #include <cstdlib>
@@ -16,7 +16,7 @@ using namespace limber::render;
 
 namespace {
 
-// The names that `#ifdef NAME` and `defined(NAME)` ask for.
+// Returns the names that a shader tests by `#ifdef NAME` or `defined(NAME)`.
 std::set<std::string> switches_of(const std::string& source) {
   std::set<std::string> names;
   const auto add = [&](std::size_t at) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr glm::ivec2 kSize{160, 160};
 
-// A ball with a core, in so many blocks that their upload takes several frames.
+// Returns a ball with a core, of so many blocks that their upload takes several frames.
 std::shared_ptr<const LabelVolume> ball() {
   return painted(grid_of({120, 120, 120}), [](const glm::dvec3& p) -> Label {
     const double r = glm::length(p - glm::dvec3(60));
@@ -37,7 +37,7 @@ TEST_CASE("prepared body: uploaded over several frames, it is drawn as one that 
     int frames = 0;
     bool is_done = false;
     for (; !is_done && frames < 10'000; ++frames) {
-      studio.renderer.begin_frame(0);  // no time: one slot a frame
+      studio.renderer.begin_frame(0);  // with a time limit of 0, one slot is uploaded per frame
       is_done = studio.renderer.upload(*body);
     }
     CHECK(is_done);
@@ -46,7 +46,8 @@ TEST_CASE("prepared body: uploaded over several frames, it is drawn as one that 
     REQUIRE(resident.layers.size() >= 1);
     const int revision = resident.layers[0]->revision();
     CHECK(same_pixels(picture_of(studio.renderer, scene, camera, kSize), expected));
-    CHECK(resident.layers[0]->revision() == revision);  // nothing was computed or uploaded again
+    // The revision shows that no layer was computed or uploaded again.
+    CHECK(resident.layers[0]->revision() == revision);
     studio.renderer.begin_frame(0);
     CHECK(studio.renderer.upload(*body));
   }
@@ -58,7 +59,8 @@ TEST_CASE("prepared body: drawn before its upload is complete, it is complete") 
   const Camera camera = camera_of(volume->grid);
   Studio at_once;
   const Image expected = picture_of(at_once.renderer, scene, camera, kSize);
-  for (const int frames : {1, 20, 40}) {  // in the first slots of the labels, later in those of the field
+  // The body is drawn while its labels are uploaded, and later while its surface field is.
+  for (const int frames : {1, 20, 40}) {
     CAPTURE(frames);
     Studio studio;
     const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
@@ -83,7 +85,7 @@ TEST_CASE("prepared body: a volume too large for the textures is prepared at hal
     studio.renderer.begin_frame(0);
     is_done = studio.renderer.upload(*body);
   }
-  CHECK(studio.renderer.note().empty());  // it is not shown yet
+  CHECK(studio.renderer.note().empty());  // there is no message, as the body is not shown yet
   picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
   CHECK(studio.renderer.note().starts_with("Shown at 1/2 of its resolution"));
 }
@@ -93,7 +95,7 @@ TEST_CASE("prepared body: one whose upload fails is drawn all the same, one that
   auto volume = ball();
   const Scene scene = scene_of(volume);
   const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
-  body->volume.layout.slots = glm::ivec3(1000);  // more than drivers take
+  body->volume.layout.slots = glm::ivec3(1000);  // larger than drivers allow
   studio.renderer.begin_frame(0);
   CHECK_THROWS_AS(studio.renderer.upload(*body), Error);
   const Image shown = picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes whose labels change while they are on the graphics card: only what lies near the change is uploaded, and the
-// pictures are those of the changed volume uploaded anew.
+// Volumes whose labels change while they are on the graphics card: only blocks near the change are uploaded, and
+// pictures equal those of the changed volume uploaded anew.
 #include "render/passes/pass_resources.h"
 #include "tests/render/studio.h"
 
@@ -16,7 +16,7 @@ constexpr glm::ivec2 kSize{240, 200};
 
 const Grid kGrid = grid_of({90, 80, 70}, {1, 1.5, 1});
 
-// A ball (1) with a core (3) in the middle of a box that is mostly air.
+// Returns a ball (label 1) with a core (label 3) in the middle of a box that is mostly air.
 std::shared_ptr<LabelVolume> ball() {
   return std::make_shared<LabelVolume>(*painted(kGrid, [](const glm::dvec3& p) {
     const double r = glm::distance(p, glm::dvec3(38, 60, 35));
@@ -24,7 +24,7 @@ std::shared_ptr<LabelVolume> ball() {
   }));
 }
 
-// Paints a ball of `label`; returns the box of voxels in its reach.
+// Gives `label` to a ball of voxels, and returns the box of voxels that may have changed.
 VoxelBox paint(LabelVolume& volume, const glm::dvec3& centre, double radius, Label label) {
   const AffineTransform world = world_from_voxel(volume.grid), voxel = voxel_from_world(volume.grid);
   const glm::dvec3 reach = radius / volume.grid.spacing;
@@ -53,7 +53,7 @@ Image body_of(Renderer& renderer, const std::shared_ptr<const LabelVolume>& volu
   return view.read();
 }
 
-// Returns a copy, which is uploaded anew.
+// Returns a copy, which the renderer must upload as a new volume.
 std::shared_ptr<const LabelVolume> anew(const LabelVolume& volume) {
   return std::make_shared<const LabelVolume>(volume);
 }
@@ -67,14 +67,14 @@ TEST_CASE("relabel: labels painted in place are shown as if the volume were uplo
   const glm::dvec3 middle(38, 60, 35);
   body_of(studio.renderer, volume);
   body_of(studio.renderer, volume, Display::XRay);
-  // Over tissue, at the surface, erased to air, and far out in air where no slot is yet.
+  // The dabs are: over tissue, at the surface, erasing to air (twice), and far out in air where no slot exists yet.
   const std::vector<std::pair<glm::dvec3, Label>> dabs = {
       {{38, 50, 38}, 2}, {{54, 60, 35}, 1}, {{38, 43, 35}, 0}, {{38, 60, 35}, 0}, {{80, 108, 60}, 2}};
   for (const auto& [centre, label] : dabs) {
     const VoxelBox box = paint(*volume, centre, 7, label);
     const int revision = resources.revision_of(volume), uploads = resources.uploads();
     resources.relabel(volume, volume, box, Surface::AtOnce);
-    // Within the blocks of the body no new slots are needed, and the textures are kept.
+    // A change within the body's blocks needs no new slots, so the textures are kept.
     if (centre.x == middle.x) CHECK(resources.uploads() == uploads);
     CHECK(resources.revision_of(volume) != revision);
     const auto fresh = anew(*volume);
@@ -120,7 +120,7 @@ TEST_CASE("relabel: another volume takes the textures over, and a view that draw
   resources.relabel(after, before, box, Surface::AtOnce);
   view.draw(scene_of(before), camera_of(kGrid), kSize, 2, 1);
   CHECK(view.read().rgba == first.rgba);
-  // The same volume, changed in place: the view draws it again although the scene has the same pointer.
+  // The volume is changed in place: the view must draw it again although the scene has the same pointer.
   resources.relabel(before, after, box, Surface::AtOnce);
   view.draw(scene_of(after), camera_of(kGrid), kSize, 3, 1);
   resources.relabel(after, after, paint(*painted_ball, {38, 43, 30}, 8, 3), Surface::AtOnce);
@@ -133,7 +133,7 @@ TEST_CASE("relabel: a volume drawn at a coarser resolution is uploaded anew only
   for (const int side : {36, 72}) {
     Studio studio(side);
     PassResources& resources = studio.renderer.resources();
-    // An odd number of voxels per axis, so that the last coarse voxels have fewer than eight.
+    // The number of voxels is odd on each axis, so the last coarse voxels contain fewer than eight voxels.
     const auto volume = std::make_shared<LabelVolume>(*painted(grid_of({91, 95, 99}), [](const glm::dvec3& p) {
       return Label(glm::distance(p, glm::dvec3(45, 47, 49)) < 44 ? 1 + (p.x > 45) : 0);
     }));
@@ -174,5 +174,5 @@ TEST_CASE("relabel: a change without room in the textures, and one of a coarse v
   small.renderer.resources().relabel(volume, volume, {glm::ivec3(0), volume->grid.size}, Surface::AtOnce);
   const Image shown = slice_of(small.renderer, volume, {60, 60, 60});
   const auto at = static_cast<size_t>(4 * (kSize.y / 2 * kSize.x + kSize.x / 2));
-  CHECK(shown.rgba[at + 1] > shown.rgba[at]);  // green in the middle
+  CHECK(shown.rgba[at + 1] > shown.rgba[at]);  // the middle is green
 }

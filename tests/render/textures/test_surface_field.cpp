@@ -20,7 +20,7 @@ LabelSet set_of(std::initializer_list<int> labels) {
 TEST_CASE("visible field: a change of the set computes only the blocks that it touches") {
   Studio studio;
   const Grid grid = grid_of({200, 60, 60});
-  // Label 1 everywhere, label 2 at one end.
+  // Label 1 fills a cylinder, and label 2 one end of it.
   const auto volume = painted(grid, [](const glm::dvec3& p) -> Label {
     if (glm::length(glm::dvec2(p.y, p.z) - glm::dvec2(30)) > 20) return 0;
     return p.x < 12 ? 2 : 1;

@@ -16,7 +16,8 @@ namespace {
 
 const glm::ivec2 kSize(120, 120);
 
-// A block of tissue with the weights of two bones that `second` gives for each voxel, in 1/65535; three bones in all.
+// A block of tissue and a rig of three bones. `second` gives the second bone's weight of each voxel in 1/65535; the
+// rest is the first bone's.
 struct Block {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueVoxels> tissue;
@@ -73,7 +74,7 @@ int apart(const glm::ivec4& pixel, const glm::ivec3& colour) {
   return std::max({d.x, d.y, d.z});
 }
 
-// The axial slice in which each voxel is four pixels wide, and the pixel just beside the middle of a voxel.
+// Returns the axial slice camera in which a voxel is four pixels wide.
 SliceCamera slice_through(const Block& block, int z) {
   return {.centre = glm::dvec3(glm::dvec2(block.volume->grid.size) / 2.0, z), .millimetres_per_pixel = 0.25};
 }
@@ -82,7 +83,7 @@ glm::ivec2 pixel_of(const Block& block, int x, int y) {
   return glm::ivec2(glm::floor(off + glm::dvec2(kSize) / 2.0));
 }
 
-// Relative lightness [CIE 1976].
+// Returns the lightness of a colour [CIE 1976].
 double lightness(const glm::vec3& srgb) {
   const auto linear = [](double c) { return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4); };
   const double y = 0.2126 * linear(srgb.r) + 0.7152 * linear(srgb.g) + 0.0722 * linear(srgb.b);
@@ -126,8 +127,8 @@ TEST_CASE(
     "weights: a slice shows each voxel's weight in the ramp's colour, and exact 0 and 1 on the whole numbers alone") {
   Studio studio;
   SliceView view(studio.renderer);
-  // Steps of weight along x, four voxels each, so that their middles are not blended; the smallest and the largest
-  // weights that are not exact beside the exact ones.
+  // Weights rise along x in steps of four voxels, so the middle of a step is not interpolated. Values next to 0 and to
+  // the full weight are included, because they are not rounded to these.
   constexpr std::array<int, 6> kSteps = {0, 1, 20000, 45000, kFullWeight - 1, kFullWeight};
   const Block block({28, 20, 20}, [&](const glm::ivec3& v) {
     return kSteps[static_cast<std::size_t>(std::clamp((v.x - 2) / 4, 0, 5))];
@@ -139,13 +140,13 @@ TEST_CASE(
       CAPTURE(step);
       CHECK(apart(pixel_of(image, pixel_of(block, 2 + 4 * step + x - 2, 9)), bytes(weight_colour(kSteps[step]))) <= 2);
     }
-  // Of the other bone: the same, the other way round.
+  // The other bone has the complementary weights.
   view.draw(block.scene(WeightDisplay::Active, 0), slice_through(block, 9), SliceDisplay::Labels, kSize);
   const Image other = view.read();
   for (int step = 0; step < 6; ++step)
     CHECK(apart(pixel_of(other, pixel_of(block, 3 + 4 * step, 9)), bytes(weight_colour(kFullWeight - kSteps[step]))) <=
           2);
-  // Of a bone that nothing follows, and of none.
+  // Bone 2 has no weight anywhere, and -1 means that no bone is selected.
   for (const int bone : {2, -1}) {
     view.draw(block.scene(WeightDisplay::Active, bone), slice_through(block, 9), SliceDisplay::Labels, kSize);
     CHECK(apart(pixel_of(view.read(), pixel_of(block, 20, 9)), bytes(kExactZero)) <= 1);
@@ -161,7 +162,7 @@ TEST_CASE("weights: between voxels the ramp goes over smoothly, and one voxel of
   CHECK(apart(pixel_of(image, pixel_of(block, 14, 14)), bytes(kExactZero)) <= 2);
   const glm::ivec2 from = pixel_of(block, 5, 20);
   for (int step = 0; step < 40; ++step) {
-    const double x = 5 + (from.x + step + 0.5 - kSize.x / 2.0) * 0.25 + 14 - 5;  // voxels
+    const double x = 5 + (from.x + step + 0.5 - kSize.x / 2.0) * 0.25 + 14 - 5;  // distance along x, in voxels
     CHECK(apart(pixel_of(image, {from.x + step, from.y}), bytes(ramp_colour(2000 * x / kFullWeight))) <= 3);
   }
 }
@@ -179,13 +180,13 @@ TEST_CASE("weights: a cut face shows the ramp unshaded, and where light falls on
     return test::pixel_of(
         image, glm::ivec2(kSize.x / 2 + int((2 + 8 * step + 3.5 - camera.centre.x) / millimetres), kSize.y / 2));
   };
-  for (const int scale : {1, 0}) {  // at once, and refined
+  for (const int scale : {1, 0}) {  // 1: full resolution at once; 0: refined gradually
     View3D view(studio.renderer);
     view.draw(scene, camera, kSize, 0, scale);
     for (double now = 1; !view.complete(); now += 0.1) view.draw(scene, camera, kSize, now, scale);
     const Image lit = view.read();
     for (int step = 0; step < 4; ++step) {
-      // Shading keeps the order of channels.
+      // Shading does not change the order of the colour channels.
       const glm::ivec3 seen(pixel_at(lit, step)), wanted = bytes(weight_colour(kSteps[step]));
       CAPTURE(step);
       CHECK((seen.b > seen.r) == (wanted.b > wanted.r));
@@ -214,7 +215,7 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   const double millimetres = 2 * camera.distance * std::tan(camera.field_of_view / 2) / kSize.y;
   const std::vector<int> body = dark_columns(picture_of(studio.renderer, scene, camera, kSize), plain, kSize.y / 2);
   REQUIRE(body.size() == 3);
-  // The pixel before the border.
+  // The column is the last one before the border.
   for (int line = 0; line < 3; ++line)
     CHECK(std::abs(body[line] + 1 - (kSize.x / 2 + (2 + 31 * (line + 1) * 0.25 - camera.centre.x) / millimetres)) <= 1);
 
@@ -229,7 +230,7 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   for (const int x : lines) {
     const double weight = (18 + (x + 0.5 - 100) * 0.25 - 2) / 31;
     CHECK(std::min({std::abs(weight - 0.25), std::abs(weight - 0.5), std::abs(weight - 0.75)}) <
-          0.012);  // a pixel and a half
+          0.012);  // one and a half pixels
   }
 }
 
@@ -280,7 +281,7 @@ TEST_CASE("weights: a brick that changes is uploaded alone, and the picture is t
   CHECK(body.weights->texels_uploaded() <= 8 * 512);
   CHECK(body.weights->texels_uploaded() >= 512 * 6 / 8);
   CHECK(all > 100 * body.weights->texels_uploaded() / 2);
-  // Taken back and done again, it is as much.
+  // Undo and redo upload as many texels as the dab.
   const std::int64_t dab = body.weights->texels_uploaded();
   for (int again = 0; again < 2; ++again) {
     scene.weights->weights = block.weights;
@@ -293,7 +294,8 @@ TEST_CASE("weights: a brick that changes is uploaded alone, and the picture is t
 
   Renderer fresh;
   CHECK(difference(after, picture_of(fresh, scene, camera, kSize)).mean == 0);
-  // A copy of the same weights uploads nothing, and another bone that nothing follows only what the one before had.
+  // An equal copy of the weights uploads nothing. Selecting another bone without weights uploads only the texels where
+  // the previous bone had weight.
   scene.weights->weights = std::make_shared<const SkinWeights>(changed);
   draw(view, scene, camera, kSize);
   CHECK(body.weights->texels_uploaded() == 0);
@@ -313,7 +315,7 @@ TEST_CASE(
   auto& body = studio.renderer.resources().body(block.volume);
   const int slots = static_cast<int>(body.volume->layout().block_of_slot.size());
   REQUIRE(slots == 80);
-  // No time: one lot a frame, whatever the number of views.
+  // With a time limit of 0, each frame uploads one lot of slots, whatever the number of views.
   const auto frame = [&] {
     studio.renderer.begin_frame(0);
     view.draw(scene, camera, kSize, now += 0.2);
@@ -352,7 +354,7 @@ TEST_CASE(
     }
   };
   const int lots = (slots + WeightTexture::kLot - 1) / WeightTexture::kLot;
-  CHECK(to_the_end() == lots);  // at first
+  CHECK(to_the_end() == lots);  // first upload
   is_as_anew();
 
   const auto before = scene.weights->weights;
@@ -360,7 +362,8 @@ TEST_CASE(
   scene.weights->weights = edited;
   CHECK(to_the_end() == lots);
   is_as_anew();
-  // Taken back, with dabs before all is there: in a slot that is being worked out, and in the last one.
+  // The edit is undone, and dabs are made before its upload is complete: one in a slot that is being computed, and one
+  // in the last slot.
   SkinWeights dabbed = *before;
   const auto dab_at = [&](const glm::ivec3& voxel) {
     const std::int64_t brick = block.tissue->brick_at(voxel);
@@ -378,7 +381,7 @@ TEST_CASE(
   to_the_end();
   is_as_anew();
 
-  // Another display reads other texels: what is not there yet shows the tissue.
+  // Another display needs other texels. Where these are not uploaded yet, the tissue's own colour is shown.
   scene.weights->display = WeightDisplay::Dominant;
   frame();
   CHECK(!slice.complete());
@@ -449,14 +452,14 @@ TEST_CASE(
   int inside = 0, outside = 0;
   for (int y = 0; y < kSize.y; ++y)
     for (int x = 0; x < kSize.x; ++x) {
-      const double at = camera.centre.x + (x + 0.5 - kSize.x / 2) * millimetres;  // voxels
+      const double at = camera.centre.x + (x + 0.5 - kSize.x / 2) * millimetres;  // position along x, in voxels
       const bool differs = apart(test::pixel_of(before, {x, y}), glm::ivec3(test::pixel_of(after, {x, y}))) > 0;
       if (at > 35 && at < 53) inside += differs;
       else outside += differs;
     }
   CHECK(inside > 200);
   CHECK(outside == 0);
-  // Once refined, as weights that were there from the beginning.
+  // After refinement, the picture equals that of weights that were there from the start.
   View3D fresh(studio.renderer);
   CHECK(difference(rest(view), rest(fresh)).mean < 0.5);
 }
@@ -471,7 +474,7 @@ TEST_CASE(
   Renderer small(80), tiny(40);
   const Image picture = picture_of(studio.renderer, scene, camera, kSize),
               coarse = picture_of(tiny, scene, camera, kSize);
-  // But for what a driver rounds otherwise in a texture of another size: a step of one colour in a pixel of 5000.
+  // A driver may round differently in a texture of another size: one level of one channel in a pixel out of 5000.
   CHECK(difference(picture, picture_of(small, scene, camera, kSize)).mean < 2e-4);
   CHECK(tiny.resources().body(block.volume).volume->halvings() > 0);
   scene.weights.reset();
@@ -508,7 +511,7 @@ TEST_CASE("weights: a posed body shows the weights of the voxels that its map le
     return bytes(bone == forearm ? kActiveBone : (*scene.weights->swatches)[static_cast<std::size_t>(bone)]);
   };
 
-  // In a slice across the bent elbow.
+  // Compares a slice across the bent elbow.
   Studio studio;
   SliceView view(studio.renderer);
   const Bone& bone = phantom.armature.bones[static_cast<std::size_t>(forearm)];
@@ -527,13 +530,14 @@ TEST_CASE("weights: a posed body shows the weights of the voxels that its map le
       if (volume->at_or_air(voxel) == 0) continue;
       ++seen;
       const glm::ivec4 pixel = test::pixel_of(image, {x, y});
+      // Borders of tissues are darker by the factor 0.86.
       right += apart(pixel, colour(dominant(voxel))) <= 2 ||
-               apart(pixel, glm::ivec3(glm::vec3(colour(dominant(voxel))) * 0.86f)) <= 3;  // at a border of tissues
+               apart(pixel, glm::ivec3(glm::vec3(colour(dominant(voxel))) * 0.86f)) <= 3;
     }
   CHECK(seen > 500);
   CHECK(right > 0.98 * seen);
 
-  // And on the body: forearm against upper arm, by hue.
+  // Compares the hues of forearm and upper arm in the 3D view.
   const Camera camera = camera_of(volume->grid, Projection::Perspective, StandardView::Left);
   View3D body(studio.renderer);
   const Image lit = draw(body, scene, camera, kSize * 2);
@@ -568,7 +572,7 @@ TEST_CASE("weights: a field shows each voxel in its own colour, and another fiel
         ShownWeights{.tissue = block.tissue, .display = WeightDisplay::Field, .field = field(shift), .contours = false};
     slice.draw(scene, slice_through(block, 6), SliceDisplay::Labels, kSize);
     const Image picture = slice.read();
-    // Four voxels share a colour, so the two in the middle of each are not filtered with others.
+    // Four voxels share a colour, so the two middle ones are not interpolated with other colours.
     for (const glm::ivec2 v : {glm::ivec2(5, 5), glm::ivec2(9, 6), glm::ivec2(10, 9)})
       CHECK(apart(pixel_of(picture, pixel_of(block, v.x, v.y)), {v.x / 4 * 60 + shift, 40, v.y / 4 * 60}) <= 1);
   }
