@@ -198,7 +198,7 @@ TEST_CASE("replay: splitters follow the pointer, and a double click restores the
   CHECK(test.editor->layout.sidebar.width() == doctest::Approx(before + 60).epsilon(0.02));
   test.play("double-click \"splitter sidebar/grip\"");
   CHECK(test.editor->layout.sidebar.width() == before);
-  // The pointer may stay here.
+  // The pointer rests on the splitter before it is dragged.
   test.play("click view.four\n move \"splitter four-y/grip\"\n wait 0.5\n wait-idle");
   test.play("click view.four\n drag \"splitter four-y/grip\" 0 50");
   CHECK(test.editor->arrangement().four_y > 0.55f);

@@ -190,7 +190,8 @@ TEST_CASE("contact: of two ways to one place each is watched by itself") {
   TwoBoxes boxes(1);
   boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // rounded, so that both sums give the same bits
   ContactForm form(boxes.F, boxes.rest, boxes.free());
-  // Two ways lead to the same position above: from the side through free space, and from below through the other box.
+  // The box can reach the same position above in two ways: from the side through free space, and from below through the
+  // other box.
   const NodePositions above = boxes.rest + boxes.upper_by({0, 0, 20}),
                       beside = boxes.rest + boxes.upper_by({50, 0, 20}),
                       below = boxes.rest - boxes.upper_by({0, 0, 20});

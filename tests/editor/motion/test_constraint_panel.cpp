@@ -178,7 +178,7 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
     for (int bone = 0; bone < 5; ++bone)
       CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], shown.rotation[bone])) > 1 - 1e-12);
   }
-  // A turn by the user applies below the constraint, which then takes its share, with and without keys.
+  // The constraint is applied by half on top of a rotation by the user, before and after keys are inserted.
   Pose raised = shown;
   raised.rotation[kUpper] = glm::angleAxis(0.7, glm::dvec3(0, 1, 0)) * shown.rotation[kUpper];
   commit_pose(*test.editor, "Raise", raised);
