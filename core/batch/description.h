@@ -40,7 +40,8 @@ class Description {
   bool flag(const std::string& key) const;
   // Returns the texts under a key, whose value may be one text or a list of texts. Empty if the key is absent.
   std::vector<std::string> texts(const std::string& key) const;
-  // Returns the values of the list under a key, which has at least one. Empty if the key is absent.
+  // Returns the values of the list under a key, or none if the key is absent. Throws Error if the value is not a list,
+  // or an empty list.
   std::vector<Description> list(const std::string& key) const;
   // Returns the object under a key.
   Description object(const std::string& key) const;

@@ -14,7 +14,8 @@ namespace {
 constexpr int kCell = 4;  // edge of a cell (cube of voxels that deform or move rigidly together), voxels
 // A voxel counts as moving rigidly if bones with one common motion have at least this share of its weight.
 constexpr double kWhole = 0.98;
-constexpr double kLongestWay = 1000;  // largest distance at which an object must be clear of the body, mm
+// An object that is still not clear of the body when it is this far from its target position counts as blocked, mm.
+constexpr double kLongestWay = 1000;
 
 bool alike(const RigidTransform& a, const RigidTransform& b) {
   const double turn = std::abs(glm::dot(a.rotation, b.rotation));

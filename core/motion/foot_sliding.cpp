@@ -16,8 +16,10 @@ constexpr double kStanding = 200, kStill = 20;
 // Height of a foot above its lowest position, mm, up to which the foot counts fully as standing. The weight falls to 0
 // at twice this height.
 constexpr double kLifted = 60;
-constexpr double kInTheAir = 0.02;  // weight of a lifted foot in the body's height; a standing foot has weight 1.02
-constexpr double kOfToes = 0.2;     // weight of sliding toes, relative to a sliding ankle
+// The body's height is corrected in each frame by the weighted mean of what the two feet need. A foot's weight is from
+// 0 (lifted) to 1 (standing), plus this number, so that the sum of the weights is never 0.
+constexpr double kInTheAir = 0.02;
+constexpr double kOfToes = 0.2;  // weight of sliding toes, relative to a sliding ankle
 // Costs of correcting a foot's position. For comparison: a still foot that slides at 1 mm/s costs 1 / kStill^2 per
 // second.
 constexpr double kGiven = 1e-6;   // cost of the size of a correction, per mm^2 and second

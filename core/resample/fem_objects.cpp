@@ -27,11 +27,12 @@ constexpr double kDegreesPerEdge = 22.5;
 constexpr double kTight = 0.02;
 constexpr double kForceTolerance = 0.01;  // largest relative deviation from the requested force
 constexpr int kForceTries = 20;           // largest number of solves to reach the requested force
-constexpr double kMostOff = 4;    // upper limit on the force error in the search, as a multiple of the requested force
-constexpr int kRounds = 4;        // largest number of times that the forces of all objects are searched
-constexpr double kStuck = 0.02;   // an object that moved less than this is stuck, mm
-constexpr double kFirstMove = 1;  // motion of an object from the first try to the second, mm
-constexpr double kDeepest = 50;   // largest distance by which an object may move beyond its target position, mm
+// ForceSearch counts a larger excess of force as this multiple of the requested force.
+constexpr double kMostOff = 4;
+constexpr int kRounds = 4;           // largest number of times that the forces of all objects are searched
+constexpr double kStuck = 0.02;      // an object that moved less than this is stuck, mm
+constexpr double kFirstMove = 1;     // motion of an object from the first try to the second, mm
+constexpr double kDeepest = 50;      // largest distance by which an object may move beyond its target position, mm
 constexpr double kMostPoints = 4e6;  // upper limit on the number of sample points on an object
 constexpr double kNearGap = 2;       // largest gap between skin and object that is reported, mm
 

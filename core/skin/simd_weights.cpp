@@ -139,7 +139,9 @@ LIMBER_INLINE void set_group(Influence* influences, std::int32_t bone_key, std::
   voxels.sort();
   Lanes now;
   for (std::size_t i = 0; i < sizeof(Lanes) / 4; ++i) now[i] = weights[i];
-  Lanes own[4], rest[4], had{}, found{};  // own: mask of the painted bone; rest: the other bones' weights
+  // Masks, one lane for each voxel: own[i]: influence i is of the painted bone; found: one of the four is. Weights:
+  // had: of the painted bone before; rest[i]: of influence i if it is of another bone.
+  Lanes own[4], rest[4], had{}, found{};
   for (int i = 0; i < 4; ++i) {
     own[i] = voxels.is_of(i, bone_key);
     found |= own[i];

@@ -41,7 +41,8 @@ class VolumeTexture {
   // Uploads the volume. Halves its resolution until it fits (drawn_volume()) and the driver has memory for it. Throws
   // Error if even an eighth of the resolution does not fit.
   VolumeTexture(const std::shared_ptr<const LabelVolume>& volume, const TextureLimits& limits);
-  // Takes a volume that upload() must upload. Throws Error when the driver has no memory for it at this resolution.
+  // Only allocates the textures: the caller then calls upload() until complete(). Does not halve the resolution: throws
+  // Error when the driver has no memory for the volume as it is.
   explicit VolumeTexture(DrawnVolume volume);
 
   // Uploads the volume: as much as `time` allows, or all if `time` is null.

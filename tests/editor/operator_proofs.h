@@ -51,7 +51,7 @@ class Stage {
   std::set<std::string> ran_;
 };
 
-enum class Shows { Nothing, InBody, InSlice };  // the picture of the scene that must change
+enum class Shows { Nothing, InBody, InSlice };  // the picture that a proof's script must change
 
 struct Proof {
   std::string id;

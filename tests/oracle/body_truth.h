@@ -21,10 +21,11 @@ namespace limber::oracle {
 BoneParts true_bones(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
                      const TissueTable& tissues, const Armature& armature);
 
-// Returns the faces between parts that were glued to each other, or none without glue.nrrd.
-//   free_limbs  not nullptr: also gives the faces between parts of this rig where a limb is naturally free
-//               [core/seams/limbs.h], as far as the seams that Limber finds may reach
-// Throws Error if a file is missing or on another grid.
+// Returns the true seams: the faces between two parts of the body that truth.json lists as glued, where both voxels are
+// marked in glue.nrrd. None if truth.json lists no glued parts.
+//   free_limbs  a rig, or nullptr. With a rig, returns also all other faces between two such parts where one of the
+//               parts is a limb that is not grown together with the body (is_free() in core/seams/limbs.h)
+// Throws Error if a file that is needed is missing or on another grid.
 Seams true_seams(const Path& folder, const LabelVolume& volume, const Armature* free_limbs = nullptr);
 
 }  // namespace limber::oracle

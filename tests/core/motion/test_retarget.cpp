@@ -32,7 +32,8 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * 180 / std::numbers::pi;
 }
 
-// Returns the largest angle in degrees between the turns of a matched bone and its joint since frame 0.
+// Compares by how much each rig bone, and the joint of the motion that is mapped to it, have turned since frame 0.
+// Returns the largest difference over all such bones and every `step`-th frame, in degrees.
 double largest_difference(const Motion& motion, const Armature& rig, int step, const RetargetMap& map,
                           Travel travel = Travel::Locked) {
   const Retarget retarget(motion, rig, map, {.travel = travel});

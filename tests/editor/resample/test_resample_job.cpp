@@ -154,7 +154,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   run(*test.editor, "edit.undo");
   CHECK(test.editor->document().results.size() == 1);
 
-  // A mass-exact run works the same way. Its name and its report say so.
+  // A mass-exact result, too, has the voxels that core computes. Its name and its list of settings say "mass-exact".
   run(*test.editor, "resample.dqs");
   test.play("key Ctrl+4\n click Resample/Mass-exact\n key Ctrl+Return\n wait-job");
   REQUIRE(test.editor->document().results.size() == 2);

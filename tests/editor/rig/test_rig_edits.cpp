@@ -190,8 +190,8 @@ TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tis
     REQUIRE(rig_check(*test.editor));
     CHECK(rig_check(*test.editor)->bones.empty());
     CHECK(test.fact("text:All in tissue") == "shown");
-    // The ball ends 40 mm below its middle, so 32 mm of the new 72 mm are outside. The share is updated live and reset
-    // by Escape.
+    // The bone, 72 mm long with its new tail, starts at the middle of a ball of tissue with a radius of 40 mm: 40 / 72
+    // of it is in tissue. The fit check says so while the tail moves, and lists no bone after Escape.
     test.editor->transform_settings->part = TransformSettings::Part::Tail;
     test.play("move \"3D view/view\"\n key G\n key Z\n key -\n key 3\n key 6");
     CHECK(rig_check(*test.editor)->bones[0].share == doctest::Approx(40.0 / 72).epsilon(0.03));
