@@ -10,6 +10,7 @@
 #include <cholmod.h>
 
 #include "core/base/error.h"
+#include "core/base/float_factor.h"
 #include "core/platform/memory_pages.h"
 #include "core/platform/module.h"
 
@@ -26,6 +27,9 @@ constexpr double kMostMended = 0.125;
 // Upper limit on the count of numbers in a factor: CHOLMOD counts them by int.
 constexpr std::size_t kMostNumbers = INT32_MAX;
 constexpr double kDearer = 1.16;  // upper limit on the operations with an adapted order, relative to the last new order
+constexpr double kAccuracy = 1e-10;  // conjugate gradients end when the error is below this share of the solution
+// Conjugate gradients that have not converged after so many iterations show that single precision does not suffice.
+constexpr int kMostIterations = 24;
 
 // Limits CHOLMOD to the calling thread, by forbidding active OpenMP regions. Debian's CHOLMOD would start four threads
 // inside a factorization, which doubles its time on few cores.
@@ -132,7 +136,11 @@ struct Cholesky::Factor {
   std::vector<int> below;        // ranks of the block rows below the diagonal, rising within each block column
   std::vector<int> column, row;  // positions of the matrix's entries in compressed columns, by rank
   std::vector<double> value, right_side;
-  std::unique_ptr<double[]> room;  // memory for the numbers of the factor
+  FloatFactor single;
+  bool is_double = false;  // true: the matrix is factorized in double precision
+  int repeated = 0;        // number of factorizations that were repeated in double precision
+  std::vector<double> x, residual, better, way, image;  // vectors of the conjugate gradients, by rank
+  std::unique_ptr<double[]> room;                       // memory for the numbers of the factor in double precision
   std::size_t room_size = 0;
 
   Factor() {
@@ -169,6 +177,11 @@ struct Cholesky::Factor {
   void expand(const cholmod_factor& nodes);
   void take_room();
   void free_factor();
+  SparseColumns matrix() const { return {column, row, value}; }
+  void multiply(std::span<const double> by, std::span<double> product) const;
+  bool factorize_in_double();
+  void solve_in_double();
+  bool iterate();
 };
 
 // Orders the nodes by the previous order, adapted to the graph, or by a new nested dissection. A postorder of the
@@ -314,6 +327,15 @@ void Cholesky::analyse(const BlockGraph& graph) {
   const Factor::Analysed nodes = factor_->order(graph);
   factor_->expand(graph);
   factor_->expand(*nodes);
+  require_blas_memory();
+  const cholmod_factor& factor = *factor_->factor;
+  const auto numbers = [](const void* from, std::size_t count) {
+    return std::span(static_cast<const int*>(from), count);
+  };
+  const auto columns = numbers(factor.super, factor.nsuper + 1), first_rows = numbers(factor.pi, factor.nsuper + 1),
+             rows = numbers(factor.s, factor.ssize);
+  factor_->single.analyse(
+      {{columns.begin(), columns.end()}, {first_rows.begin(), first_rows.end()}, {rows.begin(), rows.end()}});
 }
 
 Cholesky::~Cholesky() = default;
@@ -362,38 +384,105 @@ void Cholesky::clear() { std::fill(factor_->value.begin(), factor_->value.end(),
 
 bool Cholesky::factorize() {
   const OneThread one_thread;
-  require_blas_memory();
-  cholmod_sparse A = pattern_of(factor_->column, factor_->row);
-  A.x = factor_->value.data();
-  A.xtype = CHOLMOD_REAL;
-  factor_->common.status = CHOLMOD_OK;
-  if (factor_->factor->xtype == CHOLMOD_PATTERN) factor_->take_room();
-  cholmod_factorize(&A, factor_->factor, &factor_->common);
-  factor_->require("factorization");
-  return factor_->common.status != CHOLMOD_NOT_POSDEF && factor_->factor->minor == factor_->factor->n;
+  factor_->is_double = false;
+  return factor_->single.factorize(factor_->matrix()) || factor_->factorize_in_double();
 }
 
-void Cholesky::solve(std::span<double> b) {
+bool Cholesky::Factor::factorize_in_double() {
+  is_double = true;
+  ++repeated;
+  cholmod_sparse A = pattern_of(column, row);
+  A.x = value.data();
+  A.xtype = CHOLMOD_REAL;
+  common.status = CHOLMOD_OK;
+  if (factor->xtype == CHOLMOD_PATTERN) take_room();
+  cholmod_factorize(&A, factor, &common);
+  require("factorization");
+  return common.status != CHOLMOD_NOT_POSDEF && factor->minor == factor->n;
+}
+
+void Cholesky::Factor::solve_in_double() {
+  cholmod_dense B{};
+  B.nrow = B.d = B.nzmax = right_side.size();
+  B.ncol = 1;
+  B.x = right_side.data();
+  B.xtype = CHOLMOD_REAL;
+  B.dtype = CHOLMOD_DOUBLE;
+  cholmod_solve2(CHOLMOD_A, factor, &B, nullptr, &solution, nullptr, &work_y, &work_e, &common);
+  require("solution");
+  std::copy_n(static_cast<const double*>(solution->x), right_side.size(), x.begin());
+}
+
+// Multiplies the matrix, of which the lower triangle is stored, by a vector.
+void Cholesky::Factor::multiply(std::span<const double> by, std::span<double> product) const {
+  std::fill(product.begin(), product.end(), 0.0);
+  for (std::size_t c = 0; c + 1 < column.size(); ++c) {
+    const double own = by[c];
+    double sum = 0;
+    for (int k = column[c]; k < column[c + 1]; ++k) {
+      const std::size_t r = row[k];
+      if (r < c) continue;
+      product[r] += value[k] * own;
+      if (r > c) sum += value[k] * by[r];
+    }
+    product[c] += sum;
+  }
+}
+
+// Solves for `right_side` by conjugate gradients, preconditioned by the factor in single precision. The solution is in
+// `x`. Returns false when they do not converge, or the matrix is seen not to be positive definite.
+bool Cholesky::Factor::iterate() {
+  const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  };
+  std::fill(x.begin(), x.end(), 0.0);
+  residual = right_side;
+  image.resize(x.size());
+  better.resize(x.size());
+  single.solve(residual, better);
+  way = better;
+  // The residual's product with its preconditioned self is about the squared energy of the error.
+  double error = dot(residual, better);
+  const double enough = kAccuracy * kAccuracy * error;
+  for (int k = 0; error > enough; ++k) {
+    if (k == kMostIterations) return false;
+    multiply(way, image);
+    const double bend = dot(way, image);
+    if (!(bend > 0)) return false;
+    const double length = error / bend;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      x[i] += length * way[i];
+      residual[i] -= length * image[i];
+    }
+    single.solve(residual, better);
+    // By the change of the residual instead of its whole, which stays exact with a preconditioner that rounds.
+    const double next = dot(residual, better);
+    double turned = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) turned -= length * image[i] * better[i];
+    for (std::size_t i = 0; i < x.size(); ++i) way[i] = better[i] + turned / error * way[i];
+    error = next;
+  }
+  return error >= 0;
+}
+
+bool Cholesky::solve(std::span<double> b) {
   const OneThread one_thread;
   const int n = node_count();
   assert(std::ssize(b) == 3 * n);
   auto& right = factor_->right_side;
   right.resize(3 * n);
+  factor_->x.resize(3 * n);
   for (int i = 0; i < n; ++i) std::copy_n(&b[3 * i], 3, &right[3 * rank(i)]);
-  cholmod_dense B{};
-  B.nrow = B.d = B.nzmax = right.size();
-  B.ncol = 1;
-  B.x = right.data();
-  B.xtype = CHOLMOD_REAL;
-  B.dtype = CHOLMOD_DOUBLE;
-  cholmod_solve2(CHOLMOD_A, factor_->factor, &B, nullptr, &factor_->solution, nullptr, &factor_->work_y,
-                 &factor_->work_e, &factor_->common);
-  factor_->require("solution");
-  const double* x = static_cast<const double*>(factor_->solution->x);
-  for (int i = 0; i < n; ++i) std::copy_n(&x[3 * rank(i)], 3, &b[3 * i]);
+  if (!factor_->is_double && !factor_->iterate() && !factor_->factorize_in_double()) return false;
+  if (factor_->is_double) factor_->solve_in_double();
+  for (int i = 0; i < n; ++i) std::copy_n(&factor_->x[3 * rank(i)], 3, &b[3 * i]);
+  return true;
 }
 
-std::int64_t Cholesky::factor_size() const { return std::int64_t(factor_->factor->xsize); }
+std::int64_t Cholesky::factor_size() const { return factor_->single.size(); }
+int Cholesky::repeated_in_double() const { return factor_->repeated; }
 double Cholesky::factor_operations() const { return factor_->operations; }
 
 }  // namespace limber

@@ -3,8 +3,12 @@
 // method is supernodal Cholesky factorization [Chen, Davis, Hager & Rajamanickam 2008, CHOLMOD] with nested dissection
 // of the node graph [Karypis & Kumar 1998, METIS]. A graph is ordered and analysed once, then factorized for any number
 // of values. When the next graph differs little, the previous elimination order is adapted to it (elimination_tree.h);
-// a new order is computed when the adapted one makes factorizations more than a sixth more expensive. All work runs on
-// one thread, so that results do not depend on the number of threads.
+// a new order is computed when the adapted one makes factorizations more than a sixth more expensive.
+//
+// The factor is computed in single precision (float_factor.h), in half the time and memory, and preconditions conjugate
+// gradients in double precision. Where single precision does not suffice, because a matrix is too ill-conditioned, the
+// matrix is factorized again in double precision by CHOLMOD. All work runs on one thread, so that results do not depend
+// on the number of threads.
 #pragma once
 
 #include <cstdint>
@@ -67,11 +71,14 @@ class Cholesky {
   // Factorizes the matrix. Returns false when the matrix is not positive definite; then solve() must not be called.
   bool factorize();
   // Solves the system in place: `b` holds the right-hand side, then the solution, 3 numbers per node in the graph's
-  // order. Call it after factorize() returned true.
-  void solve(std::span<double> b);
+  // order. The error is at most 1e-10 of the solution, both measured by the energy x^T A x. Call it after factorize()
+  // returned true. Returns false, without a solution, when the matrix turns out not to be positive definite.
+  bool solve(std::span<double> b);
 
-  std::int64_t factor_size() const;  // count of numbers in the factor, 8 bytes each
+  std::int64_t factor_size() const;  // count of numbers in the factor, 4 bytes each, or 8 in double precision
   double factor_operations() const;  // approximate number of floating point operations of a factorization
+  // Number of factorizations so far that had to be repeated in double precision.
+  int repeated_in_double() const;
 
  private:
   struct Factor;

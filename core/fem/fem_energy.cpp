@@ -196,8 +196,7 @@ bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodeP
 
   const CpuTimer timer(seconds_.factorization);
   ++factorizations_;
-  if (!matrix_->factorize()) return false;
-  matrix_->solve(right_side_);
+  if (!matrix_->factorize() || !matrix_->solve(right_side_)) return false;
 
   slope = 0;
   for (std::size_t k = 0; k < node_of_.size(); ++k) {
