@@ -222,7 +222,7 @@ class Step {
   void add_free(const Pair& pair) { add(pair, glm::dmat3(1)); }
 
   // Adds the priors on the rotations and stretches of bones.
-  //   share  factor on the priors' normal weight
+  //   share  factor on the weights of all these priors
   void add_likings(double share = 1) {
     const Armature& rig = m_.atlas().rig;
     for (int b = 0; b < m_.bone_count(); ++b) {
@@ -230,7 +230,7 @@ class Step {
       if (turn_at_[b] < 0 || parent < 0) continue;
       const glm::dvec3 r = rotation_vector(glm::transpose(m_.turn[parent]) * m_.turn[b]);
       const double spread = spread_of_turn(rig.bones[b].name), w = share / (spread * spread);
-      // direction: unit vector in the parent's rest frame
+      // Adds a prior against a rotation about `direction`, a unit vector in the parent's rest frame.
       const auto like = [&](const glm::dvec3& direction, double weight) {
         const glm::dvec3 row = m_.turn[parent] * direction;
         for (int i = 0; i < 3; ++i) {

@@ -119,6 +119,7 @@ double residual(const Mannequin& mannequin, const FitSurface* skin, const FitSur
 
 // Returns for each bone of the atlas the share of its points that are within `near` mm of the surface, [0, 1]; -1 for a
 // bone without points.
+//   bones  true: the atlas's points on bones are compared; false: those on the skin
 std::vector<double> share_near(const Mannequin& mannequin, const FitSurface& surface, bool bones, double near);
 
 }  // namespace limber

@@ -76,8 +76,8 @@ void take_best_start(Fitted& result, const FitTarget& target, std::vector<Manneq
 bool follow_rods(Mannequin& m, const FitTarget& target) {
   const double L = target.length;
   Mannequin rods = m;
-  // Anatomical bones are recognised after a few iterations, because ribs, skull and hip bones are far from the lines of
-  // any rig.
+  // After the first iterations at least this share of the bone tissue must be close to the segments. Anatomical bones
+  // have less, because ribs, skull and hip bones are far from the lines of any rig.
   constexpr double kNearlyAll = 0.9;
   FitStage stage{.iterations = 8, .wide = 0.02 * L, .narrow = 0.02 * L, .bone_share = 0.8, .stride = 6};
   fit_rods(rods, target.bone_cells, *target.skin, stage);

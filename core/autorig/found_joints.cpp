@@ -183,15 +183,16 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
     found.places[mark.bone] = glm::mix(found.places[mark.bone], mark.place, weight);
     JointFit& joint = found.how[mark.bone];
     joint.error = std::min(joint.error, glm::mix(joint.error, error, weight));
-    // The error increases if the girth landmark (from the limb's cross-sections) and the fit to the skin disagree. The
-    // fit may be shifted along the limb, and neither of the two supports a joint between their positions.
+    // If the girth landmark (from the limb's cross-sections) and the fit to the skin disagree, the joint may be at
+    // either position or between them. So the error increases with their distance.
     if (how == How::Girth && joint.how == How::Skin)
       joint.error = std::max({joint.error, (1 - weight) * off, 4 * weight * (1 - weight) * weight * off});
     if (weight > 0.5) joint.how = how;
   };
-  // Returns the weight of a girth landmark, [0, 1], as a function of its distance from the fitted joint. The fit to the
-  // skin is off along a limb by up to a tenth of the bone above, rarely more, so a landmark farther away does not
-  // belong to this joint. In a fit to rods the distance is ignored, because that fit does not locate the hand.
+  // Returns the weight of a girth landmark, [0, 1]. It falls with the distance of the landmark from the fitted joint: 1
+  // up to kSlides, 0 from kNever on, as shares of the length of the bone above. The fit to the skin is off along a limb
+  // by up to a tenth of this length, rarely more, so a farther landmark does not belong to this joint. In a fit to rods
+  // the distance is ignored, because that fit does not locate the hand.
   const auto believable = [&](const JointLandmark& mark) {
     constexpr double kSlides = 0.12, kNever = 0.24;
     const int above = rig.bones[mark.bone].parent;
@@ -233,9 +234,10 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   // because the limb bones of different bodies are much alike, while trunk bones are not. A ball joint gets the lowest
   // limit, because its shape alone identifies it.
   constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100, kLimbFarOff = 300;
-  // If the residual exceeds this share of the tissue's diagonal, every joint gets an error. Measured residuals: at most
-  // 0.011 on whole bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off,
-  // and more on limbs that were fitted the wrong way round.
+  // If the fit's residual exceeds kUnlike (share of the tissue's diagonal), every joint gets at least an error of
+  // kWrong times the excess, and far more if the excess is above kSteep. Measured residuals: at most 0.011 on whole
+  // bodies of other shapes, 0.015 on parts of bodies with joints 11 mm off, 0.019 with joints 50 mm off, and more on
+  // limbs that were fitted the wrong way round.
   constexpr double kUnlike = 0.013, kWrong = 6, kSteep = 0.004;
   const double unlike = std::max(0.0, (fitted.is_rods ? 0 : fitted.residual) / target.length - kUnlike);
   const double wrong = kWrong * unlike * target.length * (1 + unlike * unlike / (kSteep * kSteep));
@@ -247,8 +249,9 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                                                  : kFewOfLimb;
     return (in_limb ? kLimbFarOff : kFarOff) * std::max(0.0, few - near[b]);
   };
-  // Fingers far from the skin may belong to a hand that was fitted with the wrong rotation, so the error of finger
-  // joints is increased.
+  // Fingers far from the skin may belong to a hand that was fitted with the wrong rotation. If less than kHandShare of
+  // the fingers' points is near the skin, the missing share times kHandFarOff mm is added to the error of every finger
+  // joint.
   constexpr double kHandShare = 0.85, kHandFarOff = 120;
   if (!fitted.is_capsules) {
     const double lost = kHandFarOff * std::max(0.0, kHandShare - hands_near(m, target));
@@ -268,8 +271,9 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
 }
 
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
-  // Part of a joint's shift that the joints below do not follow, as a share of the tissue's diagonal. A shift this
-  // small only means another convention for the joint's position between the same two bones.
+  // The joints below a named joint move with it by its shift, less this share of the tissue's diagonal. They do not
+  // follow a smaller shift, which only means that the joint's position between the same two bones is defined
+  // differently.
   constexpr double kElsewhere = 0.009;
   std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
   std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);
@@ -289,12 +293,12 @@ void take_named(FoundJoints& found, const Armature& rig, const std::vector<Named
 
 void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints& found,
                      std::vector<std::string>& warnings) {
-  // kNear: a joint within this distance of a cut plane counts as near it, as a share of the tissue's diagonal.
-  // kStrange: if the error of a joint is above this, mm, the body does not have the atlas's shape there.
+  // A joint within kNear of a cut plane (share of the tissue's diagonal) becomes uncertain, unless its error is at most
+  // kStrange mm, as in a body of the atlas's shape.
   constexpr double kNear = 0.05, kStrange = 5;
   // Error of a joint in a cut plane, mm, and increase of the error per mm beyond the plane.
   constexpr double kLeast = 36, kGrowth = 0.33;
-  constexpr double kSureBall = 12;  // error below which a ball joint counts as certain even near a cut, mm
+  constexpr double kSureBall = 12;  // a ball joint with a smaller error stays certain near a cut, mm
   const Armature& rig = fitted.atlas->rig;
   const std::vector<std::uint8_t> seen = seen_bones(fitted, target);
   std::string unseen, doubted;
@@ -323,7 +327,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
       if (!is_digit(rig.bones[b].name)) list(doubted, b);
     }
   }
-  // A joint next to an uncertain joint is uncertain too: it gets a share of the neighbour's error, and less confidence.
+  // A joint next to an uncertain joint is uncertain too: its error is at least a share of the neighbour's error, of
+  // which at most kMaxErrorMm counts, and its confidence is multiplied by kLessConfidence.
   constexpr double kShareOfNeighboursError = 0.35, kMaxErrorMm = 100, kLessConfidence = 0.6;
   const std::vector<JointFit> own = found.how;
   const auto is_doubted = [&](int b) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds joints by shape alone, whatever the proportions of the body that was fitted:
 //   girth  A limb's cross-section is smallest slightly above the elbow, at the knee and slightly above the wrist. The
-//          neck begins where the section is twice its smallest section. The distance from there to the joint is a share
-//          of the bone's length, as measured on segmented adults.
+//          neck begins where its section is twice its smallest section. The joint is at a distance from this section of
+//          the limb or neck that is a fixed share of the bone's length, as measured on segmented adults.
 //   balls  The heads of humerus and femur are spheres whose centres are the joints: every point of the bone surface
 //          votes for the centres that are behind it along its normal [Ballard 1981, generalized Hough transform;
 //          Cameron et al. 1997 on the hip as the centre of its head].

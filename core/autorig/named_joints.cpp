@@ -113,7 +113,7 @@ constexpr Meeting kMeetings[] = {
 };
 
 // Returns the two parts of the skeleton that meet at the head of a finger's bone; none for other bones.
-//   above  out: storage of the name to which the result points
+//   above  out: the name of the upper part, to which the returned `above` points, so it must live as long as the result
 std::optional<Meeting> finger_meeting(const std::string& bone, std::string& above) {
   for (const char* finger : {"Thumb", "Index", "Middle", "Ring", "Little"}) {
     const std::string f = finger;
@@ -313,7 +313,7 @@ struct Finder {
     if (meeting.ball) {
       const bool is_hip = std::string(meeting.bone) == "Thigh";
       const double scale = below->length / (is_hip ? kAdultFemur : kAdultHumerus);
-      // kBallAway: upper limit on the distance of the ball's centre from the contact of the bones. kBallError,
+      // kBallAway: a ball whose centre is farther than this from the contact of the bones is not used. kBallError,
       // kShoulderError: error of the joint at the hip and at the shoulder. All in mm, for an adult.
       constexpr double kBallAway = 40, kBallError = 5, kShoulderError = 13;
       // The ball's expected size is proportional to the bone's length. A bone that is cut off looks short, so its ball
@@ -329,7 +329,8 @@ struct Finder {
 };
 
 // Adds the joint at the head of the pelvis bone, between the hips. Its offset from the hips' midpoint is half of the
-// mannequin's offset, because some rigs place the joint exactly in the midpoint.
+// mannequin's offset, because some rigs place the joint exactly in the midpoint. Its error is that of the hips, plus
+// kError mm, plus kOfWidth of the distance between the hips.
 void add_hips(const Mannequin& m, std::vector<NamedJoint>& joints) {
   constexpr double kError = 4, kOfWidth = 0.07;
   const auto at = [&](const char* name) {
@@ -404,8 +405,8 @@ void lay_along(Mannequin& m, const std::vector<NamedJoint>& joints) {
       auto& [sum, count] = stretch[m.group_of(b)];
       sum += std::log(glm::distance(here, place[next]) / rest), ++count;
     }
-  // Upper limit on the change of a bone's length against the atlas, as a natural logarithm; larger changes are not
-  // plausible.
+  // A group of bones keeps its length if the natural logarithm of its change against the atlas exceeds this: such a
+  // change is not plausible.
   constexpr double kMost = 1.2;
   for (const auto& [group, mean] : stretch)
     if (const double s = mean.first / mean.second; std::abs(s) < kMost)
