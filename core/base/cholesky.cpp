@@ -26,7 +26,9 @@ namespace {
 constexpr double kMostMended = 0.125;
 // Upper limit on the count of numbers in a factor: CHOLMOD counts them by int.
 constexpr std::size_t kMostNumbers = INT32_MAX;
-constexpr double kDearer = 1.16;  // upper limit on the operations with an adapted order, relative to the last new order
+// A new elimination order is computed if a factorization with the adapted order takes more operations than this
+// multiple of those with the last new order.
+constexpr double kDearer = 1.16;
 constexpr double kAccuracy = 1e-10;  // conjugate gradients end when the error is below this share of the solution
 // Conjugate gradients that have not converged after so many iterations show that single precision does not suffice.
 constexpr int kMostIterations = 24;
@@ -89,7 +91,7 @@ void BlockGraphBuilder::add(std::span<const int> element) {
 }
 
 BlockGraph BlockGraphBuilder::build(const BlockGraph& base) const {
-  // Lists the elements that contain each node.
+  // Lists the elements that contain each node: those of node i are element[first[i]] to element[first[i + 1] - 1].
   std::vector<std::int64_t> first(node_count_ + 1, 0);
   for (int node : node_) ++first[node + 1];
   for (int i = 0; i < node_count_; ++i) first[i + 1] += first[i];
@@ -132,7 +134,7 @@ struct Cholesky::Factor {
   std::vector<int> rank;                     // position of each node in the elimination order
   std::vector<int> parent;                   // for each rank, the parent's rank in the elimination tree; #nodes
   double fresh_operations = 0;               // operations of a factorization of the node graph with the last new order
-  std::vector<std::int64_t> below_first{0};  // for each rank, the first index into `below`; #nodes + 1
+  std::vector<std::int64_t> below_first{0};  // for each rank, the index in `below` of its first entry; #nodes + 1
   std::vector<int> below;        // ranks of the block rows below the diagonal, rising within each block column
   std::vector<int> column, row;  // positions of the matrix's entries in compressed columns, by rank
   std::vector<double> value, right_side;

@@ -26,8 +26,8 @@ class BlockGraphBuilder {
  public:
   explicit BlockGraphBuilder(int node_count) : node_count_(node_count) {}
   void add(std::span<const int> element);
-  // Returns the graph of all added elements, together with the edges of `base`. That graph is empty or has the same
-  // number of nodes.
+  // Returns the graph of all added elements, together with the edges of `base`. `base` is empty or has the same number
+  // of nodes.
   BlockGraph build(const BlockGraph& base = {}) const;
 
  private:

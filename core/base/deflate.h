@@ -24,7 +24,8 @@ class Inflater {
   // step writes no bytes.
   Step inflate(std::string_view packed, void* to, std::size_t room);
   bool ended() const { return ended_; }  // true after the end of the stream, if its checksum was right
-  // Returns how many of the bytes consumed last lie beyond the end of the stream. Call it when ended() is true.
+  // Returns how many of the input bytes that the last inflate() consumed lie beyond the end of the stream. Call it when
+  // ended() is true.
   std::size_t behind() const { return behind_; }
   void start_next();  // resets the object for another stream
 

@@ -4,10 +4,10 @@
 //
 // In the elimination tree [Liu 1990, SIAM J. Matrix Anal. Appl. 11] the later eliminated neighbours of a node are its
 // ancestors. So nodes of two different branches are not neighbours, and no fill arises between them. A new edge between
-// two branches would join the branches upwards from that end of the edge that is eliminated first, which may double the
-// cost of a factorization. Instead, one end of the edge is moved out of its branch and eliminated after both branches,
-// as a part of their separator. When few nodes gain edges, as where skin touches skin, this is as good as a new
-// dissection of the whole graph and takes a tenth of the dissection's time.
+// two branches would join the branches, from that end of the edge that is eliminated first up to the root, which may
+// double the cost of a factorization. Instead, one end of the edge is moved out of its branch and eliminated after both
+// branches, as a part of their separator. When few nodes gain edges, as where skin touches skin, this is as good as a
+// new dissection of the whole graph and takes a tenth of the dissection's time.
 #pragma once
 
 #include <cstdint>

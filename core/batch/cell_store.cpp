@@ -107,7 +107,8 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
-// Returns true if the folder contains a complete result with this key.
+// Returns true if the folder contains a complete result whose cell.json has this key, the hash of all that it depends
+// on.
 bool is_done(const Path& folder, const std::string& key) {
   if (!fs::exists(folder / "cell.json")) return false;
   const Json json = read_facts(folder / "cell.json");
@@ -124,7 +125,7 @@ StoredCell found(const Path& folder, const std::string& key) {
 }
 }  // namespace
 
-// The inputs and bodies of a store's cells, as far as they are already in the store.
+// The inputs and bodies of a store's cells that this program has used so far.
 struct CellStore::Parts {
   struct Body {
     std::string name, key;  // the folder's name, and the hash of everything that the body depends on
@@ -203,12 +204,13 @@ struct CellStore::Parts {
     return output;
   }
 
-  // Runs `work` in the working folder. Returns why it failed; "" if it did not. Throws Error if the disk is full.
+  // Runs `work` in the working folder. Returns the reason if `work` fails, "" if it succeeds or if another program has
+  // made the folder `place` meanwhile. Throws Error if the disk is full.
   std::string failure_of(const WorkFolder& into, const Path& place, const std::function<void()>& work) const {
     try {
       work();
     } catch (const Error& error) {
-      if (fs::exists(place)) return {};  // another program has computed it in the meantime
+      if (fs::exists(place)) return {};  // another program has computed the same in the meantime
       if (!into.has_room())
         throw Error("the results cannot be written", folder.string(), "make room on the disk, then run the same again");
       return error.what();

@@ -65,14 +65,14 @@ class CellStore {
 
   // Looks for the cell in the store without computing anything. The state is WasThere or Missing.
   StoredCell find(const CellRequest& request);
-  // Computes the cell and, if they are not in the store, the volume and weights of its body. With IfBusy::Leave the
-  // state is Busy if another program is computing one of them. Throws Error if the disk is full, since then no other
-  // cell could be computed either. Throws Cancelled if the user cancels.
+  // Computes the cell, and first the volume and the weights of its body if they are not in the store. With
+  // IfBusy::Leave the state is Busy if another program is computing one of these. Throws Error if the disk is full,
+  // since then no other cell could be computed either. Throws Cancelled if the user cancels.
   //   finish  called with the cell's working folder after the job, to add files made from the job's outputs
   StoredCell compute(const CellRequest& request, IfBusy if_busy, Progress& progress,
                      const std::function<void(const WorkFolder&)>& finish = {});
-  // find_export() looks for an export of a cell (a file of another format, made from its posed volume) in exports/; the
-  // other function computes it.
+  // find_export() looks in exports/ for an export of a cell (a file of another format, made from its posed volume).
+  // compute_export() computes the export.
   //   job  JSON object for `limber job`, with file names in the export's folder; its input is the cell's posed volume
   StoredCell find_export(const StoredCell& cell, const std::string& name, const std::string& job) const;
   StoredCell compute_export(const StoredCell& cell, const std::string& name, const std::string& job, IfBusy if_busy,

@@ -43,17 +43,17 @@ class Description {
   // Returns the values of the list under a key, or none if the key is absent. Throws Error if the value is not a list,
   // or an empty list.
   std::vector<Description> list(const std::string& key) const;
-  // Returns the object under a key.
+  // Returns the object under a key. The key must exist: see has().
   Description object(const std::string& key) const;
 
-  // Return this value itself.
+  // Return this value as a text that is not empty, or as a number in [least, most].
   std::string as_text() const;
   double as_number(double least, double most) const;
 
   [[noreturn]] void refuse(const std::string& what, const std::string& what_to_do) const;
-  // Throws Error for the value under a key.
+  // Throws Error with `what` is wrong, the position of the value under a key, and what the user should do.
   [[noreturn]] void refuse(const std::string& what, const std::string& key, const std::string& what_to_do) const;
-  std::string where(const std::string& key = "") const;  // "FILE, poses, number 1, flex": for messages
+  std::string where(const std::string& key = "") const;  // text for messages: "FILE, poses, number 1, flex"
 
  private:
   struct File;

@@ -23,7 +23,7 @@ struct Technique {
 };
 std::vector<Technique>
 plain_techniques();             // all techniques without the correction that keeps the volume of each soft tissue
-std::string technique_words();  // the words of these techniques: "mix, lbs, dqs, fem, fem-contact"
+std::string technique_words();  // the words of plain_techniques(): "mix, lbs, dqs, fem, fem-contact"
 std::string word_of(
     const Technique& technique);  // "fem-contact", "fem-mass-exact": the word in descriptions, folder names and tables
 std::string title_of(const Technique& technique);  // returns text such as "FEM with contact", "FEM, mass-exact"

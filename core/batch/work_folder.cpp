@@ -54,7 +54,7 @@ bool WorkFolder::claim() {
   const auto mine = opened.status(), there = status_of_file(lock_);
   if (!mine || !there || mine->number != there->number) return false;
   locked_ = std::move(opened);
-  if (fs::exists(place_)) {  // another program made it before this one got the lock
+  if (fs::exists(place_)) {  // another program made the finished folder before this one got the lock
     release();
     return made_ = true;
   }
@@ -66,9 +66,9 @@ bool WorkFolder::claim() {
   return true;
 }
 
-// The lock folder contains one file for each working folder, with its name without the dot. Removes the working folders
-// that programs of this machine made: these programs are dead, since this program has the lock. Programs of other
-// machines may still be alive, because some shared disks do not pass on locks.
+// Removes the working folders that programs of this machine made: these programs are dead, since this program has the
+// lock. Programs of other machines may still be alive, because some shared disks do not pass on locks. The working
+// folders are found by the files in the lock folder, which have the same names without the first dot.
 void WorkFolder::remove_leftovers() const {
   const std::string start = place_.filename().string() + "." + machine_prefix();
   for (const auto& entry : fs::directory_iterator(lock_)) {

@@ -23,7 +23,7 @@ namespace limber {
 std::optional<GlideSettings> glide_settings(const std::string& word, double voxel, const std::string& where);
 
 // Shifts the joints of each pose so that bones do not enter each other, and returns the shifted joints of each pose.
-// Also changes `weights` so that bone tissue moves rigidly, as resampling does.
+// Also changes `weights`: afterwards every voxel of bone follows one rig bone alone (with_rigid_bones()).
 std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, const GlideSettings& settings,
                                                   const Body& body, const Armature& rig, const TissueVoxels& tissue,
                                                   SkinWeights& weights, Progress& progress);

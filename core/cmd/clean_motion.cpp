@@ -103,7 +103,7 @@ void print_plants(const std::vector<Plant>& plants, const Armature& rig, const s
   }
 }
 
-// Prints a warning for each plant whose position the limb does not reach.
+// Prints a warning for each plant (a position at which a limb must stay) that the limb does not reach.
 void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, const std::vector<PlantedLimb>& limbs,
                          const std::vector<Pose>& poses) {
   constexpr double kOff = 3;  // mm; smaller distances from the position cause no warning

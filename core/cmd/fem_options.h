@@ -30,8 +30,8 @@ std::string given_fem_option(const FemOptions& options);
 // Throws Error for a bad value or file.
 std::vector<FemObject> objects_of(const FemOptions& options);
 
-// Returns the acceleration of gravity, m/s2, in the direction of --gravity X,Y,Z. The length of this vector does not
-// matter.
+// Returns the acceleration of standard gravity, m/s2, in the direction X,Y,Z of the option --gravity, which may have
+// any length. Zero without the option.
 glm::dvec3 gravity_of(const FemOptions& options);
 
 // Writes the skin nodes on which objects press to a CSV file, one row for each node.

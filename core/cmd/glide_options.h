@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The option --glide off|voxel|joint|MM: how far joints may glide (translate) so that bones do not enter each other
-// (core/body/glide_poses.h). The default depends on the pose options. If only joint angles are given (--joint, --flex,
-// --pose-name), the positions of bones are open, and the default is `joint`. A pose file or a motion gives the
-// positions of this rig's bones, and the result should match what the user saw before, such as the editor's live view
-// or feet on the floor; so the default is `voxel`.
+// (core/body/glide_poses.h). The default depends on the pose options. Joint angles alone (--joint, --flex, --pose-name)
+// do not determine the positions of bones, so the default is `joint`. A pose file or a motion gives the positions of
+// this rig's bones, and the result should match what the user saw before, such as the editor's live view or feet on the
+// floor; so the default is `voxel`.
 #pragma once
 
 #include <string>

@@ -11,7 +11,8 @@ namespace limber::cmd {
 
 namespace {
 
-// An XML element with its attributes, and the file endings that Slicer offers.
+// The XML element that describes an option to Slicer: its name and its attributes, such as the endings of files to
+// select.
 struct Element {
   std::string name, attributes;
 };
@@ -19,7 +20,8 @@ const Element kLabels{"image", R"( type="label")"}, kScalars{"image", ""}, kFiel
 
 Element file_of(const std::string& endings) { return {"file", R"( fileExtensions=")" + endings + '"'}; }
 
-// Returns the kind of content of input options, by name. Other outputs are files, other inputs are texts.
+// inputs() and outputs() return the XML elements of the options that name volumes or files, by the option's name. Every
+// other output is described as a file, every other input as a text.
 const std::map<std::string, Element>& inputs() {
   static const std::map<std::string, Element> kInputs = {
       {"VOLUME", kLabels},

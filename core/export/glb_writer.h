@@ -39,7 +39,9 @@ class GlbData {
   int add(const std::vector<glm::mat4>& values, Use use = Use::Any);
   int add(const std::vector<std::array<std::uint16_t, 4>>& values, Use use = Use::Any);
   int add(const std::vector<std::uint32_t>& values, Use use = Use::Any);
-  int add_places(const std::vector<glm::vec3>& places);  // appends vertex positions, with their bounds, as add()
+  // Appends vertex positions with their least and largest values, which glTF requires. Returns the index of their
+  // accessor.
+  int add_places(const std::vector<glm::vec3>& places);
   Accessor& accessor(int index) { return accessors_[static_cast<std::size_t>(index)]; }
 
   // Returns the bytes of the .glb file. Throws Error for more than 4 GB.

@@ -13,8 +13,8 @@ namespace limber {
 // Gives the label to all voxels at most `mm` from a voxel with the label, if the mask allows their change.
 LabelChange grown_label(const LabelVolume& volume, Label label, double mm, const EditMask& mask,
                         Progress& progress = no_progress());
-// Removes the label from its voxels that are at most `mm` from a voxel of another label. The grid's border counts as no
-// other label, so the label does not shrink from it.
+// Removes the label from its voxels that are at most `mm` from a voxel of another label. Voxels outside the grid have
+// no label, so the label does not shrink from the grid's border.
 LabelChange shrunk_label(const LabelVolume& volume, Label label, double mm, Erased erased,
                          Progress& progress = no_progress());
 

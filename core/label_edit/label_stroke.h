@@ -32,8 +32,8 @@ struct LabelStrokeSettings {
 class LabelStroke {
  public:
   // Paints on a copy of the volume, which must not be null. Throws std::logic_error for a radius that is not positive.
-  //   copy  a copy of the volume that was made earlier, since copying a body takes longer than a dab; nobody else may
-  //         change it. null: the volume is copied now
+  //   copy  a copy of the volume that was made earlier, which nobody else may change: copying takes longer than
+  //         painting one ball. null: the volume is copied now
   LabelStroke(std::shared_ptr<const LabelVolume> before, LabelStrokeSettings settings,
               std::shared_ptr<LabelVolume> copy = nullptr);
 
@@ -42,7 +42,7 @@ class LabelStroke {
   void to(const glm::dvec3& point);
   void lift() { last_.reset(); }
 
-  // Returns the volume with everything painted so far. It changes with every call of to().
+  // Returns the volume with everything painted so far. Every call of to() changes this volume.
   const std::shared_ptr<const LabelVolume>& volume() const { return shown_; }
   const std::shared_ptr<const LabelVolume>& before() const { return before_; }
   // Returns the box of voxels that the last call of to() may have changed; size 0: nothing changed.

@@ -54,7 +54,8 @@ struct Parts {
   }
   std::uint8_t& side_of(const glm::ivec3& v) { return side[static_cast<std::size_t>(box.index(v))]; }
 
-  // Marks all voxels connected to the seeds. Returns their number. Throws Error if it reaches voxels of the other side.
+  // Marks all voxels of the label that are connected to the seeds `open`, and returns their number. Throws Error if one
+  // of them already has the mark of the other side.
   std::int64_t flood(std::vector<glm::ivec3> open, std::uint8_t mark) {
     std::int64_t count = 0;
     std::erase_if(open, [&](const glm::ivec3& v) {

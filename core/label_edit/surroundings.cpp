@@ -83,7 +83,8 @@ class Votes {
   }
 
  private:
-  // Value of one vote; more than the sum of the bonuses of six neighbours that share a face.
+  // Each neighbour adds this number to its label, and 1 more if it shares a face with the voxel. The number exceeds 6,
+  // so shared faces decide only between labels with equally many neighbours.
   static constexpr int kWhole = 32;
   std::array<Label, 26> labels_{};
   std::array<int, 26> rank_{};

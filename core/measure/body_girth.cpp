@@ -15,12 +15,14 @@ namespace limber {
 
 namespace {
 
-constexpr double kBeside = 2;     // largest distance of the point from the body, voxels
-constexpr int kMostCells = 4096;  // upper limit on the number of cells of the plane along each axis
-constexpr double kFine = 0.5;     // cell size for the tape that is returned, in shortest voxel edges
-constexpr double kCoarse = 2;     // cell size while planes are compared, in shortest voxel edges
-constexpr int kPlanes = 64;       // number of planes that are compared first
-// First and last step of the search for the plane of least girth, radians.
+constexpr double kBeside = 2;  // a point farther than this from tissue is refused, voxels
+// The cells are enlarged so that the plane has about this many along each axis at most.
+constexpr int kMostCells = 4096;
+constexpr double kFine = 0.5;  // cell size for the tape that is returned, in shortest voxel edges
+constexpr double kCoarse = 2;  // cell size while planes are compared, in shortest voxel edges
+constexpr int kPlanes = 64;    // number of planes that are compared first
+// The angle by which the search tilts the plane of least girth: kFirstTurn at first, then halved down to kLastTurn,
+// radians.
 constexpr double kFirstTurn = 0.12, kLastTurn = 0.01;
 
 bool is_tissue(Label label) { return label != 0; }

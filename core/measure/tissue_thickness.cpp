@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kDirections = 400;
 constexpr double kStep = 0.25;  // step along a line, in shortest voxel edges
-// First and last rotation in the search for the least length, radians.
+// The angle by which the search rotates the shortest line: kFirstTurn at first, then halved down to kLastTurn, radians.
 constexpr double kFirstTurn = 0.08, kLastTurn = 0.005;
 
 // Bundles of parallel lines through one point of a tissue.
