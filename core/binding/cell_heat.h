@@ -23,7 +23,7 @@ constexpr int kScoutCoarsenings = 2;
 struct CellSource {
   std::int32_t cell;
   float conductance;
-  float on_scout;  // the part of it that counts in the scout cell that contains the cell
+  float on_scout;  // the part of `conductance` that counts in the scout cell that contains the cell
 };
 
 // Returns the sources of each bone. Also adds the conductances of heat at a distance to the diagonal of the cells'

@@ -12,8 +12,9 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 64;     // number of bricks in one block of a parallel loop
-constexpr float kLeastDistance = 0.5f;  // lower limit on the distance between linked cells' centres, voxels
+constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
+// A shorter distance between the centres of linked cells, or from a centre to a bone, counts as this, voxels.
+constexpr float kLeastDistance = 0.5f;
 
 // Index offset along each axis in a cube of 3 x 3 x 3 values, and the index of the cube's middle.
 constexpr std::array<int, 3> kStep{1, 3, 9};
@@ -185,7 +186,7 @@ class BrickInterpolation {
     }
   }
 
-  // Sum over the sides of a cell that touch bones, in one direction.
+  // For the sides of a cell that touch bones in one direction: the sum of their conductances, and the largest distance.
   struct Held {
     float conductance = 0, distance = 0;  // distance from the cell's centre to the bone, voxels
   };

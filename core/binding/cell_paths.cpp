@@ -10,9 +10,10 @@
 namespace limber {
 
 namespace {
-// The cells are divided into fixed domains; a domain contains the cells of a range of bricks. Threads advance the
-// fronts of different domains at the same time, by one step of path length. Paths from one domain into another are sent
-// and accepted in a fixed order, so that the result does not depend on the number of threads.
+// The cells are divided into at most kMostDomains fixed domains; a domain contains the cells of a range of at least
+// kLeastBricks bricks. Threads advance the fronts of different domains at the same time, by one step of path length.
+// Paths from one domain into another are sent and accepted in a fixed order, so that the result does not depend on the
+// number of threads.
 constexpr std::int64_t kLeastBricks = 256, kMostDomains = 64;
 // Width of a bucket of path lengths, as a share of the shortest edge of a cell. Paths in one bucket may be advanced in
 // any order.

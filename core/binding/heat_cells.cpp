@@ -9,9 +9,10 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 64;     // number of bricks in one block of a parallel loop
-constexpr int kMostShift = 3;           // blocks have at most 2^3 = 8 voxels along an axis, the size of a brick
-constexpr float kLeastDistance = 0.5f;  // lower limit on the distance from a cell's centre to its border, voxels
+constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
+constexpr int kMostShift = 3;        // blocks have at most 2^3 = 8 voxels along an axis, the size of a brick
+// A shorter distance from a cell's centre to a face or to another centre counts as this, voxels.
+constexpr float kLeastDistance = 0.5f;
 
 class CellMaker {
  public:
@@ -200,7 +201,7 @@ class CellMaker {
       const std::int32_t cell = cells_.cell(brick, number);
       for (int direction = 0; direction < 6; ++direction) {
         const int there = here + BrickWindow::kTo[direction], axis = direction >> 1;
-        // The face is inside the cell, or a seam cuts it.
+        // Skips a face inside the cell or a face that a seam cuts.
         if (block_of_[there] == block_of_[here] && window.soft[there] > 0) continue;
         const std::int32_t beyond = window.place[there];
         if (beyond < 0 || window.is_cut(v, direction)) continue;

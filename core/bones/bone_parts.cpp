@@ -22,7 +22,8 @@ namespace {
 
 // Amount, in voxels, by which rounding to voxels makes the height along the smooth ridge of a thick tube vary.
 constexpr double kWiggleVoxels = 0.6;
-// Upper limit on the number of basins times the number of rig bones; at the limit, the distances take 64 MB.
+// If there are more basins times rig bones than this, small basins are merged first: for each such pair a distance is
+// stored, and at this limit all distances take 64 MB.
 constexpr std::int64_t kMostDistances = 16'000'000;
 
 // Cuts a basin of the watershed that contains at least half the length of each of several rig bones: the bones of such
@@ -282,8 +283,9 @@ class Pieces {
     return nearest;
   }
 
-  // Corrects the distances from basins to rig bones for voxels beyond a joint. The distance to the bone beyond the
-  // joint is reduced to the distance to the bone before the joint, and the latter is increased.
+  // Corrects the distances from basins to two rig bones that meet at a joint, for voxels beyond the joint: the distance
+  // to the bone beyond the joint is reduced to that to the bone before it. Then the distance to the bone before the
+  // joint is increased.
   void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
     // Number of voxels beyond a joint, by basin, rig bone before the joint and rig bone beyond the joint.
     std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;

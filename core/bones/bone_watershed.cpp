@@ -134,7 +134,8 @@ class BoneMasks {
   }
 
  private:
-  // Finds three voxels in a row along x.
+  // Writes to `found` the indices in the graph of three voxels in a row along x, with `middle` in the middle; kNotBone
+  // or kOutside for a voxel that is not in the graph.
   void find_row(const glm::ivec3& middle, std::int32_t* found) const {
     const int x = middle.x & 7, z = middle.z & 7, lowest = x - 1 + 8 * (middle.y & 7);
     if (x == 0 || x == 7 || !grid_.contains(middle) || middle.x + 1 == grid_.size.x) {

@@ -88,7 +88,8 @@ void gather_parts(const BoneGraph& graph, const Hugging& hugging, const ZeroedVe
     if (const auto [at, is_new] = largest.insert({bone[root], root}); !is_new && sum.voxels > sums[at->second].voxels)
       at->second = root;
 
-  constexpr int kMostParts = 60'000;  // upper limit on the number of parts, because part numbers are stored in 16 bits
+  // Once there are this many parts, pieces join their bone's largest part: part numbers have 16 bits.
+  constexpr int kMostParts = 60'000;
   std::map<std::int32_t, int> part_of_piece;
   for (const auto& [root, sum] : sums) {
     const std::int32_t home = largest.at(bone[root]);

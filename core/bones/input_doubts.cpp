@@ -236,8 +236,7 @@ std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, 
   return own;
 }
 
-// Returns a doubt about a label that should hold a single bone but of which a good part lies along another bone.
-// The voxels of labels that hold a single bone of an arm or leg.
+// The voxels of the labels that hold a single bone of an arm or leg.
 struct LabelledVoxels {
   std::map<Label, std::int64_t> count;
   // Voxels along the middle of another rig bone, by label and rig bone.
@@ -276,6 +275,7 @@ LabelledVoxels count_elsewhere(const LabelVolume& volume, const std::map<Label, 
   return all;
 }
 
+// Returns a doubt about a label that should hold a single bone but of which a good part lies along another bone.
 std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const TissueTable& tissues,
                                               const Armature& armature) {
   const std::map<Label, std::vector<int>> own = single_limb_bones(tissues, armature);

@@ -39,9 +39,9 @@ constexpr double kSideShaft = 0.5;
 // A cut is uncertain if the ratio of its area to the thinner bone's cross-section is at least this. Bones with open
 // joints, even if they touch in scans of 1 to 3 mm, have smaller ratios.
 constexpr double kBroad = 1.5;
-constexpr double kMarrow = 4;   // factor on the weight of cut area through marrow
-constexpr double kBall = 0.02;  // smallest radius of a joint's ball, share of the length of the bone with the ball
-constexpr double kLargestBall = 0.1;  // largest radius of a joint's ball, share of the length of the bone with the ball
+constexpr double kMarrow = 4;         // factor on the weight of cut area through marrow
+constexpr double kBall = 0.02;        // a ball with a smaller radius is ignored; share of the length of its bone
+constexpr double kLargestBall = 0.1;  // a larger radius of a ball is cut to this; share of the length of its bone
 constexpr double kBallCore = 0.8;     // tissue within this share of a ball's radius certainly belongs to the ball
 constexpr double kBallWidth = 0.5;    // radii from a ball at which cut area weighs as much as where shafts begin
 // Another child of the bone's parent may be attached along the bone, if its head is at least this share of the bone's

@@ -9,7 +9,8 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kMostSeen = 200'000;  // upper limit on the number of voxels visited for one piece
+// The search for bone near a piece ends once it has visited this many voxels.
+constexpr std::size_t kMostSeen = 200'000;
 // A bone voxel is nearby if it is at most this many times as far from the piece as the nearest bone voxel.
 constexpr int kNearby = 2;
 // A rig bone is much closer than another if its mean distance is less than this share of the other's.
