@@ -55,8 +55,8 @@ struct Lines {
   }
 };
 
-// Returns the minimum over j of f[j] + rise[|i - j|], for all lines at once. Skips bricks whose least values are too
-// large to give a smaller result.
+// Returns the least squared distance from position i of each line: the minimum over j of f[j] + rise[|i - j|], where
+// rise[n] is the squared length of n steps. Skips bricks whose least values are too large to give a smaller result.
 template <class Value>
 Across<Value> lowest_around(const Lines<Value>& lines, int i) {
   const int own = i / kBrick, bricks = static_cast<int>(lines.least.size());

@@ -19,7 +19,7 @@ constexpr double kLeastVolume = 0.1;  // cells whose posed volume is below this 
 // Lower limit on the length of the depth's gradient in a cell, mm per mm. A shorter gradient, as in the middle of a
 // limb, does not show the direction to the surface.
 constexpr double kLeastSlope = 0.3;
-constexpr double kFurthest = 3;  // upper limit on the motion that way_apart() returns, in cell edges
+constexpr double kFurthest = 3;  // way_apart() shortens longer motions to this, in cell edges
 constexpr std::int64_t kMostBins = 8'000'000;
 
 glm::dvec3 middle_of(const FleshCells& cells, std::int64_t cell, const std::vector<glm::dvec3>& at) {

@@ -19,7 +19,8 @@ struct Steps {
   int first, last;
 };
 Steps within(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& point, const glm::dvec3& next) {
-  constexpr double kMost = 1 << 20, kSlack = 1e-3;  // longest row, and tolerance for rounding errors; both in steps
+  // Points after the first kMost are left out. kSlack is a tolerance for rounding errors, in steps.
+  constexpr double kMost = 1 << 20, kSlack = 1e-3;
   double first = 0, last = kMost;
   for (int axis = 0; axis < 3; ++axis) {
     const double step = next[axis] - point[axis];

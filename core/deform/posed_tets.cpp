@@ -13,10 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kFurthest = 32000;  // largest coordinate, output voxels from the base; fixed point allows 32 768
-constexpr int kPosedBin = 16;        // edge of a search bin, voxels: a quarter of an output tile's edge
-// If a rider (a tissue voxel that sticks out of the mesh) and other tissue are at most this far apart at rest, voxels,
-// a crease may press them together: riders stick out by two voxels on both sides, and the crease is one voxel wide.
+// A pose that moves a node further from the base is refused, output voxels; fixed point allows 32 768.
+constexpr double kFurthest = 32000;
+constexpr int kPosedBin = 16;  // edge of a search bin, voxels: a quarter of an output tile's edge
+// A rider (a tissue voxel that sticks out of the mesh) and other tissue that cover one voxel do not count as
+// overlapping if they are at most this far apart at rest, voxels. A crease may press them together: riders stick out by
+// two voxels on both sides, and the crease is one voxel wide.
 constexpr int kCrease = 5;
 constexpr int kSide = TissueVoxels::kBrick + 1;
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kTile = 8;             // nodes along the edge of a tile; nodes are recomputed by tiles
 constexpr int kMargin = 3;           // rest points can be stored up to this distance outside the grid, cells
-constexpr double kFurthest = 32000;  // largest coordinate of a posed vertex, cells; fixed point allows 32 768
+constexpr double kFurthest = 32000;  // a pose that moves a vertex further is refused, cells; fixed point allows 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
 constexpr double kHeld = 2;  // vertices up to this distance from a tet mesh move with it, cells
 // Errors of a cell's trilinear map, in cells. An error below kNear is not corrected, an error up to kFar is corrected
@@ -31,7 +31,7 @@ constexpr double kFar = 1.0 / 8;
 // Largest ratio of the distance of two nodes' rest points to the distance of the nodes themselves. Nodes with a larger
 // ratio lie on different sheets of the body, as on the two sides of a fold.
 constexpr float kAcross = 2.5;
-constexpr std::int8_t kMostApart = CellPart::kStepApart;  // upper limit of the values in PreviewMap::apart
+constexpr std::int8_t kMostApart = CellPart::kStepApart;  // larger values are stored as this in PreviewMap::apart
 constexpr std::array<glm::ivec3, 8> kCorners = {
     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {1, 1, 1}}};
 

@@ -50,11 +50,12 @@ class ContactForm {
     double length;
     std::array<int, 4> node;  // nodes of the pair that limits the step, -1: none
   };
-  // Returns the largest share of `step`, up to `limit`, that brings no pair's two parts too near to each other.
+  // Returns the largest share of `step`, up to `limit`, after which every pair keeps enough of its distance: half of it
+  // for near pairs, less for distant ones (largest_step() in contact_surface.h).
   //   x, step, limit  as given to build_broad_phase(); limit may be smaller
   Bound largest_step(const NodePositions& x, const NodePositions& step, double limit) const;
 
-  // Marks the pairs whose two parts would come too near to each other in the whole `step`.
+  // Marks the pairs that the whole `step` would bring nearer to each other than largest_step() allows.
   //   x        the positions given to build_broad_phase()
   //   changed  #nodes: 1 for nodes whose step has changed since the last call; only pairs with such a node are tested
   //            again. Empty: all pairs are tested, and `step` must be the step given to build_broad_phase()

@@ -15,8 +15,8 @@ namespace {
 constexpr int kLeaf = 4;       // largest number of faces in a leaf of the tree
 constexpr double kKept = 0.5;  // smallest share of a pair's distance that must be left after a step
 constexpr double kSafe = 0.5;  // length of one advance along a step, as a share of the longest safe one
-// Upper limit on the advances along one step. Two parts that slide past each other closely would need many tiny
-// advances.
+// A step ends after this many advances, even if a longer step would be possible: two parts that slide past each other
+// closely would need many tiny advances.
 constexpr int kAdvances = 400;
 
 std::uint64_t key_of(int a, int b) { return std::uint64_t(std::min(a, b)) << 32 | std::uint32_t(std::max(a, b)); }

@@ -15,16 +15,16 @@ constexpr double kJam = 0.05;         // share of the full Newton step: a shorte
 // While the distance of touching parts is below this many thicknesses of the barrier, the solve never counts as
 // converged: a Newton step then only doubles the distance, so it is short although the force is far too large.
 constexpr double kSqueezed = 1e-3;
-// Damping of the Hessian after a jam (FemEnergy::newton_step); each further jam increases it. Where parts of the skin
-// meet along parallel edges, the Hessian lacks some of the energy's curvature, and an undamped step leads far along
-// such an edge.
+// Damping of the Hessian after a jam, an iteration whose line search hardly moves (FemEnergy::newton_step); each
+// further jam increases it. Where parts of the skin meet along parallel edges, the Hessian lacks some of the energy's
+// curvature, and an undamped step leads far along such an edge.
 constexpr double kDamped = 1e-2;
 constexpr int kJams = 3;  // number of jams in a row after which the solve gives up
 // The solve has converged only if the last line search left out at most this much of the full Newton step: the longest
 // motion of a node in the remainder, as a share of the tolerance.
 constexpr double kLeft = 0.25;
-// Upper limit on the last step of stragglers, the few nodes that may still move at the end (NewtonSettings), in
-// tolerances.
+// Some nodes, the stragglers, may still move further than the tolerance when the solve ends (NewtonSettings), but none
+// further than this many tolerances.
 constexpr double kStraggle = 3;
 
 double longest(const NodePositions& step) {

@@ -50,7 +50,8 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
     throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
-// Number of all objects in the list of rigid nodes, above all bones' numbers. Contact between objects is ignored.
+// All nodes of objects have this number in the list of rigid nodes; it is above the numbers of all bones. So objects
+// count as one rigid body, and contact between them is ignored.
 constexpr int kObjects = 1 << 20;
 
 NodePositions with_objects(const NodePositions& body, const NodePositions& objects) {
@@ -329,7 +330,8 @@ PoseSolve::Drift PoseSolve::bone_drift(const std::vector<RigidTransform>& pose, 
   return drift;
 }
 
-// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm": the bones with the largest weights there.
+// Returns text such as "between Humerus and Forearm near (1, 2, 3) mm": the two bones with most weight at the nodes,
+// and the mean of the nodes' positions.
 std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& x) const {
   std::vector<double> share(path_(0).size(), 0);
   Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();

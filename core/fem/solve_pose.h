@@ -57,7 +57,7 @@ struct SolveSettings {
   int step_iterations = 40;            // a step that needs more iterations is split into shorter parts
   double shortest_step_degrees = 0.9;  // shortest part of a step; if it fails, the solve stops short of the pose
   double bone_drift_mm = 2;            // if a bone's node is further than this from its rigid position, the step fails
-  double size = 1;  // size of the body relative to an adult (1); the springs are divided by its square
+  double size = 1;  // size of the body relative to an adult (1); the springs' stiffness is divided by its square
 };
 
 // The state of a solve after an iteration. V is valid only during the callback.

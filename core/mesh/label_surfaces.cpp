@@ -10,7 +10,8 @@
 namespace limber {
 
 namespace {
-constexpr double kFurthest = 0.4;  // largest distance of a vertex from its cube's centre along each axis, voxels
+// Smoothing keeps a vertex within this distance of its cube's centre along each axis, voxels.
+constexpr double kFurthest = 0.4;
 // Step lengths of one smoothing step: first towards the mean of the neighbours, then slightly further back, since the
 // body would shrink otherwise [Taubin, SIGGRAPH 1995]. The pass band is 0.1.
 constexpr double kSteps[2] = {0.5, -0.5 / (1 - 0.5 * 0.1)};
@@ -72,7 +73,7 @@ class Net {
     glm::ivec3 corner;
     int quad;
   };
-  // Returns the index of that voxel of the triangle's pair of voxels which has the label.
+  // Returns the index of the voxel that has the label, of the two voxels beside the triangle.
   std::int64_t voxel_of(const Triangle& triangle, Label label) const {
     const Quad& quad = quads_[triangle.quad];
     return quad.below == label ? quad.voxel : quad.voxel + body_.step[quad.axis];

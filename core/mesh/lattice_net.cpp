@@ -120,7 +120,7 @@ std::vector<const SurfaceNet::Edge*> nearest_edges(const SurfaceNet& net, const 
   return nearest;
 }
 
-// Pushes one of two points of the net outwards: the point in the cell, or its point on the edge. Selects the one nearer
+// Pushes one of two points of the net outwards: the point in the cell, or the point on `edge`. Selects the one nearer
 // to the cell's voxels outside the surface, or the other one if the nearer one has reached its limit of pushes. Pushing
 // only one point keeps the surface close to the voxels; late rounds push both, to finish sooner. Returns false if both
 // have reached their limit.

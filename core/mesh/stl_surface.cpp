@@ -46,7 +46,7 @@ void read_binary_stl(const std::string& bytes, SurfaceSoup& soup) {
   }
 }
 
-// Reads the statements of an ASCII file, one a line. Those that have no data only have to stand in their order.
+// Reads the statements of an ASCII file, one a line. Statements other than "vertex" are only checked for their order.
 class AsciiStl {
  public:
   AsciiStl(const std::string& bytes, SurfaceSoup& soup) : rest_(bytes), soup_(soup) {

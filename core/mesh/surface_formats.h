@@ -51,7 +51,8 @@ inline std::string_view next_word(std::string_view& rest) {
   return word;
 }
 
-// Each reader parses the bytes of a file and adds its triangles. At the end, every index of a triangle must be a point.
+// Each reader parses the bytes of a file and adds its triangles. At the end, every corner of a triangle must be the
+// index of a point.
 void read_stl(const std::string& bytes, SurfaceSoup& soup);
 void read_obj(const std::string& bytes, SurfaceSoup& soup);
 void read_ply(const std::string& bytes, SurfaceSoup& soup);

@@ -243,7 +243,7 @@ std::optional<double> distance_to_skin(const VoxelLookup& voxel_at, const glm::d
 // Returns the shift of a node by which it moves `distance` along `normal`. Along axes in which the node's box has no
 // width, the node does not move; if the normal is nearly along such axes, it moves less far.
 glm::dvec3 shift_in_box(const SurfaceNet::Node& node, const glm::dvec3& normal, double distance) {
-  // If the movable part of the normal is shorter, the node moves less than the distance.
+  // If the part of the unit normal along the movable axes is shorter than this, the node moves less than the distance.
   constexpr double kSteepest = 0.3;
   glm::dvec3 along = normal;
   for (int i = 0; i < 3; ++i)
