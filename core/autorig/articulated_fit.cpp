@@ -30,7 +30,7 @@ constexpr double kNeighbourStretch = 0.07, kRoundStretch = 0.12;
 constexpr double kHingeAside = 0.1;  // prior standard deviation of a hinge joint's rotation off its axis, radians
 // Prior standard deviation of a hand's twist relative to the elbow end of its forearm, radians.
 constexpr double kWringing = 1.5;
-// Upper limits on the change of a bone in one Gauss-Newton step: rotation (radians) and log stretch.
+// Larger changes of a bone in one Gauss-Newton step are cut to these: rotation (radians) and log stretch.
 constexpr double kLargestTurn = 0.35, kLargestStretch = 0.15;
 
 std::string without_side(const std::string& name) {

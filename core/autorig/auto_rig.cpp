@@ -236,8 +236,8 @@ std::vector<int> limb_to(const Armature& rig, int last) {
 
 // Rotates and stretches limbs so that each one ends at an end of the tissue. Left and right limbs get the same stretch.
 void reach_ends(Mannequin& m, const Occupancy& body) {
-  // Upper limits. kMost: change of a limb's log stretch. kNear: distance from a limb's end to the end of the tissue, as
-  // a share of the limb's length.
+  // A limb's log stretch changes by at most kMost. A limb whose end is further from the end of the tissue than kNear,
+  // as a share of the limb's length, is not changed.
   constexpr double kMost = 0.6, kNear = 0.7;
   const Armature& rig = m.atlas().rig;
   std::vector<std::uint8_t> is_last(rig.bones.size(), 1);
@@ -451,8 +451,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
         joint.error = 1.4 * result.joints[rig.bones[b].parent].error;
       result.joints.push_back(joint);
     }
-    // Upper limit on how far a joint outside the tissue is moved to get it inside, as a multiple of the joint's
-    // estimated error.
+    // A joint outside the tissue is moved by at most this multiple of its estimated error to get it inside.
     constexpr double kGivesWay = 1.25;
     std::vector<double> free;
     for (const JointFit& joint : result.joints) free.push_back(kGivesWay * joint.error);

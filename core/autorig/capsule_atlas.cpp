@@ -26,7 +26,8 @@ std::vector<double> reach_below(const Armature& rig) {
 // Returns a byte per bone: 1 for bones of the trunk. These are the bones to which at least two limbs are attached, and
 // all their ancestors.
 std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double>& reach) {
-  constexpr double kLimb = 0.2;  // smallest length of a limb as a share of the longest path from the root
+  // A chain of bones counts as a limb if its length is at least this share of the longest path from the root.
+  constexpr double kLimb = 0.2;
   const double whole = *std::max_element(reach.begin(), reach.end());
   std::vector<int> limbs(rig.bones.size(), 0);
   for (size_t b = 0; b < rig.bones.size(); ++b)

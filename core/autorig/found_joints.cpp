@@ -220,8 +220,8 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
                                    : kByGirth) +
              bent);
   }
-  // Error of a wrist whose hand touches other tissue, mm, in a body of another shape. The skin has no narrowest
-  // cross-section there, so the joint may be off along the limb.
+  // Error of a wrist whose hand touches other tissue, mm, in a body of another shape. The skin around such a wrist has
+  // no narrowest cross-section, so the joint may be off along the limb.
   constexpr double kHandSlides = 38;
   for (int b = 0; b < m.bone_count(); ++b)
     if (found.how[b].how == How::Skin && rig.bones[b].name.ends_with("Hand"))

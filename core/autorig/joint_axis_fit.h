@@ -23,8 +23,8 @@ struct FitJoint {
   // Range of flexion angles in which the joint must be free of collisions.
   double minimum_degrees = 0, maximum_degrees = 90;
   double reach_mm = 120;            // bone farther than this from the joint is ignored, as no axis could separate it
-  double most_moved_mm = 30;        // upper limit on the shift of the axis, mm
-  double most_turned_degrees = 20;  // upper limit on the tilt of the axis, degrees
+  double most_moved_mm = 30;        // the fit shifts the axis by at most this, mm
+  double most_turned_degrees = 20;  // the fit tilts the axis by at most this, degrees
 };
 
 struct FittedJoint {

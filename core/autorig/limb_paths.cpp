@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::max();
 constexpr double kStep = 8;  // distance between points of a path, mm
-// Smallest prominence of a body end (limb_paths.h), as a share of the longest path's length.
+// An end of the body gets no path if its prominence (limb_paths.h) is below this share of the longest path's length.
 constexpr double kLeastShare = 0.12;
 constexpr size_t kMostEnds = 12;
 

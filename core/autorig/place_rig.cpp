@@ -234,7 +234,7 @@ PlacedRig place_rig(const Armature& rig, const Mannequin& body, const std::vecto
     }
     turn_limits(bone, before, carry[b].turn);
   }
-  // Moves the tail of a bone that ended at its child's head there again.
+  // If a bone's tail was at its child's head, moves the tail to the child's new head.
   for (int b = 0; b < count; ++b)
     if (const int child = child_at_tail(rig, b); child >= 0)
       result.armature.bones[b].tail = result.armature.bones[child].head;

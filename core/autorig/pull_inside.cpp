@@ -13,11 +13,12 @@ namespace limber {
 
 namespace {
 
-// Upper limits on the shift of a joint: kShare as a share of the length of every bone that begins or ends at the joint,
-// and kMost in mm.
+// A joint is shifted at most by kShare times the length of every bone that begins or ends at it, and by at most kMost
+// mm.
 constexpr double kShare = 0.5, kMost = 30;
 constexpr int kRounds = 60;
-constexpr int kMostSteps = 20;  // upper limit on the number of steps in each direction of the search for tissue
+// The search for tissue takes at most this many steps in each direction; longer steps reach further.
+constexpr int kMostSteps = 20;
 constexpr double kSlide = 0.6;  // cost of a shift along a free hinge's axis, relative to a shift across it
 
 // Returns the cost of a joint's shift, mm. A shift along a hinge's axis costs less than one across it, since the hinge
@@ -88,7 +89,7 @@ class Nearest {
 struct Joint {
   glm::dvec3 start{0}, place{0};
   double reach = kMost;
-  int uses = 0;         // number of bones that begin or end here
+  int uses = 0;         // number of bones that begin or end at this joint
   glm::dvec3 slide{0};  // axis of a free hinge (which shares no joint with another bone); zero: none
   glm::dvec3 pull{0};
   int pulls = 0;

@@ -14,7 +14,7 @@ struct RigCheck {
   struct Leaving {
     int bone = 0;
     double from = 0, to = 0;  // begin and end of a part of the bone in air, as shares of the bone's length
-    glm::dvec3 place{0};      // middle of this part, mm
+    glm::dvec3 place{0};      // middle of the part in air, mm
   };
   struct Joint {
     int bone = 0;

@@ -24,7 +24,7 @@ namespace {
 // Largest share of the nodes that may move when the previous elimination order is adapted to a new graph. If more had
 // to move, a new nested dissection is better.
 constexpr double kMostMended = 0.125;
-// Upper limit on the count of numbers in a factor: CHOLMOD counts them by int.
+// A factor with more numbers than this is refused, as if memory did not suffice: CHOLMOD counts the numbers by int.
 constexpr std::size_t kMostNumbers = INT32_MAX;
 // A new elimination order is computed if a factorization with the adapted order takes more operations than this
 // multiple of those with the last new order.

@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-// Upper limit on the bytes passed in one call of the library, because the library counts them in 32 bits.
+// More bytes are passed to the library in several calls, because it counts the bytes of a call in 32 bits.
 constexpr std::size_t kMost = std::size_t{1} << 30;
 }  // namespace
 

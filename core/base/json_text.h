@@ -8,7 +8,7 @@
 
 namespace limber {
 
-// Upper limit on the nesting of a JSON text, in levels. The deepest files that Limber writes or reads (reports, glTF)
+// A JSON text with more levels of nesting is refused. The deepest files that Limber writes or reads (reports, glTF)
 // have 12 levels.
 constexpr int kDeepestJson = 64;
 

@@ -12,7 +12,7 @@ namespace limber {
 namespace fs = std::filesystem;
 
 namespace {
-constexpr int kMostLinks = 40;  // upper limit on the symbolic links that are followed, equal to the kernel's limit
+constexpr int kMostLinks = 40;  // at most this many symbolic links of a path are followed, as in the kernel
 
 // Resolves the symbolic links of a path. The file that a link points to need not exist yet.
 Path place_of(Path path) {

@@ -210,7 +210,7 @@ struct CellStore::Parts {
     try {
       work();
     } catch (const Error& error) {
-      if (fs::exists(place)) return {};  // another program has computed the same in the meantime
+      if (fs::exists(place)) return {};  // another program has made the folder in the meantime
       if (!into.has_room())
         throw Error("the results cannot be written", folder.string(), "make room on the disk, then run the same again");
       return error.what();

@@ -11,7 +11,7 @@ struct Observed {
   std::vector<std::string> fields;  // the values of the first columns
   std::string report;               // text of the report (limber-report/1); empty if there is none
   std::string cell;                 // text of the file cell.json
-  std::string failure;              // why the cell has no report
+  std::string failure;              // why the cell has no report; empty if it has one
 };
 
 // Returns CSV with the given columns, followed by group, item, quantity and value: "tissues", "fat",

@@ -198,7 +198,7 @@ class BrickInterpolation {
   // Memory that is reused from cell to cell.
   std::vector<int> from_, next_;  // index in voxels_ of the first voxel of each cell
   std::array<std::pair<std::int64_t, glm::ivec3>, 512> voxels_;
-  std::array<std::int32_t, 27> around_;  // the cells around a cell; -1: no link leads there
+  std::array<std::int32_t, 27> around_;  // the 27 cells in and around a cell; -1: no link leads to that cell
   std::array<float, 6> distance_;
   std::array<Held, 6> held_;
   std::vector<std::uint16_t> bones_;

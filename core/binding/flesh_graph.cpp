@@ -244,7 +244,8 @@ void spread_in_octant(Slices& reached, const Slices& within, const std::array<Sl
 }  // namespace
 
 // Finds the coarse cells of a brick. A coarse cell is a connected set of soft voxels in one octant (4^3 voxels) of the
-// brick. The cells are appended to `found`, and `cell_of` gets their indices there.
+// brick. The cells are appended to `found`, and `cell_of` gets the index of its cell in `found` for each soft voxel of
+// the brick.
 void HeatGraph::find_cells(std::int64_t brick, Window& window, std::vector<std::int32_t>& cell_of,
                            std::vector<CoarseCell>& found) const {
   const glm::ivec3 corner = tissue_.bricks()[brick].corner;

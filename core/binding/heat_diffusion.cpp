@@ -21,8 +21,8 @@ namespace {
 // bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1 mm.
 constexpr float kNegligible = 3e-4f;
 constexpr double kCoarseResidual = 1e-4;
-// Upper limit on the memory of a block (a group of bones that are solved together), in bytes per tissue voxel of the
-// body. It does not apply to a block of one bone.
+// A block (a group of bones that are solved together) gets no further bone that would need more memory than this, in
+// bytes per tissue voxel of the body.
 constexpr double kBlockBytes = 16;
 
 // The coarse solution: each bone's temperature in the coarse cells, without values up to kNegligible.

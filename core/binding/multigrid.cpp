@@ -17,7 +17,7 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 1024;  // number of cells in one block of a parallel loop
-// Upper limit on the number of cells of the coarsest level, which is solved directly.
+// Levels are made until one has at most this many cells; this coarsest level is solved directly.
 constexpr std::int64_t kCoarsestSize = 64;
 constexpr int kMostLevels = 12;
 

@@ -94,8 +94,8 @@ class Multigrid {
  private:
   struct Level {
     CellGraph graph;
-    // The cell on the next coarser level that contains each cell; -1 for a cell without neighbours, which is left out
-    // there. Empty on the coarsest level.
+    // For each cell, the cell on the next coarser level that contains it. -1: a cell without neighbours, which the
+    // coarser level leaves out. Empty on the coarsest level.
     std::vector<std::int32_t> parent;
     // Index in `red` of the first red cell of each cell of the next coarser level; one more entry marks the end.
     std::vector<std::int32_t> first_red;

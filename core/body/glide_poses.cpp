@@ -12,8 +12,9 @@
 namespace limber {
 
 namespace {
-constexpr double kLongest = 50;  // longest shift that may be requested, mm
-// Largest motion of a bone with `voxel`, as a share of a voxel's edge. It is below 1 because of rounding errors.
+constexpr double kLongest = 50;  // a request for a longer shift is refused, mm
+// With the word `voxel`, a bone may move by at most this share of a voxel's edge. It is below 1 because of rounding
+// errors.
 constexpr double kOfAVoxel = 0.99;
 }  // namespace
 

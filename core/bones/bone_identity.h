@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Decides which rig bones a label of bone tissue may follow. The user's bone map has precedence. Without an entry
-// there, the anatomical meaning of the label's name (anatomical_name.h) is matched with the roles of the rig's bones
-// (rig/joint_names.h). If the rig lacks the bone that a name means, the label follows the next rig bone towards the
-// trunk: a hand follows the forearm of a rig without hand bones, and a shoulder blade the thorax of a rig without
+// Decides which rig bones a label of bone tissue may follow. The user's bone map has precedence. For a label that is
+// not in the map, the anatomical meaning of the label's name (anatomical_name.h) is matched with the roles of the rig's
+// bones (rig/joint_names.h). If the rig lacks the bone that a name means, the label follows the next rig bone towards
+// the trunk: a hand follows the forearm of a rig without hand bones, and a shoulder blade the thorax of a rig without
 // collarbones.
 #pragma once
 

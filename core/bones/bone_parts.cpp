@@ -35,7 +35,7 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   std::map<std::int32_t, std::vector<int>> bones_inside;
   for (int b = 0; b < hugging.bone_count(); ++b) {
     const glm::dvec3 head = from_world * armature.bones[b].head, tail = from_world * armature.bones[b].tail;
-    // Upper limit on the points sampled along a rig bone that is far longer than the volume.
+    // At most this many points are sampled along a rig bone, which may be far longer than the volume.
     constexpr int kMostSteps = 4096;
     const int steps = static_cast<int>(std::clamp(2 * glm::length(tail - head), 8.0, double(kMostSteps)));
     std::map<std::int32_t, int> inside;

@@ -24,7 +24,7 @@ constexpr double kReachAside = 0.3;  // smallest reach of a joint's domain in an
 constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
 constexpr double kShaftWidth = 0.1;  // thickness of the innermost tissue that is shaft, share of the shorter bone
 constexpr double kFarAside = 0.35;   // tissue further than this from a bone is never its shaft, share of its length
-constexpr double kCoarse = 0.04;     // at this voxel size squared distances count twice, share of the shorter bone
+constexpr double kCoarse = 0.04;     // voxel size that doubles weights of squared distance, share of the shorter bone
 constexpr double kAway = 8;  // extra weight of cut area where shafts begin; proportional to the squared distance
 // Beyond this distance from the expected cut, as a share of the distance to the shafts, the weight of cut area rises
 // with the fourth power of the distance. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
@@ -32,7 +32,7 @@ constexpr double kSteep = 0.4;
 // If a rig bone is shorter than this number of joint radii, the weight of cut area rises less steeply, since a short
 // rig bone determines the position of the joint less exactly.
 constexpr double kSlender = 8;
-constexpr double kSide = 0.6;  // largest distance between bones that touch side by side, share of the shorter bone
+constexpr double kSide = 0.6;  // bones further apart than this are not cut at their sides, share of the shorter bone
 // A voxel certainly belongs to its nearest bone if the ratio of its distances to the nearest and to the second nearest
 // bone is below this.
 constexpr double kSideShaft = 0.5;

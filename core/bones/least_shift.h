@@ -35,7 +35,7 @@ struct LeastShift {
 
 // Limits on a shift. A bone that needs a longer shift is shifted only as far as the limits allow.
 struct ShiftBound {
-  double most_mm;         // upper limit on the length of the shift, mm
+  double most_mm;         // longer shifts are shortened to this, mm
   double whole_mm = 1e9;  // upper limit on the length of the sum of `shift` and `carried`, mm
   glm::dvec3 carried{0};  // shift that the joints above give to the fixed bone, mm; no longer than whole_mm
 };

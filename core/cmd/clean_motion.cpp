@@ -84,7 +84,7 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
   const std::vector<double> place = numbers_in(std::string_view(value).substr(equals + 1, at - equals - 1), ',', where);
   if (place.size() != 3) throw Error("a hold is not understood", where, kHoldForm);
   hold.place = {place[0], place[1], place[2]};
-  constexpr double kFarthest = 1e6;  // largest coordinate that is accepted, mm
+  constexpr double kFarthest = 1e6;  // larger coordinates are refused, mm
   for (const double one : place)
     if (std::abs(one) > kFarthest)
       throw Error("the place is more than a kilometre away", where, "write it in millimetres of the rig's world");

@@ -9,8 +9,7 @@
 namespace limber::cmd {
 
 namespace {
-// Upper limit on the number of frames for which output files are compared with the inputs. No motion has so many
-// frames.
+// Output files of frames beyond this number are not compared with the inputs. No motion has so many frames.
 constexpr int kMostFrames = 100000;
 }  // namespace
 

@@ -37,7 +37,7 @@ namespace limber::cmd {
 
 namespace {
 
-constexpr int kFarthestFrame = 1 << 28;  // largest frame number that a project can hold
+constexpr int kFarthestFrame = 1 << 28;  // larger frame numbers are refused: a project cannot store them
 
 struct Options {
   std::string file, action = "inspect", part;

@@ -16,8 +16,8 @@ constexpr int kGrain = 2048;
 constexpr double kApart = 1.5;
 constexpr double kMostlyBone = 0.2;   // a node with at least this much bone around it counts as bone; in cell volumes
 constexpr double kLeastVolume = 0.1;  // cells whose posed volume is below this share of their rest volume are ignored
-// Lower limit on the length of the depth's gradient in a cell, mm per mm. A shorter gradient, as in the middle of a
-// limb, does not show the direction to the surface.
+// A cell in which the depth's gradient is shorter than this, mm per mm, moves no node. A short gradient, as in the
+// middle of a limb, does not show the direction to the surface.
 constexpr double kLeastSlope = 0.3;
 constexpr double kFurthest = 3;  // way_apart() shortens longer motions to this, in cell edges
 constexpr std::int64_t kMostBins = 8'000'000;

@@ -28,8 +28,8 @@ constexpr double kHeld = 2;  // vertices up to this distance from a tet mesh mov
 // by one Newton step, and a larger one by two.
 constexpr double kNear = 1.0 / 32;
 constexpr double kFar = 1.0 / 8;
-// Largest ratio of the distance of two nodes' rest points to the distance of the nodes themselves. Nodes with a larger
-// ratio lie on different sheets of the body, as on the two sides of a fold.
+// Two nodes lie on different sheets of the body, as on the two sides of a fold, if the distance of their rest points is
+// more than this multiple of the nodes' own distance.
 constexpr float kAcross = 2.5;
 constexpr std::int8_t kMostApart = CellPart::kStepApart;  // larger values are stored as this in PreviewMap::apart
 constexpr std::array<glm::ivec3, 8> kCorners = {
@@ -615,8 +615,8 @@ glm::dmat3 LivePreview::slope(std::int64_t cell) const {
 // node, gives a rest point far from the other node's own.
 //   apart  vector from the node's rest point to that of the next node, voxels
 bool LivePreview::strays(std::int64_t node, int axis, std::int64_t next, const glm::dvec3& apart) const {
-  // Without a gap nearby only a fold separates sheets, and tissue that a joint twists strongly over a short distance is
-  // not a fold. So the limit is doubled there.
+  // If no gap is near, only a fold separates sheets, and tissue that a joint twists strongly over a short distance is
+  // not a fold. So the limit is doubled where no gap is near.
   const bool at_gap = claimed_apart_[node] < CellPart::kFarApart || claimed_apart_[next] < CellPart::kFarApart;
   const double stray = (at_gap ? 1 : 2) * PreviewMap::kStray * lattice_.step;
   for (const std::int64_t each : {node, next}) {

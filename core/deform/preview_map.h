@@ -74,8 +74,8 @@ struct PreviewMap {
   }
   glm::dvec3 rest_of_node(const glm::ivec3& n) const { return rest_of_node_at(index(n)); }
   glm::dvec3 rest_of_node_at(std::int64_t at) const { return rest_of(glm::u16vec3(nodes[at])); }
-  // Largest distance at rest between neighbouring nodes of one sheet, voxels. (A joint twisted by 90 degrees moves
-  // neighbouring nodes up to 3 steps apart without a fold.)
+  // Neighbouring nodes are on different sheets if their distance at rest is larger than this, voxels. (A joint twisted
+  // by 90 degrees moves neighbouring nodes up to 3 steps apart without a fold.)
   double jump() const { return 5.0 * step; }
   // Upper limit, in steps, on the error when the map of a node's cell is extended to a neighbouring node. A larger
   // error means that the two nodes are on different sheets. If no gap between sides is near, twice this limit is used.

@@ -13,10 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr float kSurface = 98 / 255.0f;  // blurred share of tissue at which the renderer's rays stop
-constexpr int kLayersInside = 6;         // visible tissue is searched up to this many half-voxel steps inwards
+// The surface is where the blurred share of tissue has this value, at which the renderer's rays stop.
+constexpr float kSurface = 98 / 255.0f;
+constexpr int kLayersInside = 6;  // visible tissue is searched up to this many half-voxel steps inwards
 constexpr std::int64_t kGrain = 4096;
-constexpr double kMostCells = 16e6;  // upper limit on the number of the finest cells; each needs 8 bytes temporarily
+// If there are more voxels, larger cells are used; each cell needs 8 bytes temporarily.
+constexpr double kMostCells = 16e6;
 
 // Blurs the cells' shares of tissue as the renderer does. Then adds a constant, so that the surface is at a share of
 // 0.5.

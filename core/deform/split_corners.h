@@ -22,13 +22,12 @@ class SplitCorners {
   SplitCorners(const TissueVoxels& tissue, const SkinWeights& weights, const std::vector<int>& moves_as,
                std::int64_t brick);
 
-  // Returns the influences of a voxel's corner, ascending by bone: the sum of the influences of those voxels around the
-  // corner that are connected with the voxel there.
+  // Returns the influences of a voxel's corner, ascending by bone: the sum of the influences of joined_voxels().
   //   voxel   position in the brick, 0 to 7 on each axis; must be tissue
   //   corner  bits 0, 1, 2 are x, y, z
   std::span<const BoneWeight> at(const glm::ivec3& voxel, int corner);
-  // Returns which of the eight voxels around the corner are connected with the voxel there: one bit for each, starting
-  // with the lowest voxel.
+  // Returns which of the eight voxels around a corner of `voxel` are connected with `voxel` through faces within these
+  // eight: one bit for each, starting with the lowest voxel.
   unsigned joined_voxels(const glm::ivec3& voxel, int corner) const;
 
  private:

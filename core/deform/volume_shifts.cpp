@@ -19,13 +19,13 @@ constexpr double kReach = 10;    // distance over which a shift fades out, in ce
 // The solve aims at determinants of the cells' deformation gradients between kLeast and 1 / kLeast.
 constexpr double kLeast = 0.2;
 constexpr double kBone = 1e4;  // weight that keeps bone in place, relative to the smoothness of the shifts
-// Upper limit on the stretch of a cell that the solve aims at, unless blending alone has stretched the cell further.
+// The solve aims at no larger stretch of a cell than this, unless blending alone has stretched the cell further.
 constexpr double kStretch = 2;
 // Stiffness of the springs that pull a node out of bone (kPush) and out of other flesh (kPart), for a node with eight
 // full cells of tissue around it; with less tissue the stiffness is proportionally lower. kPart is lower because flesh
 // also gives way: a spring as stiff as kPush would tear small pieces out of a limb that is folded onto another.
 constexpr double kPush = 500, kPart = 40;
-// Upper limit, in cell edges, on the shift that pulls flesh out of other flesh. Without a limit, flesh without free
+// Longer shifts that pull flesh out of other flesh are shortened to this, in cell edges. Otherwise flesh without free
 // space would move further in each step and overlap more and more.
 constexpr double kMostApart = 2;
 constexpr double kMostlySoft = 0.2;  // a node with less bone around it than this counts as soft; in cell volumes
@@ -301,8 +301,8 @@ class Minimizer {
       }
   }
 
-  // Extrapolates the shifts along the last step; the next step starts there (momentum) [Beck & Teboulle 2009, A fast
-  // iterative shrinkage-thresholding algorithm for linear inverse problems].
+  // Extrapolates the shifts along the last step. The next step starts from the extrapolated shifts (momentum) [Beck &
+  // Teboulle 2009, A fast iterative shrinkage-thresholding algorithm for linear inverse problems].
   void run_on() {
     ++taken_;
     const float momentum = float(taken_ - 1) / float(taken_ + 2);

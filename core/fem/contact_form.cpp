@@ -11,7 +11,7 @@
 namespace limber {
 
 namespace {
-// Upper limit on a pair's thickness h (the distance below which its two parts are pushed apart), as a share of their
+// A pair's thickness h (the distance below which its two parts are pushed apart) is at most this share of the parts'
 // distance at rest.
 constexpr double kOfRest = 0.5;
 // Pairs whose distance is below this many thicknesses h are put into the matrix's sparsity pattern. The number is above
@@ -29,9 +29,9 @@ constexpr double kAbout = 0.2;
 // Two edges count as parallel if their squared cross product is below this share of the product of their squared
 // lengths at rest.
 constexpr double kParallel = 1e-3;
-// Lower limit on the factor by which the energy of parallel edges fades out, for an edge of the skin and one of an
-// object. An object's position is prescribed, so without a force between the edges it would come so close that no step
-// is possible.
+// The energy of edges fades out as they become parallel. For an edge of the skin and one of an object, the factor stays
+// at least this: an object's position is prescribed, so without a force between the edges it would come so close that
+// no step is possible.
 constexpr double kLeastFade = 0.1;
 constexpr std::int64_t kGrain = 2048;
 

@@ -19,8 +19,8 @@
 namespace limber {
 
 namespace {
-// Smallest number of tets in a chunk (a run of neighbouring patches that one thread adds up). Larger chunks share fewer
-// nodes with each other; smaller chunks allow more chunks per colour to run in parallel.
+// A chunk (a run of neighbouring patches that one thread adds up) has at least this many tets. Larger chunks share
+// fewer nodes with each other; smaller chunks allow more chunks per colour to run in parallel.
 constexpr std::int64_t kChunk = 48;
 constexpr std::int64_t kPatches = 256;  // patches per task, in loops that do not write to nodes
 constexpr std::int64_t kGrain = 2048;   // tets per task, in loops that do not write to nodes

@@ -31,7 +31,7 @@ struct NewtonResult {
   int iterations = 0;
   double residual = 0;         // longest motion of a node in the last full Newton step, mm
   double shortest_search = 1;  // shortest line search of all iterations, as a share of the full Newton step
-  FemEnergy::Bound bound;      // the obstacle that limited the last step
+  FemEnergy::Bound bound;      // how far the last step could go, and the tet or contact pair that limited it
 };
 
 // Minimises the energy, starting at x.

@@ -13,7 +13,8 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 512;  // patches per task
-// Upper limit on the ratio of shear moduli in a patch, so that fat does not shrink while muscle swells.
+// Tets whose shear moduli differ by a larger factor are not in one patch, so that fat does not shrink while muscle
+// swells.
 constexpr double kAlike = 1.5;
 
 std::uint64_t spread_bits(std::uint64_t v) {

@@ -15,10 +15,11 @@ namespace {
 
 constexpr int kReach = 16;  // radius within which the tissue nearest to a position is searched, voxels
 constexpr int kPlaces = 4;  // intervals along each tet edge between the points where labels are read
-// Lower limit on TetMaterial::filled, the share of a tet that is tissue, so that every tet resists a change of its
+// A tet's share of tissue, TetMaterial::filled, is raised to at least this, so that every tet resists a change of its
 // volume.
 constexpr double kLeastFilled = 0.1;
-constexpr double kMostPoisson = 0.4999;  // largest Poisson ratio that the volume terms allow; 0.5 is impossible
+// Larger Poisson ratios are cut to this; with 0.5 the volume terms would be infinite.
+constexpr double kMostPoisson = 0.4999;
 
 TetMaterial material_of(const Tissue& tissue, double stiffest) {
   const double nu = std::clamp(tissue.poisson_ratio, 0.0, kMostPoisson);

@@ -132,7 +132,7 @@ class Cells {
         low_[i] = std::min(low_[i], box.low[i]), size += (box.high[i] - box.low[i]) / (3.0 * double(boxes.size()));
     side_ = std::max(2 * size, 1e-9);
     // Doubles the cell size while triangles would fill too many cells on average, because some are very large.
-    constexpr double kMostEntries = 20;  // upper limit on the mean number of cells per triangle
+    constexpr double kMostEntries = 20;  // a larger mean number of cells per triangle is too many
     while (entries_needed() > kMostEntries * double(boxes.size())) side_ *= 2;
     for (std::size_t t = 0; t < boxes.size(); ++t) {
       const auto from = cell_of(boxes[t].low), to = cell_of(boxes[t].high);

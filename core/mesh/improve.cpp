@@ -34,8 +34,8 @@ double badness(const Point& a, const Point& b, const Point& c, const Point& d) {
   return std::isfinite(worst) ? worst : 2;
 }
 
-// Upper limit on the distance between a node of the skin and the surface that was fitted to the voxels, relative to the
-// mean length of the edges at the node.
+// A node of the skin stays within this distance of the surface that was fitted to the voxels, as a share of the mean
+// length of the edges at the node.
 constexpr double kOffSkin = 0.05;
 
 constexpr int kAskEvery = 256;  // number of nodes (about 20 ms) between two checks for cancellation

@@ -33,7 +33,8 @@ struct LatticeNetSettings {
   // The distance between samples near the surface. It is increased if there would be more than 12 million samples.
   double spacing_mm = 8;
   std::vector<glm::dvec3> fine_around;  // positions of joints that bend, world, mm
-  double fine_radius_mm = 40;           // within this distance of these joints, samples are half as far apart
+  // Within this distance of the joints in fine_around, samples are half as far apart.
+  double fine_radius_mm = 40;
   double least_near = 0.9995;  // share of the tissue voxels that must be inside the surface or within kNearVoxels of it
 };
 

@@ -15,7 +15,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kVolumeTolerance = 1e-9;  // largest error of a region's volume, as a share of the total volume
+// An error of a region's volume is a fault if it is larger than this share of the total volume.
+constexpr double kVolumeTolerance = 1e-9;
 
 // Computes MeshQuality::covered and MeshQuality::near.
 void measure_cover(const TetMesh& mesh, const Grid& grid, const TissueVoxels& tissue, MeshQuality& quality) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
 constexpr int kBorder = 3;   // width in cells of the air border around the tissue, where samples may become tissue
-constexpr int kLargest = 4;  // upper limit on the size of cells deep inside, relative to the usual cell size
+constexpr int kLargest = 4;  // cells deep inside are at most this many times larger than the usual cells
 constexpr std::int64_t kMostSamples = 12'000'000;
 
 struct Box {
@@ -191,7 +191,7 @@ bool is_multiple(const glm::ivec3& p, int size) { return ((p.x | p.y | p.z) & (s
 
 struct Candidate {
   float share;   // share of the cube around the sample that the bone fills, [0, 1]
-  float mm3;     // volume of the bone there, mm3
+  float mm3;     // volume of the bone in this cube, mm3
   float volume;  // volume of the cube, mm3
   std::int64_t at;
   std::uint16_t region;

@@ -26,7 +26,8 @@ struct SampleLattice {
   int usual = 1;                        // size in steps of cells whose samples are spacing_mm apart
   std::vector<std::uint8_t> cell_size;  // size in steps of the cell around each smallest cell, by its lowest corner
   std::vector<std::uint16_t> label;     // #samples: the sample's region; kAir also for positions without a sample
-  AffineTransform world_from_lattice;   // lattice coordinates are in mm; it only rotates and translates
+  // Rotates and translates without scaling; takes lattice coordinates in mm, not in steps.
+  AffineTransform world_from_lattice;
   AffineTransform fine_from_voxel;
 
   std::int64_t index(const glm::ivec3& p) const {

@@ -21,9 +21,9 @@
 namespace limber {
 
 constexpr std::size_t kMostSurfaceTriangles = 2'000'000;
-// Upper limit on the size of a file, bytes; kMostSurfaceTriangles in ASCII STL take about half of it.
+// Larger files are refused, bytes. kMostSurfaceTriangles triangles in ASCII STL take about half of it.
 constexpr std::uint64_t kMostSurfaceBytes = std::uint64_t{1} << 30;
-constexpr double kFarthestSurfacePoint = 1e6;  // 1 km: limit on each coordinate, mm
+constexpr double kFarthestSurfacePoint = 1e6;  // a file with a larger coordinate is refused, mm (1 km)
 constexpr const char* kSurfaceFileEndings = ".stl, .obj, .ply, .glb or .gltf";
 
 // Throws Error if the file cannot be read, is damaged, has no triangle with an area, has more than

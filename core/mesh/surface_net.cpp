@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-// Smallest distance of a point from the borders of its cell, face or edge, as a share of their size.
+// A point stays at least this far from the borders of its cell, face or edge, as a share of their size.
 constexpr double kMargin = 0.1;
 // Distance by which one push moves a point outwards, as a share of the size of its cell or edge.
 constexpr double kPushShare = 0.04;

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 constexpr int kLeaf = 8;
-constexpr double kSameSide = 0.5;  // smallest cosine of the angle between matching normals
+constexpr double kSameSide = 0.5;  // two normals match if the cosine of their angle is at least this
 const glm::ivec3 kFaces[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 }  // namespace
 

@@ -15,7 +15,7 @@
 namespace limber {
 
 namespace {
-constexpr double kLeastExtent = 0.001, kMostExtent = 1e6;  // limits on the sizes of a shape, mm
+constexpr double kLeastExtent = 0.001, kMostExtent = 1e6;  // a shape with a smaller or larger side is refused, mm
 // Sides of a circle's polygon; with 32 its area is 0.6 % too small.
 constexpr int kLeastSides = 32;
 

@@ -11,7 +11,8 @@ namespace limber {
 
 enum class CylinderEnds { Closed, Open };
 
-constexpr double kLongestShapeEdge = 20;  // longest edge of a triangle, mm
+// Triangles get no longer edges than this, mm, unless there would be too many triangles.
+constexpr double kLongestShapeEdge = 20;
 constexpr std::size_t kMostShapeTriangles = 200'000;
 
 // Returns a closed box with these extents along x, y and z.
