@@ -38,7 +38,7 @@ std::optional<HandFit> hand_fit(const Mannequin& m, int hand) {
   return fit;
 }
 
-// Bends one hand like the mirrored other hand.
+// Gives the joints of `hand` the mirrored rotations of the joints of `other`, the other hand.
 void bend_alike(Mannequin& m, int hand, int other) {
   const Armature& rig = m.atlas().rig;
   const glm::dmat3 mirror(-1, 0, 0, 0, 1, 0, 0, 0, 1);

@@ -235,7 +235,7 @@ struct Contact {
 // each other.
 //   along   unit vector: the line between the points of a pair may deviate from it by 60 degrees; zero: any direction
 //   within  pairs count if they are at most this much farther apart than the nearest pair, mm
-//   reach   upper limit on the distance of a pair, mm
+//   reach   pairs that are farther apart than this do not count, mm
 std::optional<Contact> contact_of(const Piece& above, const Piece& below, const glm::dvec3& along, double within,
                                   double reach) {
   const PointTree tree(below.points);

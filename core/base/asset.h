@@ -13,7 +13,7 @@ namespace limber {
 // Returns the path of one of the program's own files. Throws Error when the file does not exist, because the
 // installation is incomplete.
 Path asset(const std::string& name);  // `name` is relative, as in "themes/dark.json"
-// Returns nothing when the file does not exist.
+// Returns the path of one of the program's own files, or nothing when the file does not exist.
 std::optional<Path> find_asset(const std::string& name);
 
 }  // namespace limber

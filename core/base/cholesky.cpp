@@ -21,8 +21,8 @@ extern "C" int omp_get_max_active_levels(void);
 namespace limber {
 
 namespace {
-// Largest share of the nodes that may move when the previous elimination order is adapted to a new graph. If more had
-// to move, a new nested dissection is better.
+// A new elimination order is computed if a larger share of the nodes would have to move when the previous order is
+// adapted to a new graph.
 constexpr double kMostMended = 0.125;
 // A factor with more numbers than this is refused, as if memory did not suffice: CHOLMOD counts the numbers by int.
 constexpr std::size_t kMostNumbers = INT32_MAX;

@@ -33,7 +33,7 @@ class Description {
   // them.
   std::string text(const std::string& key, const std::string& otherwise = "",
                    const std::set<std::string>& words = {}) const;
-  // Returns the path under a key, or an empty path if the key is absent. The file must exist.
+  // Returns the path under a key, or an empty path if the key is absent. Throws Error if the file does not exist.
   Path file(const std::string& key) const;
   // Returns the number under a key, in [least, most], or nothing if the key is absent.
   std::optional<double> number(const std::string& key, double least, double most) const;

@@ -8,7 +8,7 @@
 namespace limber {
 
 struct Observed {
-  std::vector<std::string> fields;  // the values of the first columns
+  std::vector<std::string> fields;  // the values of the given columns, which come first
   std::string report;               // text of the report (limber-report/1); empty if there is none
   std::string cell;                 // text of the file cell.json
   std::string failure;              // why the cell has no report; empty if it has one

@@ -82,7 +82,7 @@ void WorkFolder::remove_leftovers() const {
 // Removes the lock folder, which also removes the lock.
 void WorkFolder::release() {
   std::error_code ignored;
-  if (made_ || fs::exists(place_, ignored)) {  // the other working folders are no longer needed
+  if (made_ || fs::exists(place_, ignored)) {  // the folder is finished: no working folder is needed
     for (const auto& entry : fs::directory_iterator(lock_, ignored))
       fs::remove_all(place_.parent_path() / ("." + entry.path().filename().string()), ignored);
     fs::remove_all(lock_, ignored);

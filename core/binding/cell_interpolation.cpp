@@ -133,7 +133,8 @@ class BrickInterpolation {
     }
   }
 
-  // Sets the values in directions that have no linked cell.
+  // Sets the values in directions without a linked cell: to the bone's temperature at a side that touches bones, else
+  // to the cell's own value. Values at edges and corners are extrapolated.
   void fill_gaps(std::int32_t cell, std::uint16_t bone, Cube& value) const {
     for (int direction = 0; direction < 6; ++direction) {
       const int face = face_of(direction);

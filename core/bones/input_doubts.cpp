@@ -239,7 +239,7 @@ std::map<Label, std::vector<int>> single_limb_bones(const TissueTable& tissues, 
 // The voxels of the labels that hold a single bone of an arm or leg.
 struct LabelledVoxels {
   std::map<Label, std::int64_t> count;
-  // Voxels along the middle of another rig bone, by label and rig bone.
+  // Number of a label's voxels along the middle of a rig bone that the label does not follow, by label and rig bone.
   std::map<Label, std::map<int, std::int64_t>> elsewhere;
 };
 

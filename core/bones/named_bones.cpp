@@ -66,7 +66,7 @@ class Assigning {
     std::vector<FoundBy> found_by(set_of.size(), FoundBy::Shape);
     for (const auto& [label, bones] : labels_) found_by[label] = bones.found_by;
     set_of_.resize(graph_.size());
-    // Number of voxels, by block and set.
+    // counts[block][set]: number of the voxels in the block that belong to the set.
     std::vector<std::vector<std::int64_t>> counts((graph_.size() + kGrain - 1) / kGrain);
     parallel_for(graph_.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {
       std::vector<std::int64_t>& count = counts[begin / kGrain];

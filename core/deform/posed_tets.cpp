@@ -339,7 +339,7 @@ void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, con
     std::optional<TetMap> tet;
     rasterize_tet(posed, map.range, [&](const glm::ivec3& voxel, int) {
       if (!tet) tet.emplace(posed, rest_corners(t));
-      // Rounded to single precision, in which the inverse map stores it.
+      // Rounds the rest point to single precision, in which the inverse map stores it.
       const glm::dvec3 rest(glm::vec3(tet->rest(voxel)));
       const glm::ivec3 rest_voxel(glm::floor(rest + 0.5));
       if (!is_in_mesh(rest_voxel)) return;

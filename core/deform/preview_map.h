@@ -80,8 +80,8 @@ struct PreviewMap {
   // Upper limit, in steps, on the error when the map of a node's cell is extended to a neighbouring node. A larger
   // error means that the two nodes are on different sheets. If no gap between sides is near, twice this limit is used.
   static constexpr double kStray = 1.5;
-  // Upper limit on the change of rest points between neighbouring nodes, voxels per step, up to which rest points are
-  // extrapolated beyond a sheet's nodes.
+  // Rest points are extrapolated beyond a sheet's nodes only if they change by less than this from node to node,
+  // voxels.
   double steepest() const { return 1.5 * step; }
 
   // Returns the rest point of a posed point, both in voxel coordinates; nothing if the point is not near the body.

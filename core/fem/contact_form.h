@@ -37,7 +37,9 @@ struct ContactSettings {
 class ContactForm {
  public:
   ContactForm() = default;
-  //   F, rigid  see the constructor of ContactSurface
+  //   F      #F triangles of the skin and of objects
+  //   rest   #V positions
+  //   rigid  #V: nodes with the same number, 0 or more, never move relative to each other; -1: free
   ContactForm(const Eigen::MatrixX3i& F, const NodePositions& rest, const std::vector<int>& rigid,
               const ContactSettings& settings = {});
 

@@ -240,7 +240,8 @@ NodePositions FemEnergy::limit_step(const NodePositions& x, NodePositions step, 
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   NodePositions sum(x.rows(), 3), there = x + step;
-  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());  // asked: indices of tets that the step may flatten
+  // asked: the tets that the step may flatten. nodes: the nodes to smooth; count: by how many tets and pairs each node.
+  std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());
   std::iota(asked.begin(), asked.end(), 0);
   std::vector<char> flattened(T.rows(), 0), changed;
   for (int round = 0; round < kRounds; ++round) {

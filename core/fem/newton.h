@@ -30,7 +30,7 @@ struct NewtonResult {
   bool converged = false;
   int iterations = 0;
   double residual = 0;         // longest motion of a node in the last full Newton step, mm
-  double shortest_search = 1;  // shortest line search of all iterations, as a share of the full Newton step
+  double shortest_search = 1;  // shortest step that a line search took, as a share of the full Newton step
   FemEnergy::Bound bound;      // how far the last step could go, and the tet or contact pair that limited it
 };
 

@@ -39,6 +39,7 @@ class PatchForm {
   PatchForm(const ElasticForm& tets, std::vector<std::int64_t> first, const std::vector<double>& bulk,
             std::vector<double> filled);
 
+  // value() returns the volume energy of all patches. pressures() computes the pressures that this energy causes.
   //   J         det F of every tet
   //   pressure  out: the pressure on every tet, kPa
   double value(const std::vector<double>& J) const;

@@ -14,7 +14,7 @@
 
 namespace limber {
 
-// The objects of a solve.
+// The rigid objects that press on the body in a solve.
 struct RigidObjects {
   NodePositions rest;             // #N: positions far away from the body, mm
   Eigen::MatrixX3i F;             // triangles, as rows of indices into `rest`; counter-clockwise seen from outside

@@ -29,7 +29,7 @@ class LinesThrough {
 
   // Returns the mean distances from the centre to the tissue's border in the given direction and in the opposite one,
   // mm. Lines that begin outside the tissue are ignored.
-  //   most  upper limit on each distance, mm
+  //   most  a larger distance counts as this, mm
   std::array<double, 2> to_borders(const glm::dvec3& direction, double most) const {
     const glm::dvec3 other = std::abs(direction.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 a = glm::normalize(glm::cross(direction, other)), b = glm::cross(direction, a);

@@ -344,7 +344,7 @@ std::uint16_t SurfaceNet::region_on_face(const glm::dvec3& middle, const glm::dv
   }
   glm::ivec3 from = corner;
   if (along[rim_axis] > 0) from[rim_axis] += size;
-  const int w = 3 - axis - rim_axis;  // axis along that side of the face's rim
+  const int w = 3 - axis - rim_axis;  // axis along the side of the face's rim that the ray crosses
   const double at = reach < 1e300 ? middle[w] + along[w] * reach : middle[w];
   const int length = size > 1
                          ? lattice_.edge_length(from, w)
