@@ -53,6 +53,7 @@ class PathsToVoxels {
     std::uint16_t bone;
     float distance;
   };
+  // Returns the bone that gives heat to a voxel.
   //   listed  from list(), for the voxel's cell; not empty
   Nearest nearest(const std::vector<CellPath>& listed, const glm::ivec3& voxel) const;
 

@@ -23,6 +23,7 @@ struct PointToCarry {
 
 class CarriedPoints {
  public:
+  // Finds the tet that contains the anchor of each point, else the nearest place on the border of the mesh.
   //   furthest_mm  points whose anchor is further than this from the mesh do not move with it
   CarriedPoints(std::shared_ptr<const TetMesh> mesh, const Grid& grid, const std::vector<PointToCarry>& points,
                 double furthest_mm);

@@ -63,6 +63,7 @@ bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);
 // Finds the pieces of a cell.
 class PiecesByCell {
  public:
+  // Finds where the pieces of each cell begin. `pieces` must outlive this object.
   //   first, size  lowest cell and size of a box of cells that contains all pieces
   PiecesByCell(const std::vector<CellPiece>& pieces, const glm::ivec3& first, const glm::ivec3& size);
   // Returns the pieces of a cell, which may lie outside the box.

@@ -9,6 +9,7 @@ namespace limber {
 
 class Claims {
  public:
+  // All arguments must outlive this object.
   //   priority  by label: where cells overlap, the one whose tissue has the higher priority wins
   //   depth     depth of rest points below the body's surface: in a fold, where several cells cover a voxel, the
   //             deepest cell wins. nullptr: the pose makes no fold

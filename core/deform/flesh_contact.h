@@ -18,6 +18,8 @@ namespace limber {
 
 class FleshContact {
  public:
+  // Computes how deep the cells lie below air at rest. look() must be called before way_apart().
+  //   cells    must outlive this object
   //   depth    depth below air at rest
   //   spacing  size of a voxel, mm
   FleshContact(const FleshCells& cells, const TissueDepth& depth, const glm::dvec3& spacing);

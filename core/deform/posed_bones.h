@@ -14,6 +14,7 @@ namespace limber {
 
 class PosedBones {
  public:
+  // `tissue` and `weights` must outlive this object.
   //   is_bone          1 for each label that is bone tissue
   //   posed_from_rest  motions of the bones of `weights`; each bone voxel follows the first bone of its influence
   PosedBones(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights, const LabelSet& is_bone,

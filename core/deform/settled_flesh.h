@@ -36,6 +36,7 @@ class SettledFlesh {
     double largest_shift_mm = 0;
   };
 
+  // Computes the shifts in the pose. `tissue` must outlive this object.
   //   is_bone          1 for each label that is bone tissue
   //   posed_from_rest  motions of the bones of `weights`
   SettledFlesh(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,

@@ -45,6 +45,7 @@ class CpuTimer {
 
 class FemEnergy {
  public:
+  // At first, the energy is that of the tets alone. The functions below add springs, contact and a load.
   //   T, material       the tets that deform and their materials, #T each
   //   weak_barrier_kpa  strength of the barrier against det F = 0, which stops single tets from oscillating near 0
   FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const std::vector<TetMaterial>& material,

@@ -20,6 +20,7 @@ struct SolvedParts {
   std::vector<char> in_joint;  // #V: 1 for nodes of tets between two bones
 
   SolvedParts() = default;
+  // Sorts the tets and nodes of the model by the bones that currently hold them.
   //   held_by  #V: the bone that currently holds each node, -1: free
   //   size     size of the body relative to an adult (1); spring stiffness is divided by its square
   SolvedParts(const FemModel& model, const std::vector<int>& held_by, double size);

@@ -37,7 +37,8 @@ struct TetDerivatives {
   double block[10][3][3][kTets];  // [pair][column][row][tet]: pairs of nodes a >= b (lower triangle, row by row)
 };
 
-//   tets  at most kTets tets
+// Computes the derivatives of the energy of each tet.
+//   tets  at least one, at most kTets
 void tet_derivatives(std::span<const TetState> tets, TetDerivatives& result, MatrixLanes width = MatrixLanes::Widest);
 
 }  // namespace limber

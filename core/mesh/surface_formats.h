@@ -56,7 +56,8 @@ inline std::string_view next_word(std::string_view& rest) {
 void read_stl(const std::string& bytes, SurfaceSoup& soup);
 void read_obj(const std::string& bytes, SurfaceSoup& soup);
 void read_ply(const std::string& bytes, SurfaceSoup& soup);
-//   folder  folder in which files that a .gltf names are searched
+//   is_binary  true: a .glb file, false: a .gltf file
+//   folder     folder in which files that a .gltf names are searched
 void read_gltf(const std::string& bytes, bool is_binary, const Path& folder, SurfaceSoup& soup);
 
 }  // namespace limber
