@@ -21,7 +21,8 @@ inline void five_times(benchmark::internal::Benchmark* row) {
 // counts for it. Fails the row when the program fails.
 double run_whole_process(benchmark::State& state, const std::vector<std::string>& arguments);
 
-// Compares with another program by a rate (higher is better) or by seconds (lower is better).
+// Set the counters of a row that is compared with another program: against_peer_rate by items per second (higher is
+// better), against_peer_seconds by seconds (lower is better).
 inline void against_peer_rate(benchmark::State& state, double items_per_iteration, double peer_rate, double goal) {
   state.counters["rate"] = benchmark::Counter(items_per_iteration, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["ahead"] =

@@ -30,7 +30,7 @@ struct Body {
   Armature armature;
   TissueVoxels tissue;
   std::shared_ptr<const SkinWeights> weights;
-  std::vector<glm::dvec3> path;  // world
+  std::vector<glm::dvec3> path;  // positions of the dabs: 40 on each bone, world, mm
 };
 
 Body finished(Body made) {
@@ -131,7 +131,7 @@ void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, Bru
 
 void brush_stroke(benchmark::State& state, const Body& (*of)(), double voxels) {
   const Body& body = of();
-  // Takes the bones of one leg, from the first thigh to its end.
+  // Collects the bones of one leg: the first one named "Thigh" or "thigh", and the chain of its descendants.
   std::vector<int> limb;
   for (int b = 0; b < std::ssize(body.armature.bones); ++b) {
     const bool begins = limb.empty() && body.armature.bones[b].name.find("high") != std::string::npos &&

@@ -17,7 +17,7 @@ struct Crowd {
   std::vector<glm::dvec3> rest, posed;
 };
 
-// Points run along a chain of 20 bones; 22 of 100 follow one bone, the others two.
+// Makes points along a chain of 20 bones. Of 100 points, 22 follow one bone, the others two.
 Crowd make_crowd(std::int64_t count) {
   Crowd crowd;
   std::vector<RigidTransform> posed;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Runs whole processes: weights and resampling of the arm of the Bender project at 2 mm, and how the cost grows with
 // the number of tissue voxels. Bender's ComputeArmatureWeight takes 17 CPU s and 213 MB on the same arm, its
-// PoseLabelmap 8.4 CPU s and 1244 MB. Without these files the rows run on the procedural arm.
+// PoseLabelmap 8.4 CPU s and 1244 MB. Where the arm's files are missing, the rows run on the procedural arm.
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -41,7 +41,7 @@ Subject arm() {
   return {volume, shared("data/bender/man-arm-2mm-armature.vtk"), "Forearm", {}};
 }
 
-// The arm and shoulder of data/bp3d at a coarser spacing.
+// Returns the arm and shoulder of data/bp3d, resampled to `spacing` (mm), or the procedural arm if it is missing.
 Subject shoulder(const std::string& spacing) {
   const fs::path source = shared("data/bp3d/arm_shoulder_1mm_tissue.mha");
   if (!fs::exists(source)) return procedural_arm(spacing);
@@ -82,7 +82,7 @@ void resample(benchmark::State& state, const std::string& method) {
 }
 
 std::int64_t tissue_voxels_of(const Subject& subject) {
-  const auto weights_file = weights_of(subject);  // 16 bytes a voxel, uncompressed
+  const auto weights_file = weights_of(subject);  // uncompressed: 16 bytes for each tissue voxel
   return static_cast<std::int64_t>(fs::file_size(weights_file) / 16);
 }
 

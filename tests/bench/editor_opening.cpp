@@ -29,9 +29,9 @@ namespace {
 using namespace limber;
 using namespace limber::editor;
 
-constexpr double kFrame = 1.0 / 60;    // s
-constexpr double kWhileJobsRun = 0.1;  // s between frames
-constexpr double kLongestWait = 300;   // s
+constexpr double kFrame = 1.0 / 60;    // time from one frame to the next, s
+constexpr double kWhileJobsRun = 0.1;  // longest pause between two frames while only jobs run, s
+constexpr double kLongestWait = 300;   // the measurement fails if no picture is shown after this time, s
 
 double seconds(clockid_t clock) {
   timespec now{};

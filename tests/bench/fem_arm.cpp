@@ -2,9 +2,9 @@
 // Measures what finite elements cost on a real arm, beside one factorization of the same matrix and a resampling by
 // dual quaternions. Called as
 //   limber_fem_arm VOLUME RIG [SPACING_MM:DEGREES[:free|:same]...]
-//     free: without contact, on its own mesh
-//     same: without contact, on the mesh made for contact; that mesh is larger, since it holds all that the pose brings
-//           together
+//     free: without contact, on the mesh that is made for solving without contact
+//     same: without contact, on the mesh that is made for solving with contact; it is larger, because it also holds
+//           tissue that comes together only in the pose
 // Prints CPU seconds of one thread, of this process and of TetGen's. The seconds of the factorization show how much
 // other work on the machine slows the figures down.
 #include <algorithm>
@@ -53,9 +53,9 @@ TissueModel model_with_contact(const test::BentArm& arm, double spacing) {
   return model;
 }
 
-// The cost of one row. An iteration is printed as a multiple of one factorization, and of one factorization with its
-// ordering.
-//   mesh  CPU seconds of meshing; 0 where the mesh was made before
+// The cost of one row. The row also gives the seconds of one iteration divided by those of one factorization, and
+// divided by those of one factorization and one ordering together.
+//   mesh  CPU seconds of meshing; 0 if the mesh was made before the measurement began
 struct Cost {
   long long tets, crossings;
   double mesh, solve, min_det_f;

@@ -2,8 +2,9 @@
 // Compares a Newton iteration with that of GetFEM with MUMPS on a real arm's mesh, where python3-getfem is installed.
 // Called as
 //   limber_fem_getfem VOLUME RIG [SPACING_MM [DEGREES]]
-// Both compute the exact Newton step of flesh and springs, without contact, from the shape at an angle towards a pose
-// that is 7.5 degrees further, and find the same step. Prints CPU seconds of one thread.
+// Both programs start from the arm bent by DEGREES, and compute the exact Newton step of flesh and springs, without
+// contact, towards the pose that is bent by 7.5 degrees more. The two steps must be the same. Prints CPU seconds of one
+// thread.
 #include <cstdio>
 #include <cstdlib>
 

@@ -39,7 +39,8 @@ double least(const std::vector<double>& ratios, const TissueModel& model, long l
   return smallest;
 }
 
-// Counts inverted tets and crossings over all iterations, and keeps the smallest volume ratio.
+// Counts the inverted tets and the crossings of all iterations of a solve, and keeps the smallest volume ratio of a
+// tet.
 struct Path {
   TissueModel model;
   Eigen::MatrixX3i border;
@@ -53,7 +54,8 @@ struct Path {
 };
 
 struct Losses {
-  double worst = 0, sum = 0;  // volume change in %: the largest of one tissue, and the mean by volume
+  // Volume changes in %: `worst` is the largest of one tissue, `sum` the mean of all tissues, weighted by their volume.
+  double worst = 0, sum = 0;
 };
 
 Losses losses(const test::BentArm& arm, const std::map<Label, double>& change, const VolumeMetrics& voxels) {
@@ -70,8 +72,8 @@ Losses losses(const test::BentArm& arm, const std::map<Label, double>& change, c
   return result;
 }
 
-// Solves the same mesh in the same steps as Bender would: with the same Young's modulus, a Poisson ratio of 0.3, which
-// needs no patches, and no contact.
+// Solves the same mesh in the same steps as Bender would: with the same Young's modulus, a Poisson ratio of 0.3 (at
+// which tets need no common pressure in patches), and no contact.
 SolvedPose as_bender(const test::BentArm& arm, FemModel model) {
   for (TetMaterial& each : model.material) each = {each.shear_modulus * (1 + each.poisson_ratio) / 1.3, 0.3};
   return solve_pose(

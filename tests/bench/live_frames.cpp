@@ -35,7 +35,7 @@ namespace {
 using namespace limber;
 using namespace limber::editor;
 
-constexpr double kFrame = 1.0 / 60;  // s
+constexpr double kFrame = 1.0 / 60;  // time from one frame to the next, s
 constexpr int kMoves = 90;
 
 double seconds(clockid_t clock) {
@@ -100,7 +100,7 @@ class ArmAtWork {
   }
   void move(const glm::vec2& place) { push(PointerMoved{place}); }
 
-  // Draws a frame, as a picture that is complete, and waits until the next one is due.
+  // Draws a frame, waits until OpenGL has finished its picture, and then until the next frame is due.
   void frame() {
     const double start = seconds(CLOCK_MONOTONIC), before = seconds(CLOCK_THREAD_CPUTIME_ID);
     editor_.frame(player_.now() + start - begin_);

@@ -28,7 +28,9 @@ using namespace limber;
 using bench::cpu_seconds;
 
 struct Case {
-  const char *name, *volume, *rig, *table;  // without a rig, each label of bone is a region
+  // A body to mesh: its name in the output, and its files relative to DATA_FOLDER. Without a rig, each label of bone
+  // becomes a region of its own. Without a label table, the labels of the volume's own header are used.
+  const char *name, *volume, *rig, *table;
 };
 constexpr Case kCases[] = {
     {"arm", "bender/man-arm-2mm.mha", "bender/man-arm-2mm-armature.vtk", nullptr},

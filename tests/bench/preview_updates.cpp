@@ -44,7 +44,11 @@ struct Subject {
   int step;
 };
 
-// pose_at(i) is the i-th pose of a drag.
+// Measures a drag, a sequence of poses, and prints one JSON object: the medians of the CPU times of updating the map,
+// of uploading it, and of drawing the posed and the resting volume.
+//   drag      name of the drag in the output
+//   pose_at   pose_at(i) returns the i-th pose of the drag
+//   is_first  false: prints a comma before the object; set to false
 void measure(const Subject& subject, const char* drag, LivePreview& preview, Renderer& renderer, const Scene& rest,
              Blend blend, const std::function<Pose(int)>& pose_at, bool& is_first) {
   const glm::ivec2 small(16, 12), large(640, 480);
@@ -66,7 +70,7 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
     const double begin = cpu_seconds();
     scene.pose = preview.update(motions, blend);
     map.push_back(cpu_seconds() - begin);
-    const double first = picture(scene, small);  // includes the upload; the second picture does not
+    const double first = picture(scene, small);  // with the upload of the map; the second picture is without it
     card.push_back(first - picture(scene, small));
     if (i % 5) continue;
     posed.push_back(picture(scene, large));

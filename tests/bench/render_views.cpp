@@ -27,7 +27,7 @@ using namespace limber;
 using namespace limber::render;
 
 constexpr int kPictures = 5;
-constexpr double kTurn = 7;  // degrees before each picture
+constexpr double kTurn = 7;  // angle by which the camera turns before each picture, degrees
 
 double cpu_seconds() {
   rusage used{};
@@ -103,7 +103,7 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
     const double begin = wall_seconds(), cpu_begin = cpu_seconds();
     view.draw(scene, camera, size, begin);
     renderer.finish();
-    if (i < 20) continue;  // the view has chosen its resolution by then
+    if (i < 20) continue;  // not measured: the view may still change its resolution
     wall.push_back(wall_seconds() - begin);
     cpu.push_back(cpu_seconds() - cpu_begin);
   }

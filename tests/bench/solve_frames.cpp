@@ -37,7 +37,7 @@ namespace {
 using namespace limber;
 using namespace limber::editor;
 
-constexpr double kFrame = 1.0 / 60;  // s
+constexpr double kFrame = 1.0 / 60;  // time from one frame to the next, s
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -84,7 +84,7 @@ class ArmSolved {
     std::printf("],\n \"cancel_ms\": [");
     const char* before = "";
     for (const char* stage : {"solving", "tetrahedra", ""})
-      for (const double later : {0.0, 0.3, 0.9}) {  // s
+      for (const double later : {0.0, 0.3, 0.9}) {  // time from the start of the stage to the cancel, s
         ask_for_solve();
         wait_for([&] { return stage_of_solve() == stage || stage_of_solve() == "solving"; });
         for (const double until = seconds() + later; seconds() < until;) frame();
@@ -120,7 +120,7 @@ class ArmSolved {
     wait_for(
         [&] { return !editor_.fem->solves.empty() && editor_.fem->solves.begin()->second.feed->seen().mesh.posed; });
   }
-  // Returns the milliseconds until the worker has ended.
+  // Cancels the running solve. Returns the milliseconds until its worker has ended.
   double cancel() {
     const double asked = seconds();
     if (editor_.fem->solves.empty())

@@ -40,7 +40,9 @@ namespace {
 using namespace limber;
 using namespace limber::editor;
 
-constexpr double kFrame = 1.0 / 60, kLongest = 1.0 / 30, kAfterwards = 1;  // s
+// In s: the time from one frame to the next; the time above which a frame counts as `over`; the time that is measured
+// after the stroke.
+constexpr double kFrame = 1.0 / 60, kLongest = 1.0 / 30, kAfterwards = 1;
 constexpr int kDabs = 200;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
@@ -95,8 +97,8 @@ class ArmPainted {
     for (double due = begin; (dabs = dabs_of_stroke(editor_)) < kDabs; due += kFrame) {
       std::this_thread::sleep_for(std::chrono::duration<double>(due + kFrame - seconds()));
       due = std::max(due, seconds() - kFrame);
-      // The mouse moves to its position at this time. The editor sees all motion since the last frame as one straight
-      // move.
+      // Moves the mouse to the place on the path that it reaches by now. The editor sees all motion since the last
+      // frame as one straight move.
       frame(PointerMoved{at(path, step * 60 * (seconds() - begin))});
     }
     const double took = seconds() - begin;
@@ -115,8 +117,8 @@ class ArmPainted {
   }
 
  private:
-  // Returns the middles of the visible body, every few pixels, from left to right or from top to bottom, whichever is
-  // longer.
+  // Returns a line through the middle of the visible body, as a point every few pixels: from left to right or from top
+  // to bottom, whichever gives more points.
   std::vector<glm::vec2> middle_of_body(const ViewPlace& view) {
     std::vector<glm::vec2> best;
     for (const int along : {0, 1}) {
@@ -135,7 +137,8 @@ class ArmPainted {
     return best;
   }
 
-  // Returns the point that lies `way` pixels along the path, which is run to and fro.
+  // Returns the point that lies `way` pixels along the path. From the path's end the way leads back to its start, and
+  // so on.
   static glm::vec2 at(const std::vector<glm::vec2>& path, double way) {
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) length += glm::distance(path[i - 1], path[i]);
@@ -196,7 +199,7 @@ class ArmPainted {
   Editor editor_;
   Player player_;
   const double begin_ = seconds();
-  std::vector<double> whole_;  // ms
+  std::vector<double> whole_;  // duration of each frame with its painting and OpenGL, ms
   bool first_ = true;
 };
 

@@ -27,7 +27,8 @@ glm::dvec3 shift_of(const glm::dvec3& p, const Build& build, const StandingLandm
 }
 
 glm::dvec3 place_before(const glm::dvec3& after, const Build& build, const StandingLandmarks& at) {
-  constexpr double kNear = 1e-3;  // mm
+  // The search ends when the position changes by less than this, mm.
+  constexpr double kNear = 1e-3;
   glm::dvec3 p = after;
   for (int k = 0; k < 25; ++k) {
     const glm::dvec3 next = after - shift_of(p, build, at);
@@ -195,7 +196,8 @@ FitBody with_regional_labels(const FitBody& body) {
 }
 
 FitBody animal(const std::string& name, const Armature& rig, const std::vector<double>& radii, double voxel) {
-  constexpr double kBoneRadius = 0.28, kGap = 0.05;  // shares: of the flesh's radius, of the bone's length
+  // Radius of a bone as a share of the flesh's radius, and the gap at each of its ends as a share of its length.
+  constexpr double kBoneRadius = 0.28, kGap = 0.05;
   constexpr Label kFlesh = 1, kBone = 2;
   glm::dvec3 low(1e9), high(-1e9);
   for (size_t b = 0; b < radii.size(); ++b)

@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-// A ball of 60 mm under skin of 4 mm, cut off `top` mm above its middle, in voxels of 2 mm, with `padding` layers of
-// air above.
+// Makes a ball of 60 mm radius in voxels of 2 mm, cut off `top` mm above its middle, with `padding` layers of air above
+// the cut. If layered, its outermost 4 mm have label 1 (skin) and the inside has label 2; else all of it has label 1.
 LabelVolume cut_ball(double top, int padding, bool is_layered) {
   LabelVolume volume{{{70, 70, 0}, {2, 2, 2}, {10, 20, 30}, glm::mat3_cast(glm::angleAxis(0.7, glm::dvec3(0, 1, 0)))},
                      {}};

@@ -106,12 +106,13 @@ FitBody named(FitBody body, const std::string& name) {
 
 FitBody built(const char* name, const test::Build& build) { return named(rebuilt(man(), build), name); }
 
-// If LIMBER_FIT_ALL is set, every body is fitted with every kind of labels. Otherwise each body is fitted with two of
-// the four, as a fit takes seconds.
+// Returns true if LIMBER_FIT_ALL is set: then each body is fitted with all four kinds of labels. Otherwise it is fitted
+// with two of the four only, because a fit takes seconds.
 bool fits_all() { return std::getenv("LIMBER_FIT_ALL") != nullptr; }
 
 // Fits a body with labels of four kinds: all names; bones by region on coarse slices; one bone label; no labels.
-//   turn  0: the first and the last kind; 1: the two between
+//   turn              0: fits with the first and the last kind; 1: with the two between; both if fits_all()
+//   names, one, none  out: the results with names or regions, with one bone label, without labels
 void measure_labels(const FitBody& body, size_t turn, Tally& names, Tally& one, Tally& none) {
   if (const char* only = std::getenv("LIMBER_FIT_ONLY"); only && body.name != only) return;
   const Armature adult = rig_template("adult");

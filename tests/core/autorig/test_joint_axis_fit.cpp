@@ -83,7 +83,7 @@ TEST_CASE("fit joint: bars that bend into each other are hinged at their edge, a
   CHECK(fitted.colliding_after.empty());
   for (int degrees = 0; degrees <= 60; degrees += 3) CHECK(bars.collisions(fitted.armature, degrees) == 0);
 
-  // The edge lies 11 mm from the middle. A positive turn about z bends towards +y.
+  // The right hinge lies at the edge, 11 mm from the middle of the section. A positive turn about z bends towards +y.
   const Bone& turning = fitted.armature.bones[1];
   CHECK(fitted.moved_mm < 13);
   CHECK(turning.head.y > 5);

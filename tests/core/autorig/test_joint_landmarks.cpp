@@ -54,7 +54,9 @@ TEST_CASE(
     REQUIRE(found.size() == 1);
     CHECK(found[0].bone == shank);
     const glm::dvec3 way = found[0].place - m.joint(shank);
-    CHECK(std::abs(-way.z - off) < 12);  // two sections, and the share of the thigh that the joint lies lower
+    // The error may be two distances between sections, plus the 1 % of the thigh's length by which the knee lies below
+    // the narrowest section, mm.
+    CHECK(std::abs(-way.z - off) < 12);
   }
 }
 

@@ -20,7 +20,7 @@ TissueTable table_of(const std::vector<std::string>& names) {
   return table;
 }
 
-// Two shafts of 20 mm, one above the other with a gap of 4 mm at the knee, and a kneecap before it.
+// Two square shafts, 20 mm wide, one above the other with a gap of 4 mm at the knee, and a kneecap in front of the gap.
 LabelVolume shafts() {
   LabelVolume volume;
   volume.grid.size = {40, 40, 110};

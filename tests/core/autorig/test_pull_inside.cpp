@@ -13,7 +13,7 @@ namespace {
 
 const std::vector<double> kFree(6, 100);
 
-// A quarter of a tube about the y axis, 40 mm from it and 8 mm thick.
+// A rod, 9 mm thick, bent to a quarter of a circle with a radius of 40 mm around the y axis.
 LabelVolume bent_tube() {
   LabelVolume volume;
   volume.grid.size = {60, 20, 30};

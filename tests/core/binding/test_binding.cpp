@@ -97,7 +97,7 @@ TEST_CASE("binding: rigid weights are one bone a voxel, in a bar the one whose v
 
 TEST_CASE("binding: geodesic weights follow the law of their paper") {
   const Bound bound(two_bone_bar());
-  // On the axis between the two bones the paths are straight, so their lengths follow from counting voxels.
+  // On the axis between the two bones the paths are straight, so the test computes their lengths by counting voxels.
   for (int z = 19; z < 25; ++z) {
     const double a = 2 * (z - 18) / 100.0, b = 2 * (25 - z) / 100.0;
     auto strength = [](double d) { return std::pow(1 / (0.5 * d + 0.5 * d * d), 2); };

@@ -101,7 +101,8 @@ TEST_CASE("chest: without ribs the arms count as further away, and the chest hol
     for (const float way : {5.0f, 40.0f, 100.0f, 200.0f, 400.0f}) {
       CHECK((found[b](way) > usual[b](way)) == is_arm);
       if (!is_arm) CHECK(found[b](way) == usual[b](way));
-      // The distance up to which the arm holds its own flesh does not change.
+      // The distance up to which a bone holds its own flesh becomes shorter for the chest, and does not change for
+      // arms.
       const float held = found[b].held_from(found[b](way));
       if (is_chest) CHECK(held < usual[b](way));
       else CHECK(held == doctest::Approx(usual[b](way)));

@@ -77,7 +77,7 @@ SkinWeights weights_of(const Hand& hand, const HeatDiffusion& settings) {
   return diffuse_heat(hand.body.volume, hand.tissue, hand.body.tissues, hand.body.armature, hand.parts, settings);
 }
 
-// Returns the largest difference of each voxel's weights, ascending.
+// Returns, for each voxel, the largest difference between its weights for a bone in `a` and in `b`, sorted ascending.
 std::vector<double> differences(const SkinWeights& a, const SkinWeights& b) {
   std::vector<double> all;
   for (std::int64_t c = 0; c < a.chunk_count(); ++c)

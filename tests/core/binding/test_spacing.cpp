@@ -32,7 +32,7 @@ struct Weighted {
 // Returns the distance along `axis`, mm, over which the mean weight of `bone` in slices of 8 mm rises from 0.1 to 0.9.
 double width_across(const Weighted& body, const TissueTable& tissues, const glm::dvec3& joint, const glm::dvec3& axis,
                     int bone) {
-  constexpr int kHalf = 30;  // slices every 4 mm
+  constexpr int kHalf = 30;  // number of slices on either side of the joint, 4 mm apart
   const AffineTransform from_voxel = world_from_voxel(body.volume.grid);
   const std::vector<TissueKind> kinds = tissues.kinds();
   std::vector<double> sum(2 * kHalf + 1), count(2 * kHalf + 1);

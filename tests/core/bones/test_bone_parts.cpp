@@ -146,7 +146,7 @@ TEST_CASE(
   const TissueVoxels tissue(file.volume);
   const BoneParts parts = split_bones(file.volume, tissue, tissues, armature);
   const AffineTransform to_named = voxel_from_world(named.volume.grid), to_world = world_from_voxel(file.volume.grid);
-  std::map<std::string, std::map<std::string, std::int64_t>> voxels;  // by structure and rig bone
+  std::map<std::string, std::map<std::string, std::int64_t>> voxels;  // number of voxels, by structure and rig bone
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
     if (!parts.part_of[place]) return;
     const Label label = named.volume.at_or_air(glm::ivec3(glm::floor(to_named * (to_world * glm::dvec3(v)) + 0.5)));

@@ -208,7 +208,7 @@ TEST_CASE("joint cuts: rounded heads of finger bones stay with their bone, and t
   flat.body.armature = unnamed;
   const Wrong wrong = wrong_bones(body);
   CHECK(wrong.worst_share < 0.02);
-  CHECK(wrong.voxels < 0.7 * wrong_bones(flat).voxels);  // without names of fingers, the rig's joints are cut flat
+  CHECK(wrong.voxels < 0.7 * wrong_bones(flat).voxels);  // without fingers' names, a joint is cut by a plane
 }
 
 Armature ring_finger(const std::vector<glm::dvec3>& joints) {

@@ -63,7 +63,7 @@ TEST_CASE("joint surface: without any bone at the joint it is still a surface") 
 
 TEST_CASE("joint surface: names tell the shape, and a hip, a shoulder or no role has none") {
   auto shape = [](BodyPart part, int index) { return shape_of_joint(JointRole{part, BodySide::Left, index}); };
-  CHECK(shape(BodyPart::Index, 1)->along_hinge < 0);  // a ball
+  CHECK(shape(BodyPart::Index, 1)->along_hinge < 0);  // negative: the surface is a ball
   // This surface is a cylinder across the finger.
   CHECK(shape(BodyPart::Little, 2)->across_hinge < 3 * shape(BodyPart::Little, 2)->along_hinge);
   CHECK(shape(BodyPart::Thumb, 3)->across_hinge < 0);

@@ -68,7 +68,7 @@ TEST_CASE("least shift: a ball that is led into another one is pushed back along
   CHECK(found.free);
   CHECK(std::abs(found.depth_before - 5.5) < 0.5);
   CHECK(found.depth_after <= 0.05);
-  // A shift sideways by a voxel hardly lengthens the way, so the direction is not exact.
+  // A shift that ends a voxel to the side is hardly longer, so its direction is not exact.
   CHECK(std::abs(glm::length(found.shift) - 5.5) < 0.3);
   CHECK(std::abs(glm::length(14.0 * line + found.shift) - 19.5) < 0.3);
 }
@@ -99,7 +99,7 @@ TEST_CASE("least shift: what the fixed bone was carried along by counts where bo
        {glm::dvec3(3, 0, 0), glm::dvec3(0, -3, 1), glm::dvec3(-4, 0, 0), glm::dvec3(4, 0, 0)}) {
     const LeastShift found = least_shift(bones, slide({-12, 0, 0}), {.most_mm = 10, .whole_mm = 4, .carried = carried});
     CAPTURE(carried.x);
-    CHECK(found.free == (carried.x < 0));  // only then may the shift exceed 4 mm
+    CHECK(found.free == (carried.x < 0));  // carried + shift has at most 4 mm; only then may shift be longer
     CHECK(glm::length(carried + found.shift) <= 4 + 1e-9);
     CHECK(found.depth_after <= found.depth_before);
   }

@@ -8,9 +8,10 @@
 using namespace limber;
 
 namespace {
-enum class Ways { Alike, Differ };  // capacities of the two directions of an edge
+enum class Ways { Alike, Differ };  // capacities of the two directions of an edge: equal, or random each
 
-// Makes a cube of `side` voxels with random capacities. Edge k of the 26 leads to the k-th neighbour in z, y, x order.
+// Makes a cube of `side` voxels with random capacities: 0 to `most_edge` for edges, -`most_terminal` (sink) to
+// `most_terminal` (source) for terminals. Edge k of the 26 leads to the k-th neighbour in z, y, x order.
 CutGraph<26> random_cube(int side, unsigned seed, int most_edge, int most_terminal, Ways ways) {
   std::mt19937 random(seed);
   CutGraph<26> graph;

@@ -112,7 +112,8 @@ TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated w
     return to;
   };
   const std::string walk = made(shared_path("data/bvh/cmu_12_01_walk.bvh").string(), "walk.bvh", {"--smooth", "6"});
-  // Two steps, after which the body is back in its first pose.
+  // The recording has two steps of kSteps frames from frame kFirst on, after which the body is back in its first pose.
+  // Loops are blended over kSeam frames.
   constexpr int kFirst = 174, kSteps = 152, kSeam = 36;
   limber::Motion cycle = limber::read_bvh(walk);
   cycle.values.erase(cycle.values.begin() + (kFirst + kSteps + 1) * cycle.channel_count, cycle.values.end());
@@ -144,7 +145,7 @@ TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated w
     for (const int seam : {kSteps, 2 * kSteps}) {
       CHECK(fastest(looped, seam - kSeam / 2, seam + kSeam / 2) < 1.5 * sides);
       const double before = apart(looped[seam - 1], looped[seam]), after = apart(looped[seam], looped[seam + 1]);
-      CHECK(std::abs(after - before) < 0.5);  // mm per frame; this change is up to 2 in the recording itself
+      CHECK(std::abs(after - before) < 0.5);  // change of speed, mm per frame; it is up to 2 in the recording itself
     }
     CHECK(apart(looped[kSteps], looped[2 * kSteps]) == doctest::Approx(apart(looped[0], looped[kSteps])).epsilon(0.02));
     const Places still = track(rig, spot, bone, "tail");

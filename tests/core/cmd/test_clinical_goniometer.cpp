@@ -38,11 +38,11 @@ struct GoniometerBody {
   std::string volume, rig_file, tissues;  // paths of files
   Armature rig;
   BodyNames names;
-  // The labels of each rig bone's own bones. Rig bones that are not listed have no labels of their own: their bones are
-  // label name -> value in the file
+  // Rig bone -> names of the labels that hold its bones. For a rig bone that is not listed, the goniometer takes the
+  // voxels of all bone labels around its middle.
   std::map<std::string, std::vector<std::string>> bones;
-  std::map<std::string, double> file_values;                  // of labels, by name
-  std::map<std::string, std::vector<std::string>> carried{};  // bone -> bones that move rigidly with it
+  std::map<std::string, double> file_values;                  // label name -> its value in the file
+  std::map<std::string, std::vector<std::string>> carried{};  // rig bone -> rig bones that move rigidly with it
 };
 
 std::string replaced_side(std::string name, double out) {
@@ -116,8 +116,8 @@ class Goniometer {
     return turns_[bone] = found.rotation;
   }
 
-  // Returns the posed direction from the head of one rig bone to that of another. Both heads move with the bone of the
-  // first, or with `carrier`.
+  // Returns the posed direction from the head of bone `from` to the head of bone `to`. Both heads are turned with the
+  // bone `carrier`, or with `from` if it is empty.
   glm::dvec3 line(const std::string& from, const std::string& to, const std::string& carrier = "") {
     const auto head = [&](const std::string& bone) {
       return body_.rig.bones[static_cast<std::size_t>(require_bone(body_.rig, bone))].head;

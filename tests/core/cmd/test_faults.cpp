@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes every n-th file system call fail, or kills the program there. A command that could not write reports it, inputs
-// and older outputs are unchanged, and nothing is left behind after the next start. The calls fail by
-// tests/support/failing_calls.cpp.
+// Makes every n-th file system call of a command fail, or kills the program at this call. A command that could not
+// write reports it, inputs and older outputs are unchanged, and nothing is left behind after the next start. The calls
+// fail by tests/support/failing_calls.cpp.
 #include <algorithm>
 #include <csignal>
 #include <map>
@@ -45,7 +45,7 @@ struct Bench {
   }
 };
 
-// A command that makes `output`. It runs once without faults, then with faults over the older output and without one.
+// A command that makes `output`. It is run with faults, first without an output of an earlier run, then over one.
 struct Request {
   std::string output;
   std::vector<std::string> words;

@@ -114,7 +114,7 @@ TEST_CASE("glide: jobs say it as the command line does, and what is no way to gl
     const ProgramRun run = arm.run({"--flex", "Forearm=100", std::string("--glide=") + wrong});
     INFO(wrong, " -> ", run.err);
     const bool is_number =
-        // The option parser itself refuses these two.
+        // "nan" and "inf" are refused by the option parser itself, with exit code 2.
         std::string_view("nan inf").find(wrong) == std::string_view::npos;
     CHECK(run.exit_code == (is_number ? 1 : 2));
     CHECK(run.err.find(is_number ? "joints do not glide that way" : "no finite number") != std::string::npos);

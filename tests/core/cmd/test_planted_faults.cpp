@@ -282,7 +282,8 @@ TEST_CASE(
   pose.rotation[2] = glm::angleAxis(glm::radians(-25.0), glm::dvec3(0, 1, 0));  // the left arm, away from the trunk
   const RigidTransform arm = posed_from_rest(figure.armature, pose)[2];
   std::ofstream(folder / "pose.json") << R"({"bones": {"LeftUpperArm": {"axis": [0, 1, 0], "degrees": -25}}})";
-  // The map blends from the trunk to the arm inside the shoulder above, and inside the weld below.
+  // From x = 44 to 48 voxels, the map blends from the trunk, which stays, to the motion of the arm. These voxels belong
+  // to the shoulder above, and to the muscle that joins hand and hip below.
   const auto posed = posed_by(figure.volume,
                               [&](const glm::ivec3& v, const glm::dvec3& p) {
                                 if (v.x < 44) return p;
@@ -301,7 +302,7 @@ TEST_CASE(
   CHECK(run.exit_code == 5);
   CHECK(run.err.find("A band of ") != std::string::npos);
   CHECK(run.err.find("part what touches there at rest") != std::string::npos);
-  // The thigh, which stays with the pelvis, begins there.
+  // The muscle joins the hand to the hip where the thigh begins. The thigh does not move in this pose.
   CHECK(run.err.find("between LeftForearm and LeftThigh") != std::string::npos);
   CHECK(run.out.find("passed      Each of 11 named bones moved as one") != std::string::npos);
 }

@@ -92,6 +92,7 @@ TEST_CASE(
   }
   CHECK(forward_of(bones["sit"]["Left humerus"]) - forward_of(bones["supine"]["Left humerus"]) ==
         doctest::Approx(10).epsilon(0.1));
-  // When the palm turns inwards, the ulna turns with the forearm, and it lies askew to it by some degrees.
+  // The forearm is also turned so that the palm faces inwards, and the ulna is not parallel to the forearm's axis. So
+  // its angle may differ from 90 by some degrees.
   CHECK(std::abs(forward_of(bones["sit"]["Left ulna"]) - forward_of(bones["supine"]["Left ulna"]) - 90) < 8);
 }

@@ -212,9 +212,9 @@ TEST_CASE(
 
 TEST_CASE(
     "posed tets: what sticks out of two parts that are pressed together is pressed flat, and takes no place twice") {
-  // Voxels stick out of the lower part's top and of the upper part's bottom, further than the remaining gap is wide.
-  // In the first case they reach into the other part, in the second into the voxels that stick out of it, in the third
-  // into both.
+  // Voxels stick out of the lower part's top and of the upper part's bottom, further than the remaining gap is wide. In
+  // the first case they reach into the other part's mesh, in the second into the other part's voxels that stick out, in
+  // the third into both.
   for (const auto& [top, bottom, air] :
        {std::array{20.2, 27.2, 0.1}, std::array{19.6, 27.2, 0.8}, std::array{19.7, 27.3, 0.9}}) {
     CAPTURE(air);

@@ -130,8 +130,8 @@ TEST_CASE(
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
     LivePreview stepwise = tube.preview();
     std::shared_ptr<const PreviewMap> last;
-    std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>>
-        held;  // maps that are still in use, and copies of them
+    // Maps that are still in use, each with a copy of it. A map must stay equal to its copy.
+    std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>> held;
     for (const double degrees : {0.0, 25.0, 24.0, 24.5, 24.6, 24.7, 24.8, 80.0, 81.0, 80.5, 81.0}) {
       last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);
       if (held.size() < 4 && degrees < 24.7) held.emplace_back(last, *last);
@@ -202,7 +202,8 @@ TEST_CASE(
     const double near =
         double(std::lower_bound(errors.begin(), errors.end(), 0.5) - errors.begin()) / double(errors.size());
     CHECK(median < 0.1);
-    CHECK(near > 0.95);  // voxels; the rest lie around the elbow, where rigid bone touches flesh that bends
+    // The other voxels lie around the elbow, where rigid bone touches flesh that bends.
+    CHECK(near > 0.95);
     CHECK(missing < covered / 1000);
   }
 }

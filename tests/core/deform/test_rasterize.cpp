@@ -105,8 +105,8 @@ TEST_CASE("rasterize: a large tet and its halves cover the same voxels, each onc
       rasterize_tet(tet, voxels_in_box(tet), [&](const glm::ivec3& v, int) { ++claims[{v.x, v.y, v.z}]; });
     return claims;
   };
-  // `middle` is rounded, so the outer faces of the halves differ from those of the whole by less than a unit. Only the
-  // totals are compared there.
+  // `middle` is rounded, so the outer faces of the halves differ from those of the whole tet by less than a unit, and
+  // voxels at these faces may differ. Therefore the test compares only the numbers of voxels.
   const auto halves = cover({{a, b, middle, d}, {a, middle, c, d}});
   int twice = 0;
   for (const auto& [voxel, count] : halves) twice += count != 1;

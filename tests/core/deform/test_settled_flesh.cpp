@@ -232,13 +232,14 @@ TEST_CASE("posed bones: the way out of a bone is the shortest, wherever the pose
   const Limb limb;
   const auto motions = limb.bent(70);
   const PosedBones bones(limb.volume, limb.tissue, limb.weights, limb.is_bone, motions);
-  const double radius = 4 * 2, middle = (Limb::kMiddle - 0.5) * 2;  // mm
+  // Radius of a bone and position of its axis in x and y, mm.
+  const double radius = 4 * 2, middle = (Limb::kMiddle - 0.5) * 2;
   for (const bool lower : {false, true})
     for (const double away : {3.0, 6.0}) {
       const glm::dvec3 rest(middle + away, middle, lower ? 130 : 30);
       const auto way = bones.way_out(motions[lower] * rest);
       REQUIRE(way);
-      CHECK(std::abs(glm::length(*way) - (radius - away)) < 1);  // half a voxel
+      CHECK(std::abs(glm::length(*way) - (radius - away)) < 1);  // within half a voxel, mm
       CHECK(glm::dot(glm::normalize(*way), motions[lower].rotation * glm::dvec3(1, 0, 0)) > 0.9);
     }
   CHECK_FALSE(bones.way_out(motions[1] * glm::dvec3(middle + 11, middle, 130)));
@@ -329,7 +330,8 @@ TEST_CASE("volume shifts: the nearest matrix of volume one") {
       CHECK(square(P - F) <= square(scaled - F) * 1.05 + 1e-9);
     }
   }
-  const glm::dmat3 flat = with_volume(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.3), 1);  // inverted: the result is not
+  // This F is inverted; the result must not be.
+  const glm::dmat3 flat = with_volume(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -0.3), 1);
   CHECK(glm::determinant(flat) > 0.5);
 }
 

@@ -46,7 +46,7 @@ TEST_CASE("skinned surface: it lies on the body, is closed, and knows the tissue
   REQUIRE(outer.V.size() > 500);
   for (const glm::dvec3& v : outer.V) CHECK(std::abs(glm::length(v) - 11) < 1.0);
   for (const Label label : outer.label) CHECK(label == kSkin);
-  double volume = 0;  // of the solid that the triangles bound
+  double volume = 0;  // volume of the solid that the triangles bound
   for (const glm::u32vec3& f : outer.F) volume += glm::dot(outer.V[f.x], glm::cross(outer.V[f.y], outer.V[f.z])) / 6;
   CHECK(volume == doctest::Approx(4.0 / 3 * 3.14159265 * 11 * 11 * 11).epsilon(0.06));
 

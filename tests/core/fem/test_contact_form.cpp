@@ -89,10 +89,12 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   const ContactPair point{{0, 1, 2, 3}, Kind::PointTriangle};
   CHECK(bound(point, x, step, 8) == doctest::Approx(1.5));
   CHECK(bound(point, x, step, 1.4) == 1.4);
-  const double far = bound(point, x, step, 8, 1);  // the step may close the distance to half of `near`
+  // With near = 1, a distance of half of 1 must remain: the step may be 2.5 long.
+  const double far = bound(point, x, step, 8, 1);
   CHECK(far > 2);
   CHECK(far <= 2.5);
-  CHECK(bound(point, x, step, 8, 4) == doctest::Approx(1.5));  // the pair is nearer than `near` already
+  // The pair's distance of 3 is less than near = 4, so half of the distance must remain.
+  CHECK(bound(point, x, step, 8, 4) == doctest::Approx(1.5));
   int too_far = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     const NodePositions from = random_places(4, 1, seed), by = random_places(4, 2, seed + 1000);
@@ -190,8 +192,8 @@ TEST_CASE("contact: of two ways to one place each is watched by itself") {
   TwoBoxes boxes(1);
   boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // rounded, so that both sums give the same bits
   ContactForm form(boxes.F, boxes.rest, boxes.free());
-  // The box can reach the same position above in two ways: from the side through free space, and from below through the
-  // other box.
+  // The upper box can reach its end position `above` in two ways: from `beside` through free space, or from `below`
+  // through the lower box.
   const NodePositions above = boxes.rest + boxes.upper_by({0, 0, 20}),
                       beside = boxes.rest + boxes.upper_by({50, 0, 20}),
                       below = boxes.rest - boxes.upper_by({0, 0, 20});
@@ -211,8 +213,8 @@ TEST_CASE("contact: what is known of one way serves the next, and is all that th
   std::uniform_int_distribution<int> any_node(0, count - 1);
   std::int64_t touching = 0;
   for (unsigned k = 0; k < 60; ++k) {
-    // The step is large, small, or the last one with one node changed. It starts where the last step ended, or
-    // elsewhere.
+    // The step is large, small, or equal to the previous one but for one node. It starts where the previous step ended,
+    // or elsewhere.
     NodePositions step = boxes.upper_by({0, 0,
                                          k % 4 == 0   ? -0.9
                                          : k % 4 == 2 ? 0.7

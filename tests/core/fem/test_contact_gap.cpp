@@ -40,7 +40,7 @@ TEST_CASE("contact gap: it is the air between parts that face each other, and no
   CHECK(gap->median_mm == doctest::Approx(1.25).epsilon(0.1));
   CHECK(gap->nodes >= 18);
   CHECK_FALSE(contact_gap(near.rest, near.V, near.F, 20, 1));
-  CHECK_FALSE(contact_gap(near.V, near.V, near.F, 20, 5));  // parts that were near at rest do not count
+  CHECK_FALSE(contact_gap(near.V, near.V, near.F, 20, 5));  // parts that are near at rest are not counted
   CHECK_FALSE(contact_gap(near.rest, TwoBoxes(8).V, near.F, 20, 5));
 }
 

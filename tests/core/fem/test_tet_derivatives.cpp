@@ -38,8 +38,9 @@ struct RandomTets {
   }
 };
 
-// Returns the block of the Hessian between nodes a and b. For two directions dF and dF' the second derivative is mu
-// dF:dF' + h (C:dF)(C:dF') + g d2J.
+// Returns the block of the Hessian between nodes a and b. The second derivative of the energy density in the directions
+// A and B is shear A:B + curvature (C:A)(C:B) + slope (dC:A). C is the cofactor matrix of F, the derivative of det F;
+// dC is the change of C along B.
 Eigen::Matrix3d block(const TetState& tet, int a, int b) {
   const auto cofactor = [](const Eigen::Matrix3d& F) {
     Eigen::Matrix3d C;

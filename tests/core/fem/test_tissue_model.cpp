@@ -80,8 +80,10 @@ TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is hel
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
       const bool is_free = has(moving.free, body.tissue, v), is_meshed = has(moving.meshed, body.tissue, v);
       const int off = std::abs(v.z - length / 2);
-      if (off < 8) inside &= is_free;          // where weights blend
-      if (off > 6 + 10 + 8) near &= !is_free;  // beyond the margin and two cells, in voxels
+      // In voxels of 1 mm: weights blend up to 6 from the joint; then come the margin of 10, two cells of 4, and the
+      // rim of 8.
+      if (off < 8) inside &= is_free;
+      if (off > 6 + 10 + 8) near &= !is_free;
       if (off > 6 + 10 + 8 + 8) rim &= !is_meshed;
       if (is_free) rim &= is_meshed;
     });

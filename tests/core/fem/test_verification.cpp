@@ -43,9 +43,12 @@ NodePositions pull(const PinForm& pins, const NodePositions& x) {
 
 constexpr double kFree = std::numeric_limits<double>::quiet_NaN();
 
-// Returns the pressure that blows up a shell until the points of its inner surface (radius `inner`) lie at radius `a`:
-// the work of the springs there per gained volume of the meshed shell.
-//   axial  true: a tube of constant length; false: an eighth of a sphere whose cut faces stay in their planes
+// Returns the pressure that blows up a shell until the points of its inner surface lie at radius `a`: the work of the
+// springs of that surface per gained volume of the meshed shell. The shear modulus is 1 kPa.
+//   nu          Poisson's ratio
+//   inner       radius of the inner surface at rest, mm
+//   patch_size  number of tets that share a pressure
+//   axial       true: a tube of constant length; false: an eighth of a sphere whose cut faces stay in their planes
 double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int patch_size, bool axial) {
   const NodePositions rest = mesh.V;
   FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {1, nu}), 0, patch_size);
@@ -68,7 +71,7 @@ double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int p
     REQUIRE(solved.converged);
   }
   const NodePositions force = pull(pins, x);
-  double work = 0;  // of the springs when `a` grows by one
+  double work = 0;  // work of the springs of the inner surface when `a` grows by one
   for (const int v : pins.node)
     if (radius(rest.row(v)) < inner * (1 + 1e-6))
       for (int c = 0; c < (axial ? 2 : 3); ++c) work += force(v, c) * rest(v, c) / inner;
@@ -127,7 +130,7 @@ TEST_CASE("verification: a patch of tets held by its skin in an affine shape tak
     energy.set_constraints(pins, {}, {});
     NodePositions x = rest;
     REQUIRE(minimise(energy, x, {.tolerance_mm = 1e-11, .iterations = 80}).converged);
-    // The springs of the skin yield by the stress over their stiffness, which is the tolerance.
+    // The springs that hold the skin yield by the stress over their stiffness, so the shape is exact only up to that.
     CHECK((x - rest * A.transpose()).cwiseAbs().maxCoeff() < 1e-5);
   }
 }
