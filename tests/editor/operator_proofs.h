@@ -58,8 +58,8 @@ struct Proof {
   std::string deeds;
   std::function<bool(Stage&, const Seen& before)> effect;  // false before the script, true after it
   Shows shows = Shows::Nothing;
-  std::string first = "";                  // deeds that make ready
-  std::function<void(Stage&)> ready = {};  // preparation that no script can do
+  std::string first = "";                  // script that is played before `deeds`, to prepare the editor
+  std::function<void(Stage&)> ready = {};  // preparation that no script can do, before `first`
 };
 
 // The lists of proofs, in the order in which a user could run them.

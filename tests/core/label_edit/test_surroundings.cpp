@@ -13,7 +13,7 @@ using namespace limber::test;
 
 namespace {
 
-// Fills in the same way, directly from the definition, over the whole volume.
+// Does the same as filled_from_around() in core, directly from its definition: visits the whole volume for each layer.
 LabelVolume filled_slowly(LabelVolume volume, std::vector<std::int64_t> open, Label label) {
   const Grid grid = volume.grid;
   std::vector<std::uint8_t> waits(volume.voxels.size(), 0);

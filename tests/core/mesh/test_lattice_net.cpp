@@ -61,7 +61,7 @@ bool regions_are_closed(const RegionSurface& surface) {
   return std::all_of(passes.begin(), passes.end(), [](const auto& pass) { return pass.second == 0; });
 }
 
-// Checks that each node lies in its box, and that no box is larger than a cell less its margin.
+// Checks that each node lies in its box, and that the edges of all boxes are shorter than 0.81 of the cell spacing.
 void check_boxes(const LatticeNet& net) {
   const glm::dmat3 back = glm::inverse(net.world_from_lattice.linear);
   double outside = 0, largest = 0;

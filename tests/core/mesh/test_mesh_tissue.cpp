@@ -53,7 +53,8 @@ void check_sound(const TissueMesh& result, const LabelVolume& regions) {
     if (region != TetMesh::kSoft && there.count(region + 1) == 0) FAIL_CHECK("a region that is not there");
 }
 
-//   volume_error  largest error of the mesh's volume, relative to that of the voxels
+// Checks the limits that the quality of every mesh must keep.
+//   volume_error  largest allowed error of the mesh's volume, relative to that of the voxels
 void check_quality(const MeshQuality& quality, double volume_error = 0.02) {
   CHECK(quality.near >= 0.999);
   CHECK(quality.volume_ratio == doctest::Approx(1).epsilon(volume_error));

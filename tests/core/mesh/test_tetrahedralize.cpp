@@ -16,7 +16,8 @@ namespace {
 
 constexpr auto kAir = RegionSurface::kAir;
 
-// A box of twelve triangles that face outwards.
+// Adds a box of twelve triangles that face outwards to the surface.
+//   inside, outside  the regions on the two sides of the triangles
 void add_box(RegionSurface& surface, const Eigen::RowVector3d& low, const Eigen::RowVector3d& high,
              std::uint16_t inside, std::uint16_t outside) {
   const Eigen::Index v = surface.V.rows(), f = surface.F.rows();

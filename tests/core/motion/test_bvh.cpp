@@ -35,8 +35,8 @@ void check_same(const Motion& a, const Motion& b) {
 }
 
 struct Difference {
-  double position = 0;  // as a share of the extent
-  double rotation = 0;  // radians
+  double position = 0;  // largest distance of a joint from its reference, as a share of the skeleton's extent
+  double rotation = 0;  // largest angle of a joint from its reference, radians
 };
 
 Difference difference_to_reference(const std::filesystem::path& bvh, const std::filesystem::path& reference) {

@@ -106,7 +106,7 @@ TEST_CASE("clip speed: a clip played twice as fast has every second pose, and it
   CHECK(fast.range_start == 10);
   CHECK(fast.range_end == fast.end());
   CHECK(fast.end() == 54);
-  CHECK(fast.keys.bones.at("LeftArm").contains(25));  // 10 + (40 - 10) / 2
+  CHECK(fast.keys.bones.at("LeftArm").contains(25));  // the key of frame 40 is now at 10 + (40 - 10) / 2
   CHECK(fast.markers[0].frame == 15);
   const ClipOnRig before = take.on_rig(), after = take.on_rig(fast);
   for (int frame = 11; frame <= 42; ++frame) {

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kRate = 60;
 
-// Returns steps whose feet stand still, moved to another position and heading.
+// Returns `count` poses of a walker whose standing feet do not slide, from frame `first` on, moved by `move`.
 std::vector<Pose> steps(const Armature& rig, const GroundMove& move, int first, int count) {
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   const auto clean = clean_motion(rig, limbs, sliding_steps(rig, 240), kRate, true, {}, 0.15).poses;
@@ -41,7 +41,7 @@ TEST_CASE("ground move: a body comes to the place and heading of another pose") 
   const Pose result = moved(rig, pose, move);
   CHECK(glm::distance(result.root_translation, glm::dvec3(-500, 900, 30)) < 1e-9);
   CHECK(glm::length(turn_between(result.rotation[0], wanted.rotation[0])) < 1e-9);
-  // All joints move rigidly together.
+  // All joints have the same distances from each other as before the move.
   const auto before = posed_from_rest(rig, pose), after = posed_from_rest(rig, result);
   for (std::size_t b = 0; b < rig.bones.size(); ++b)
     CHECK(glm::distance(after[b] * rig.bones[b].tail, move.place(before[b] * rig.bones[b].tail)) < 1e-9);
@@ -121,7 +121,8 @@ TEST_CASE("joined poses: whatever the phases are, planted feet stay and the body
           CHECK(error_of(plant, rig, limbs, join.poses).slide < 10);
           stood += plant.first < end && plant.last >= join.fade_first;
         }
-        // The foot's target may be off by a seventh of a leg. The body follows it, spread over the frames of the fade.
+        // A foot may be held up to a seventh of a leg away from where a take has it. The body follows, spread over the
+        // frames of the fade, so it becomes faster by less than 20 mm per frame.
         if (fade >= 30) CHECK(fastest(join.poses) < usual + 20);
       }
   CHECK(stood > 80);

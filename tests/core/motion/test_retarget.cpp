@@ -58,13 +58,18 @@ double largest_difference(const Motion& motion, const Armature& rig, int step) {
   return largest_difference(motion, rig, step, match_by_names(motion, rig));
 }
 
-// How far feet slide on the ground during the source's stances, summed over the stances, mm.
+// How far feet slide on the ground while the recorded foot stands: `source` is the sum of this over the recorded
+// stances, `posed` that of the posed body's foot in the same frames, mm.
 struct Drift {
   double source = 0, posed = 0;
-  int stances = 0, longer = 0;  // stances in which the body's foot slides more than 2 % and 1 mm further
+  // The number of stances, and of those in which the posed foot slides more than 2 % and 1 mm further than the
+  // recorded.
+  int stances = 0, longer = 0;
 };
 Drift drift_of(const Motion& motion, const std::vector<glm::dvec3>& source, const std::vector<glm::dvec3>& posed) {
-  constexpr double kStill = 100, kLow = 30, kShortest = 0.1;  // mm/s, mm, s
+  // A foot stands while it is slower than kStill (mm/s) and less than kLow (mm) above its lowest position, for at least
+  // kShortest (s).
+  constexpr double kStill = 100, kLow = 30, kShortest = 0.1;
   double ground = 1e9;
   for (const glm::dvec3& place : source) ground = std::min(ground, place.z);
   const auto stands = [&](size_t frame) {
@@ -311,8 +316,8 @@ TEST_CASE("retarget: feet that stand slide no more than the source's, stance by 
       MESSAGE(names, ": ", all.stances, " stances, mm strayed ", all.posed, ", the source's ", all.source);
       CHECK(all.stances > 2);
       CHECK(all.longer == 0);
-      CHECK(all.posed < 1.01 * all.source + 0.5);  // mm, over the whole recording
-      CHECK(higher / frames < 15);                 // mm
+      CHECK(all.posed < 1.01 * all.source + 0.5);  // sums over the whole recording, mm
+      CHECK(higher / frames < 15);                 // mean error of the height of low feet, mm
       CHECK(largest_difference(motion, rig, 7, map, Travel::Free) < 2);
     }
 }

@@ -20,7 +20,8 @@ namespace {
 
 Motion z_up_from_y_up(const Motion& motion) { return y_up_from_z_up(y_up_from_z_up(y_up_from_z_up(motion))); }
 
-// Returns the motion as files have it that rest along z and whose root turns the body upright in every frame.
+// Returns the motion as some files store it: at rest the body lies along z, and an added root joint turns it upright in
+// every frame.
 Motion upright_by_its_root(const Motion& z_up) {
   Motion motion = z_up;
   motion.joints.insert(motion.joints.begin(), {.name = "World", .channels = {BvhChannel::Xrotation}});

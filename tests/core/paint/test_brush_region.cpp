@@ -70,8 +70,9 @@ void for_each_voxel(const Grid& grid, const Body& body) {
       for (int x = 0; x < grid.size.x; ++x) body(glm::ivec3(x, y, z));
 }
 
-// Returns shortest distances over steps to the 26 neighbours. A diagonal step counts only if single steps through faces
-// of tissue lead to the same voxel.
+// Returns the shortest distances from the voxel `start` over steps to the 26 neighbours, mm, up to `radius`. A diagonal
+// step counts only if single steps through faces of tissue lead to the same voxel.
+//   from  distance at which the start counts, mm
 Distances shortest_ways(const LabelVolume& volume, const glm::ivec3& start, double from, double radius) {
   const auto passable = [&](const glm::ivec3& v, const glm::ivec3& step) {
     std::array<int, 3> axes{0, 1, 2};
@@ -214,7 +215,7 @@ TEST_CASE(
     CHECK(across(ways) == 0);
     CHECK(ways.size() + static_cast<std::size_t>(across(ball)) == ball.size());
   }
-  // Starting near the palm, the path goes around the gap: along it, through (12, 66), and back.
+  // Near the palm, the path between the fingers leads along the gap (x = 12) to its end at z = 66, and back.
   const Distances round = distances(tissue, reach.dab({11, 6, 60}, 16, BrushDistance::Geodesic));
   const auto other = round.find({13, 6, 60});
   REQUIRE(other != round.end());
@@ -289,11 +290,11 @@ TEST_CASE(
       const glm::ivec3 start = beside_gap[random() % beside_gap.size()];
       const double radius = body.volume.grid.spacing.x * (4 + random() % 10);
       const glm::dvec3 centre = world * glm::dvec3(start);
-      // A path of that length may touch voxels whose centres lie a little further away.
+      // A geodesic path of length `radius` may touch voxels whose centres lie up to a voxel further away than `radius`.
       const double beyond_radius = radius + body.volume.grid.spacing.x;
       const Distances ball = distances(tissue, reach.dab(centre, beyond_radius, BrushDistance::Euclidean));
       const Distances ways = distances(tissue, reach.dab(centre, radius, BrushDistance::Geodesic));
-      Distances joined;  // reached through faces inside the ball
+      Distances joined;  // voxels that are reached through faces inside the ball
       std::vector<glm::ivec3> front{start};
       joined[key(start)] = 0;
       while (!front.empty()) {

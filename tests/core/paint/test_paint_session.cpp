@@ -3,10 +3,11 @@
 // side.
 //
 // Two strokes are needed for this reason. A voxel with the weight w for the forearm turns by w times the angle about
-// the joint's axis, so its volume changes by 1 + angle (axis x r) . grad w. A tissue therefore loses what of w flows
-// through its surface against the motion. Heat weights blend the crease as widely as the outer side, so the loss inside
-// is not gained outside. A wider blend along the outer side, where the surface moves away from the tissue, gives it
-// back. The blend inside must not be too narrow, or cells invert.
+// the joint's axis, so its volume changes by the factor 1 + angle (axis x r) . grad w. Summed over a tissue, the change
+// is the angle times the integral of w (axis x r) . n over the tissue's surface: volume is lost inside the bend, where
+// the surface moves into the tissue, and gained on the outer side. Heat weights blend equally widely on both sides, and
+// then the gain is smaller than the loss. A wider blend along the outer side makes the gain larger. The blend inside
+// the bend must not be too narrow, or cells invert.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -50,6 +51,8 @@ SkinWeights painted(const Arm& arm, const SkinWeights& weights, double radius, d
 }
 
 // Returns points along the outer side of the joint, from the upper arm to the forearm.
+//   out           distance of the points from the bones, mm
+//   above, below  distance from the joint at which the points begin on the upper arm and end on the forearm, mm
 std::vector<glm::dvec3> outer_way(const Arm& arm, double out, double above, double below) {
   const Bone& fore = arm.rig.bones[arm.forearm];
   const glm::dvec3 joint = fore.head, up = glm::normalize(arm.rig.bones[fore.parent].head - joint),

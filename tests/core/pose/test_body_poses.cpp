@@ -28,7 +28,7 @@ Pose posed(const Armature& rig, const std::string& name, const std::vector<std::
   return with_request(rig, rest_pose(rig), {name, joints}, warnings);
 }
 
-// Returns the direction of a limb raised from hanging by `forward` degrees to the front, then `out` degrees aside.
+// Returns the direction of a limb (side: +1 left, -1 right) raised by `forward` degrees to the front, then `out` aside.
 glm::dvec3 hanging(double forward, double out, double side) {
   const double f = glm::radians(forward), a = glm::radians(out);
   return side * std::sin(a) * kLeft + std::cos(a) * (std::sin(f) * kFront - std::cos(f) * kUpwards);

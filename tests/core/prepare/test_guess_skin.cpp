@@ -9,7 +9,7 @@ namespace {
 
 constexpr Label kSheet = 1, kFlesh = 2;
 
-// A ball of flesh with a hollow in its middle, below a sheet.
+// Makes a ball of flesh with a hollow in its middle. Its outermost layer, `sheet` voxels thick, has the label kSheet.
 LabelVolume ball(double sheet) {
   LabelVolume volume;
   volume.grid.size = {40, 40, 40};

@@ -99,7 +99,7 @@ TEST_CASE("bone names: keys, maps, poses of the library and pins go with their b
   CHECK(document.locks->bones == std::set<std::string>{"Upper", "gone \xff"});
   CHECK(document.clips[1] == before.clips[1]);  // a clip that names no bone is not copied
 
-  // The same works in the other direction.
+  // Renaming the bones back restores all that referred to the old names.
   follow_names(document, swapped, *before.armature);
   CHECK(document.poses[0]->rotation == before.poses[0]->rotation);
   CHECK(*document.anchors == *before.anchors);
@@ -231,7 +231,7 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
     CHECK(now.clips[0]->keys.weights ==
           std::map<std::string, std::map<int, double>>{{name, {{1, 0.25}}}, {name + " 2", {{2, 0.5}}}});
   }
-  // Constraints of a trunk that stays work the same way in the mirror image.
+  // On the mirrored rig, the constrained clip turns bone 1 by the mirror image of its old rotation.
   const auto after = std::make_shared<const Armature>(mirrored);
   for (const int frame : {0, 9, 20}) {
     const glm::dquat was = ClipOnRig(before.clips[0], before.armature).at(frame).rotation[1];

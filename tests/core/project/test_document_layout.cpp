@@ -95,8 +95,8 @@ TEST_CASE("project: a document of the second layout opens, with an empty library
   Chunks chunks;
   DocumentWriter writer;
   Node node = chunks.node(writer.write(now, chunks, Packing::Quick));
-  // Layout 2 is the same without the number of poses and the flags of anchors, locks, layers, seams, bone map and
-  // measurements at its end.
+  // A document of layout 2 lacks at its end: the number of poses (4 bytes), and the flags of anchors, locks, layers,
+  // seams, bone map and measurements (1 byte each). Otherwise it has the bytes of the newest layout.
   node.bytes.resize(node.bytes.size() - sizeof(std::uint32_t) - 6);
   node.bytes[0] = 2;
   std::vector<std::string> warnings;

@@ -76,7 +76,7 @@ void make_project(const Path& path, const Document& document = {}) {
   create_project({.document = document}, path, writer);
 }
 
-// Connects like another process, without the program's own checks.
+// Opens the database by plain SQLite, as another process would, without the program's own checks.
 struct PlainConnection {
   sqlite3* handle = nullptr;
   explicit PlainConnection(const Path& path) { REQUIRE(sqlite3_open(path.c_str(), &handle) == SQLITE_OK); }

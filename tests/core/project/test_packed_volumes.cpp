@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kMb = std::int64_t{1} << 20;
 
-// 2 MB of labels.
+// Makes a volume of random labels, 2 MB by default.
 LabelVolume block(unsigned seed, const glm::ivec3& size = glm::ivec3(128, 128, 64)) {
   LabelVolume volume;
   volume.grid.size = size;

@@ -12,10 +12,11 @@ using namespace limber;
 
 namespace {
 
-// Returns a bone's share of the weight that varies in all directions.
+// Returns the weight of bone 1 at a point; bone 0 has the rest. The weight varies along all three axes.
 double share_at(const glm::dvec3& p) { return 0.5 + 0.3 * std::sin(0.02 * p.x + 0.01 * p.y) + 0.002 * p.z; }
 
-// Returns det F of the blend, by central differences.
+// Returns det F, the volume ratio, of the blend of two bones at p, by central differences. Bone 1 turns by `angle`
+// about `axis` through the origin, bone 0 stays.
 double volume_ratio(Blend blend, double angle, const glm::dvec3& axis, const glm::dvec3& p) {
   const std::array<RigidTransform, 2> motions{RigidTransform{}, RigidTransform{glm::angleAxis(angle, axis), {}}};
   const std::array<SkinTransform, 2> bones{skin_transform(motions[0]), skin_transform(motions[1])};

@@ -92,7 +92,8 @@ TEST_CASE("bands: a bone far away is none of the two, though it moves as the pul
   PulledBar bar = pulled_bar(140, 16, 3, {15, 15, 20});
   const glm::dvec3 far(15, 1500, 20);
   bar.armature.bones.push_back(bone_between("Far", 0, far, far + glm::dvec3(0, 0, 40)));
-  bar.motions.push_back({{1, 0, 0, 0}, {0, 0, 16}});  // half of Upper's motion, so half of the band moves more like it
+  // Far moves half as far as Upper, so half of the band's voxels move more like Far than like Upper or Lower.
+  bar.motions.push_back({{1, 0, 0, 0}, {0, 0, 16}});
   const auto bands = bands_of(bar);
   REQUIRE(bands.size() == 1);
   CHECK(std::set<std::string>{bands[0].between[0], bands[0].between[1]} == std::set<std::string>{"Lower", "Upper"});
@@ -106,7 +107,7 @@ TEST_CASE("bands: the same pull around the joint that makes it is none, and neit
 
 TEST_CASE("bands: two skins that met in the pose are no band, however far apart they lay at rest") {
   PulledBar bar = pulled_bar(140, 16, 1, {15, 15, 20});
-  // All above comes from a position 40 mm aside, so that the map jumps between two slices.
+  // All voxels from slice 60 on come from a position 40 mm aside, so that the map jumps between slices 59 and 60.
   for (std::int64_t at = 0; at < std::ssize(bar.posed.voxels); ++at)
     if (at / 256 >= 60) bar.displacement[at].x += 40;
   bar.motions[1].translation.x = 40;

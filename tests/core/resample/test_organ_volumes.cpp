@@ -60,7 +60,7 @@ TEST_CASE("organ volumes: what is within its bounds stays as it is, and nobody g
   CHECK(keep_organ_volumes(block.posed, {{kOrganLabel, organ * 103 / 100}, {kMuscle, muscle}}, block.soft, block.skin)
             .empty());
   CHECK(block.posed.voxels == before.voxels);
-  // Muscle itself is below its volume, so it gives no voxels.
+  // Muscle has only 95 % of the volume that it should have, so it gives no voxels to the organ.
   keep_organ_volumes(block.posed, {{kOrganLabel, organ * 2}, {kMuscle, muscle * 100 / 95}}, block.soft, block.skin);
   CHECK(block.count(kMuscle) >= muscle - 1);
 }

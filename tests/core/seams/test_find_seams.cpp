@@ -22,10 +22,12 @@ using namespace limber;
 namespace {
 
 struct Agreement {
-  std::int64_t found = 0, glued = 0, near_glued = 0;  // faces below the shoulder
+  // Numbers of faces below the shoulder: of seams that were found, of glued parts, and of seams at most one voxel from
+  // a glued face.
+  std::int64_t found = 0, glued = 0, near_glued = 0;
 };
 
-// Counts the faces found, and those among them that lie at most one voxel from a glued face.
+// Counts the faces of the seams that were found, and those among them that lie at most one voxel from a glued face.
 Agreement agreement(const test::GluedArm& body, const Seams& seams) {
   const auto height = [&](const glm::ivec3& v) { return (world_from_voxel(body.volume.grid) * glm::dvec3(v)).z; };
   std::vector<bool> is_near(body.volume.grid.voxel_count(), false);
@@ -53,7 +55,8 @@ Pose arm_raised(const Armature& rig, double degrees) {
 
 struct Raised {
   Posed posed;
-  // These count posed voxels that lay below the shoulder, away from the contact of arm and trunk.
+  // Numbers of posed voxels that come from below the joined shoulder: of the trunk and of the arm, and of those among
+  // them that are more than 8 mm from where the trunk should stay and the arm should be.
   std::int64_t trunk_moved = 0, trunk = 0, arm_left = 0, arm = 0;
 };
 
@@ -215,7 +218,7 @@ TEST_CASE("seams: skin that only one of two limbs has left goes with the one on 
     const TissueVoxels tissue(body.volume);
     const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
     const Seams seams = find_seams(body.volume, tissue, body.tissues, body.rig, parts);
-    std::int64_t found = 0, between = 0;  // counted away from the crease, where the arm's skin turns inwards
+    std::int64_t found = 0, between = 0;  // without the crease, where the arm's skin turns inwards
     seams.for_each([&](const glm::ivec3& v, int axis) {
       if (v.y < 8 || v.y >= 20) return;
       ++found;

@@ -152,7 +152,8 @@ TEST_CASE("weight layers: what comes out is made anew only where parts changed, 
   same(painted_at(painted, before, 1, {6, 6, 30}, 0), before, came_out);
   WeightLayers swapped = before;
   std::swap(swapped.layers[0], swapped.layers[1]);
-  CHECK(changed_bricks(swapped, before).empty());  // the layer that is now on top covers nothing there
+  // One of the two layers is empty, so their order has no effect.
+  CHECK(changed_bricks(swapped, before).empty());
   WeightLayer half = *before.layers[0];
   half.opacity = 0.3;
   same(with(before, 0, half), before, came_out);
@@ -207,7 +208,7 @@ TEST_CASE("weight layers: a mask is painted like weights, to the last step of 1/
   const SkinWeights out = composed(with(layers, 0, masked));
   for (std::int64_t b = 0; b < out.chunk_count(); ++b)
     CHECK(composed_while_masked(layers, 0, b, after.chunk(b)) == out.chunk(b));
-  // A brick whose mask is painted away completely is dropped from the layer.
+  // If the mask is painted away in a whole brick, the layer no longer contains this brick.
   SkinWeights nothing = after;
   for (std::int64_t b = 0; b < nothing.chunk_count(); ++b)
     nothing.set_chunk(b, SkinWeights::Influences(nothing.chunk(b).size(), rigid_influence(kNotCovering)));

@@ -10,8 +10,8 @@ using namespace limber;
 
 namespace {
 
-// Returns a joint at `head` whose upper bone starts at `parent`. The lower bone is turned from the straight
-// continuation.
+// Returns a joint at `head` whose upper bone starts at `parent`. The lower bone continues the upper one, turned by
+// `degrees` about `axis`.
 JointFigures bent(const glm::dvec3& parent, const glm::dvec3& head, const glm::dvec3& axis, double degrees) {
   const glm::dvec3 lower = glm::angleAxis(glm::radians(degrees), glm::normalize(axis)) * (head - parent);
   return {.bone = "Lower",

@@ -37,7 +37,9 @@ class OneBlock final : public Dialog {
   float height_ = 0, left_ = 0;
 };
 
-// Returns the rectangles of the words of a link.
+// Shows a link with this text in the narrow column. Returns the rectangles of its words.
+//   left    out: position of the column's left edge, pixels
+//   height  out: height of the link's block, pixels
 std::vector<Rect> words_of(const std::string& text, float& left, float& height) {
   SmallEditor test;
   auto dialog = std::make_unique<OneBlock>(

@@ -63,14 +63,15 @@ class RandomUser {
   int upto(int last) { return static_cast<int>(random_() % static_cast<std::uint64_t>(last + 1)); }
   bool now_and_then() { return upto(2) == 0; }
 
-  // Closes all that is open, and whatever opens next.
+  // Presses Escape until no dialog, menu, message, tool or field is open.
   void put_away() {
     const auto open = [this] {
       return editor().dialog || !editor().messages.errors.empty() || editor().modal || editor().keyboard.typed ||
              menu_is_open();
     };
     test_.player.settle();
-    for (int i = 0; i < 200 && (i < 2 || open()); ++i) {  // lists of choices are not seen as menus
+    // Escape is pressed at least twice, because open() does not notice lists of choices.
+    for (int i = 0; i < 200 && (i < 2 || open()); ++i) {
       press_key(*test_.host, Key::Escape);
       test_.player.settle();
     }

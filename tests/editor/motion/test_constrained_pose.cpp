@@ -214,9 +214,9 @@ TEST_CASE("constrained pose: X-mirror gives a constrained counterpart the mirror
     const auto& keys = shown_clip(*test.editor)->keys.bones;
     const glm::dquat left = keys.at("LeftThigh").at(10), right = keys.at("RightThigh").at(10);
     CHECK(glm::degrees(2 * std::acos(std::abs(left.w))) == doctest::Approx(degrees));
-    // Mirroring keeps x and reverses the rotation about y and z.
+    // The mirrored rotation has the same part about x and the opposite parts about y and z.
     CHECK(std::abs(glm::dot(right, glm::dquat(left.w, left.x, -left.y, -left.z))) > 1 - 1e-9);
-    // The view shows only half of it, since the constraint has weight 0.5.
+    // The view shows only half of the right bone's rotation, since the constraint has weight 0.5.
     CHECK(std::abs(glm::dot(right, pose_of(test.document()).rotation[5])) < 1 - 1e-3);
   }
 }

@@ -22,7 +22,7 @@ std::function<void(Stage&)> stand_at(int frame) {
   };
 }
 
-// Does the same, with the pointer on the timeline.
+// Does what stand_at() does, and moves the pointer to the timeline.
 std::function<void(Stage&)> point_at(int frame) {
   return [frame](Stage& s) {
     stand_at(frame)(s);
@@ -30,7 +30,7 @@ std::function<void(Stage&)> point_at(int frame) {
   };
 }
 
-// Opens the same limb at frame 20, with bone names that tell which limbs they are.
+// Does what stand_at() does at frame 20, and gives the two bones the names `upper` and `fore`.
 std::function<void(Stage&)> stand_with_names(const std::string& upper, const std::string& fore) {
   return [=](Stage& s) {
     stand_at(20)(s);

@@ -126,8 +126,8 @@ TEST_CASE("live pose: in every frame of a turn, of a motion and on the way back 
   add_clip_and_play(test);
   test.play("key Ctrl+Z\nwait-job");
   CHECK(frames > 60);
-  CHECK(behind > 10);  // frames in which the view waited for a pose
-  CHECK(worst < 2);    // mm
+  CHECK(behind > 10);  // in these frames the drawn pose was older than the pose that was set
+  CHECK(worst < 2);    // mm between the map's rest position and the true one
   test.editor->each_frame.clear();
 }
 

@@ -118,7 +118,8 @@ TEST_CASE(
   test.player.step();
   CHECK(test.fact("text:about 2 min left") == "shown");
 
-  // Other workspaces work as usual. Back here the solve is shown again, until another result is selected.
+  // Other workspaces work as usual. When the Resample workspace is shown again, it shows the solve again, until another
+  // result is selected.
   test.play("key Ctrl+3");
   CHECK_FALSE(watched_solve(*test.editor));
   REQUIRE(test.step_until([&] { return test.fact("posed") != "no" && !test.editor->live->busy(); }));

@@ -100,7 +100,8 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   };
   CHECK(hovered(-25));
   CHECK_FALSE(hovered(25));
-  // The list of tissues under the pointer follows the side too: at rest there are four tissues, in Two there is one.
+  // The list of tissues under the pointer is that of the pointer's side: four tissues of the body at rest, one of the
+  // result "Two".
   test.editor->comparison.a = "";
   test.play("wait-idle");
   const auto listed = [&](double millimetres) {
@@ -180,7 +181,7 @@ TEST_CASE("results: A and B stand side by side, one camera sees both, and what t
   test.play("wait-idle\n move \"3D view/view\"\n key Alt+B\n wait-idle");
   CHECK(test.editor->views->scene.clip.box);
   CHECK(test.editor->views->other_scene->clip.box);
-  // Other workspaces have one view; this one has two again.
+  // Other workspaces have one view. The Resample workspace, when it is shown again, has two.
   test.play("key Ctrl+3\n wait-idle");
   CHECK(layout.view_places.size() == 1);
   test.play("key Ctrl+4\n wait-idle\n move \"3D view/view\"");
@@ -199,7 +200,7 @@ TEST_CASE("results: where A and B differ is marked on both sides and counted by 
   CHECK(found->a.volume == test.editor->document().volume);
   CHECK(found->b.volume.get() == test.volume(1));
   const LabelVolume &rest = *found->a.volume, &two = *found->b.volume;
-  // Two lies exactly two voxels higher.
+  // The result "Two" lies exactly two voxels higher than the body at rest.
   DifferingSide::Count skin, muscle;
   for (int z = 0; z < rest.grid.size.z; ++z)
     for (int y = 0; y < rest.grid.size.y; ++y)
