@@ -35,7 +35,7 @@ inline Motion bending_motion(const Armature& armature, int frames = 61, double r
 // Returns the angle by which the lower bone is bent, degrees.
 inline double bend_of(const Pose& pose) { return glm::degrees(2 * std::atan2(pose.rotation[1].x, pose.rotation[1].w)); }
 
-// Returns the limb with that clip.
+// Returns the document of small_limb() with a clip in which the lower bone bends by one degree per frame.
 inline Document bending_limb(int frames = 61, double rate = 30) {
   Document document = small_limb();
   editor::add_clip(

@@ -36,9 +36,9 @@ using render::Image;
 namespace {
 
 constexpr glm::ivec2 kWindow{1280, 720};
-constexpr double kMostMean = 1.2;     // of 255
-constexpr double kClearly = 20;       // of 255, in any channel
-constexpr double kMostClear = 0.004;  // share of the pixels that may clearly differ
+constexpr double kMostMean = 1.2;     // a larger mean difference fails, 0 to 255
+constexpr double kClearly = 20;       // a pixel clearly differs if a channel differs by more, 0 to 255
+constexpr double kMostClear = 0.004;  // a larger share of clearly differing pixels fails
 
 int channel(const Image& image, int x, int y, int c) {
   return image.rgba[(static_cast<std::size_t>(y) * image.size.x + x) * 4 + c];
@@ -66,7 +66,8 @@ double blurred(const Image& image, int x, int y, int c) {
 }
 
 struct Comparison {
-  double mean = 255, clear = 1;  // clear: share of the pixels that clearly differ
+  // The mean difference of the blurred pictures (0 to 255), and the share of pixels that differ by more than kClearly.
+  double mean = 255, clear = 1;
   Image difference;
 
   bool same() const { return mean <= kMostMean && clear <= kMostClear; }

@@ -48,7 +48,7 @@ TEST_CASE("replay: a key pressed and released between two frames is not lost") {
   for (int i = 0; i < 5; ++i)
     for (const bool down : {true, false}) test.host->events.push(editor::KeyChanged{editor::Key::T, down});
   test.player.settle();
-  CHECK(test.fact("strip") == "no");  // switched five times
+  CHECK(test.fact("strip") == "no");  // it was switched five times
 }
 
 TEST_CASE("replay: clicks faster than frames all arrive") {
@@ -203,7 +203,7 @@ TEST_CASE("replay: splitters follow the pointer, and a double click restores the
   test.play("click view.four\n drag \"splitter four-y/grip\" 0 50");
   CHECK(test.editor->arrangement().four_y > 0.55f);
   test.play("key Ctrl+2\n key Ctrl+1");
-  CHECK(test.editor->arrangement().four_y > 0.55f);  // stored for each workspace
+  CHECK(test.editor->arrangement().four_y > 0.55f);  // each workspace stores its own position of the splitter
 }
 
 TEST_CASE("replay: the area under the pointer is maximized and shrinks back") {
@@ -321,10 +321,10 @@ TEST_CASE("replay: while a number is typed its field shows digits alone, and no 
   SmallEditor test({1280, 720});
   test.editor->history.reset(bending_limb(), "Open limb");
   test.play("key Ctrl+3\nwait-idle\nmove view.four\nwait 2");
-  CHECK(test.editor->tip.widget == "Four views");  // tips come while nothing is typed,
+  CHECK(test.editor->tip.widget == "Four views");  // no field has the keyboard, so tips are shown
   CHECK(test.fact("text:Four views") == "shown");
   test.play("click \"Motion/Onion skin and paths/Onion frames...\"\nwait-idle\nmove \"Ghosts per side/value\"\nwait 2");
-  CHECK(test.editor->tip.widget.empty());  // but this dialog's first field has the keyboard
+  CHECK(test.editor->tip.widget.empty());  // this dialog's first field has the keyboard, so none is shown
   const editor::Rect field = test.editor->widgets.find("Ghosts per side/value")->rect;
   const auto beside = [&] {
     const render::Image picture = test.host->picture();

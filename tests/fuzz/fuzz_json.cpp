@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fuzzes the readers of the program's JSON files: poses, rigs, maps and bone maps. The first byte selects one.
+// Fuzzes the readers of the program's JSON files: poses, rigs, maps of motions to rigs, and bone maps. The first byte
+// selects one of the readers.
 #include <string>
 
 #include "core/base/error.h"

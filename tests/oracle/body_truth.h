@@ -13,10 +13,10 @@
 
 namespace limber::oracle {
 
-// Assigns every voxel of bone to the rig bone that its true bone belongs to. If several rig bones are possible, it is
-// the first.
+// Assigns every voxel of bone to the rig bone that its true bone belongs to. Where truth.json lists several rig bones
+// for a true bone, the voxel gets the first of them.
 //   folder  where the volume lies
-// Throws Error if a file is missing or on another grid, if the rig lacks a bone that the truth names, and if a voxel of
+// Throws Error if a file is missing or on another grid, if the rig lacks a bone that the truth names, or if a voxel of
 // bone has no true bone.
 BoneParts true_bones(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
                      const TissueTable& tissues, const Armature& armature);

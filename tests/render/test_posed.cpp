@@ -157,8 +157,9 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
   return map;
 }
 
-// Resampling alone moves the outline of a body, by 0.2 to 1.1 % of its area if an arm only rotates. The outline of the
-// labels therefore may differ as much as the dense map's outline does.
+// Compares the outline of the preview with that of the dense map and with that of the posed labels, from three sides.
+// Resampling the labels alone moves the outline by 0.2 to 1.1 % of its area even if an arm only rotates. So the preview
+// may differ from the labels by as much as the dense map does, and 0.2 % more.
 void check_outline(const std::shared_ptr<const LabelVolume>& volume, const TissueTable& tissues, const Armature& rig,
                    const TissueVoxels& tissue, const SkinWeights& weights, const Pose& pose, bool linear) {
   Studio studio;

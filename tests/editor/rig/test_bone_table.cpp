@@ -75,7 +75,7 @@ TEST_CASE(
   create_project({.document = test.editor->document()}, path, writer);
   CHECK(*read_project(path).document.bone_map == BoneMap{{"4", "LeftForearm"}});
 
-  // Weights follow the map.
+  // New weights are computed with the bone map.
   test.play("key Ctrl+2\nclick \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
   CHECK(share(test.editor->document(), GluedArm::kHumerus, "LeftForearm") == doctest::Approx(1));
   test.play("key Ctrl+Z\nkey Ctrl+Z\nwait-idle");

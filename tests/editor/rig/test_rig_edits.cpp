@@ -380,7 +380,7 @@ TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, ea
   choose_both("Hand.L", "Arm.L");
   test.play("click \"Edit/Bone/Connect to parent\"");
   CHECK(glm::distance(test.rig().bones[test.rig().find("Hand.R").value()].head, {-20, 0, 4}) < 1e-9);
-  // Across the sides, each bone becomes the child of the other side's, not of itself.
+  // With a parent on the other side, the mirrored bone gets the mirrored parent, unless this is the bone itself.
   choose_both("Hand.L", "Arm.R");
   test.play("key Ctrl+P");
   CHECK(parent_of("Hand.L") == "Arm.R");
@@ -462,7 +462,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     release();
     CHECK(test.rig() == *limber::test::small_limb().armature);
 
-    // A typed angle turns about the line of sight, then about z.
+    // A typed angle turns the hinge axis about the line of sight. After the key Z it turns the axis about z instead.
     press_at(handle);
     test.play("key 3\n key 0");
     CHECK(glm::distance(shown_rig(*test.editor)->bones[1].limits.axis,

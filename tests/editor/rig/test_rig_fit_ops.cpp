@@ -151,7 +151,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
   run(stage.editor(), "rig.joint_fit_after");
   stage.play("wait-idle");
   CHECK(pink() == 0);
-  // Other workspaces show the body as usual. Back here the proposal is still there.
+  // Other workspaces show the body as usual. When the Rig workspace is shown again, it still shows the proposal.
   stage.play("key Ctrl+4\n wait-idle");
   CHECK_FALSE(scene.weights);
   stage.play("key Ctrl+1\n wait-idle");

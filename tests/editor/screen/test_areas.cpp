@@ -85,7 +85,7 @@ TEST_CASE("areas: what is pointed at in the sidebar stays where it is when somet
   test.play("key Ctrl+1\nwait-idle\nmove Display/fold");
   const glm::vec2 before = place_of(*test.editor, "Display/fold");
   const float above = place_of(*test.editor, "Outliner/fold").y;
-  // Selects a bone, so that its numbers appear above.
+  // Selects a bone, so that the panel of the bone's numbers appears above the panel under the pointer.
   test.editor->selection.bone = 1;
   test.editor->selection.bones = {1};
   test.player.step();
@@ -95,7 +95,7 @@ TEST_CASE("areas: what is pointed at in the sidebar stays where it is when somet
   test.player.step();
   CHECK(place_of(*test.editor, "Display/fold") == before);
   CHECK(place_of(*test.editor, "Outliner/fold").y == above);
-  // Once the pointer leaves, the layout is as usual.
+  // Once the pointer leaves the sidebar, the layout no longer keeps the panel where the pointer was.
   test.editor->selection.bone = 1;
   test.editor->selection.bones = {1};
   test.play("move \"3D view/view\"");

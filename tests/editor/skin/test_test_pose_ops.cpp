@@ -79,7 +79,7 @@ TEST_CASE("test pose: a joint is bent on trial, the project's pose stays, and an
   test.play("key N\nwait-idle\nclick \"sidebar/sections/Brush/skin.unbend\"\nwait-idle");
   CHECK_FALSE(shows_pose(*test.editor));
   CHECK(!test.editor->views->scene.pose);
-  // The project's pose is not affected: its own workspace shows it as it is.
+  // The test pose does not change the project's pose: the Pose workspace shows the body at rest.
   set_bend(*test.editor, 0);
   test.choose(1);
   set_bend(*test.editor, 60);

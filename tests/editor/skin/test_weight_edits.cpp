@@ -83,7 +83,7 @@ TEST_CASE("weight editing: a flood does what the brush does in all it may reach,
   CHECK(test.last_edit() == "Flood Fore");
   // Bone tissue keeps its weights.
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.25; }) == 0);
-  // Another value and another kind are still the same step.
+  // Changing the value and the kind of the last operation replaces its undo step and adds no other.
   std::vector<FormField> fields = test.editor->last_operation->fields;
   REQUIRE(fields.size() == 3);
   fields[0].chosen = 3;
@@ -138,7 +138,7 @@ TEST_CASE("weight editing: the part under the pointer, or all of a tissue, follo
   const int steps = test.steps();
   test.play("move \"3D view/view\"\nwait-idle");
   REQUIRE(test.editor->views->hover.label == kSkin);
-  test.painting().tissue = PaintedTissue::Chosen;  // the part need not belong to the brush's tissues
+  test.painting().tissue = PaintedTissue::Chosen;  // Fill part ignores which tissues brushes may paint
   test.play("key L\nwait-idle");
   CHECK(test.last_edit() == "Fill part with Fore");
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kSkin ? 1 : before(p); }) == 0);
@@ -173,7 +173,7 @@ TEST_CASE(
   fields[1].value = 0.75;
   redo_last_operator(*test.editor, fields);
   fields[1].value = 0.5;
-  redo_last_operator(*test.editor, fields);  // cancels the one before
+  redo_last_operator(*test.editor, fields);  // cancels the run with 0.75
   test.play("wait-job\nwait-idle");
   CHECK(test.steps() == steps + 1);
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBone ? before(p) : 0.5; }) == 0);

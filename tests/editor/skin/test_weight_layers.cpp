@@ -112,7 +112,7 @@ TEST_CASE("layers: a stroke changes the active layer alone, comes out as painted
   CHECK(layers(test).base == base);
   CHECK(comes_out(test));
   CHECK(test.steps() == steps + 2);
-  CHECK(test.weights() == *painted);  // the weights without a layer
+  CHECK(test.weights() == *painted);  // as if painted without layers
   // A second stroke on the layer continues from the first.
   test.editor->skin->painting->kind = BrushKind::Smooth;
   stroke(test, test.at(0, 10));

@@ -61,7 +61,7 @@ int most_influences(Stage& s) {
   return most;
 }
 
-// Also writes a project of the same body in which every voxel follows the second bone.
+// Does what weigh() does, and writes a project of the same body in which every voxel follows the second bone.
 void weigh_with_other(Stage& s) {
   weigh(s);
   Document other = small_limb();

@@ -34,8 +34,8 @@ TEST_CASE("theme: every text can be read on what it stands on, in both themes") 
     CHECK(contrast(theme.view_text2, theme.view_top) >= 4.5);
     CHECK(contrast(theme.view_text2, theme.view_plate) >= 4.5);
     for (const Colour mark : {kViewOk, kViewWarn, kViewError, kViewAccent}) {
-      CHECK(contrast(mark, theme.view_plate) >= 4.5);  // for text
-      CHECK(contrast(mark, theme.view_top) >= 3);      // for lines
+      CHECK(contrast(mark, theme.view_plate) >= 4.5);  // least contrast for text
+      CHECK(contrast(mark, theme.view_top) >= 3);      // least contrast for lines
     }
   }
 }

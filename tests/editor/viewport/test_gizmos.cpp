@@ -49,10 +49,10 @@ struct GizmoEditor : LimbEditor {
     REQUIRE(gizmo);
     return *gizmo;
   }
-  // Returns the pixel of a point of an axis's ring, whose radius is 86 pixels.
+  // Returns the pixel of the point at `angle` on the ring about `axis`. The ring's radius is 86 pixels.
   glm::dvec2 on_ring(int axis, double angle) const { return view().pixel_of(ring(axis).at(angle)).value(); }
   Ring ring(int axis) const { return ring_of(view(), editor->look.scale, gizmo().centre, gizmo().axes[axis], 86); }
-  // Returns the angle at which the ring is nearest to the eye.
+  // Returns the angle on the ring about `axis` at which the ring is nearest to the eye.
   double front(int axis) const {
     const auto [begin, by] = ring(axis).front(view());
     return begin + by / 2;
@@ -183,8 +183,8 @@ TEST_CASE(
   CHECK(at(centre + glm::dvec2(108, 0) * 1.0) == GizmoPart{GizmoPart::Kind::ViewRing});
   CHECK(at(centre) == GizmoPart{GizmoPart::Kind::Trackball});
   CHECK(!at(centre + glm::dvec2(130, 0)));
-  // Where two rings cross, the ring nearer to the eye is picked. The projected axis towards the eye is the middle of
-  // the visible half of neither ring: the rings cross on an axis.
+  // Where two rings cross, the ring nearer to the eye is picked. Two rings cross on the axis of the third: the test
+  // takes the axis that points most towards the eye.
   const glm::dmat3 axes = test.gizmo().axes;
   const glm::dvec3 to_eye = test.view().direction_to_eye(test.gizmo().centre);
   int nearest = 0;

@@ -215,7 +215,7 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   const double millimetres = 2 * camera.distance * std::tan(camera.field_of_view / 2) / kSize.y;
   const std::vector<int> body = dark_columns(picture_of(studio.renderer, scene, camera, kSize), plain, kSize.y / 2);
   REQUIRE(body.size() == 3);
-  // The column is the last one before the border.
+  // A contour is one pixel wide. It is drawn in the last column before its position.
   for (int line = 0; line < 3; ++line)
     CHECK(std::abs(body[line] + 1 - (kSize.x / 2 + (2 + 31 * (line + 1) * 0.25 - camera.centre.x) / millimetres)) <= 1);
 
@@ -230,7 +230,7 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   for (const int x : lines) {
     const double weight = (18 + (x + 0.5 - 100) * 0.25 - 2) / 31;
     CHECK(std::min({std::abs(weight - 0.25), std::abs(weight - 0.5), std::abs(weight - 0.75)}) <
-          0.012);  // one and a half pixels
+          0.012);  // one and a half pixels, as a weight
   }
 }
 
