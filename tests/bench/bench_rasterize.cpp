@@ -16,7 +16,7 @@ namespace limber::bench {
 namespace {
 
 constexpr glm::ivec3 kGrid{128, 150, 336};  // 6.45 million voxels
-constexpr glm::ivec3 kCells{30, 30, 66};    // 59 400 cubes of 5 tets: 297 000
+constexpr glm::ivec3 kCells{30, 30, 66};    // cubes along each axis: 59 400, each of 5 tets
 constexpr double kCell = 2.18;              // edge of a cube, voxels; 0.61 million voxels lie inside the tets
 
 struct Tet {

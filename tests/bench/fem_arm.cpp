@@ -26,7 +26,7 @@ using bench::cpu_seconds;
 
 struct Row {
   double spacing, degrees;
-  std::string kind;  // contact, free, same
+  std::string kind;  // "contact", or "free" or "same" as on the command line
 };
 
 Row row_of(const std::string& word) {

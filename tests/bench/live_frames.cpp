@@ -133,7 +133,7 @@ class ArmAtWork {
   Editor editor_;
   Player player_;
   double begin_ = 0;
-  std::vector<double> milliseconds_;  // CPU of the interface's own thread, for each frame
+  std::vector<double> milliseconds_;  // CPU time of the interface's own thread in each frame, ms
   std::vector<double> whole_;         // from the start of each frame to the start of the next, s
   int posed_ = 0;
   bool is_first_ = true;

@@ -365,7 +365,7 @@ TEST_CASE("replay: a script tells what its frames cost, and what a clip that pla
     CHECK(std::stoi(line) == ++frames);
     waited += line.find("wait 0.5") != std::string::npos;
   }
-  CHECK(std::abs(waited - 60) <= 2);  // a second, at 60 frames per second
+  CHECK(std::abs(waited - 60) <= 2);  // both waits of half a second, at 60 frames a second
   const std::string text = read_file(file("log")), head = "# ms: worst ";
   const std::size_t said = text.find(head);
   CHECK(text.starts_with("# " + std::to_string(frames) + " frames\n"));

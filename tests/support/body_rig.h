@@ -17,7 +17,7 @@ struct RigNames {
   std::string pelvis, spine, chest, neck, head;
   // "@" stands for the side, which is written as `left` or `right`.
   std::string clavicle, upper_arm, forearm, hand, thigh, shank, foot, toes;
-  std::string finger;  // with "#" where "Index" .. "Little" stands and "%" where its segment does
+  std::string finger;  // "#" stands for the finger ("Index" .. "Little"), "%" for its segment
   std::string left = "Left", right = "Right";
   std::vector<std::string> fingers{"Thumb", "Index", "Middle", "Ring", "Little"};
 };

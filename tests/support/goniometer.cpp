@@ -125,7 +125,7 @@ Registration register_points(const std::vector<glm::dvec3>& rest, const std::vec
       pairs.push_back({p, iteration < kByNearest ? *partner : nearest.mean_around(moved, 0.75 * spacing), squared});
     }
     if (pairs.size() * 10 < std::min(rest.size(), kPoints) * 9) {
-      found.residual_mm = std::numeric_limits<double>::infinity();  // more than a tenth of the bone has no partner
+      found.residual_mm = std::numeric_limits<double>::infinity();  // more than a tenth of the points have no partner
       return found;
     }
     const auto kept = static_cast<std::ptrdiff_t>(pairs.size() * 7 / 10);

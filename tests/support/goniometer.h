@@ -35,9 +35,9 @@ Registration register_points(const std::vector<glm::dvec3>& rest, const std::vec
                              const Registration& start, double spacing);
 
 struct LimbAngles {
-  double flexion = 0, abduction = 0;  // of the upper limb; both are 0 if it hangs straight down
-  double rotation = 0;                // internal; only meaningful where the lower limb is bent
-  double bend = 0;                    // between upper and lower limb; 0: straight
+  double flexion = 0, abduction = 0;  // angles of the upper limb, degrees; both are 0 if it hangs straight down
+  double rotation = 0;                // internal rotation, degrees; only meaningful if the lower limb is bent
+  double bend = 0;                    // angle between upper and lower limb, degrees; 0: straight
 };
 
 // Measures an arm or a leg from the directions of its upper and lower part.

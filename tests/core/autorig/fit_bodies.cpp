@@ -76,7 +76,7 @@ FitBody relabelled(const FitBody& body, const std::map<std::string, TissueKind>&
 FitBody rebuilt(const FitBody& body, const Build& build, const StandingLandmarks& at) {
   FitBody result = body;
   const Grid& from = body.volume.grid;
-  constexpr double kRoom = 70;  // mm of free room on all sides
+  constexpr double kRoom = 70;  // free room around the body on all sides, mm
   const glm::dvec3 room = glm::ceil(kRoom / from.spacing);
   Grid grid = from;
   grid.size += 2 * glm::ivec3(room);

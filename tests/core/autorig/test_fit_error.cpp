@@ -250,11 +250,11 @@ TEST_CASE("fit error: bodies whose bones are rods, and those of another make, li
 
 namespace {
 
-// How a dog differs from the template: factors for its parts.
+// How a dog differs from the template: `stretch` scales all of it along x, y and z, the others scale single parts.
 struct AnimalBuild {
   glm::dvec3 stretch{1};
   double longer_legs = 1, longer_neck = 1, longer_tail = 1, fatter = 1;
-  double turn = 0;  // about the vertical, radians
+  double turn = 0;  // turns the animal about the vertical, radians
 };
 
 FitBody four_legged(const char* name, const AnimalBuild& build) {

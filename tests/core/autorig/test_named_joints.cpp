@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kHip = 400, kKnee = 200;  // mm along z
+constexpr double kHip = 400, kKnee = 200;  // height (z) of the joints, mm
 
 TissueTable table_of(const std::vector<std::string>& names) {
   TissueTable table;

@@ -123,8 +123,8 @@ TEST_CASE("elimination: what joins two branches goes between them, and fills far
   const std::vector<int> order = mended_order(after, rank, parent, 1);
   const auto place = rank_of(order);
   for (const int moved : {5, 17}) {
-    CHECK(place[moved] > place[2 * kSide * kSide - 1]);  // after both halves
-    CHECK(place[moved] < place[2 * kSide * kSide]);      // before the separator
+    CHECK(place[moved] > place[2 * kSide * kSide - 1]);  // eliminated after both halves
+    CHECK(place[moved] < place[2 * kSide * kSide]);      // eliminated before the separator
   }
   CHECK(entries(filled(after, place)) < 0.8 * double(entries(filled(after, rank))));
   CHECK(mended_order(after, rank, parent, 1.5 / nodes).empty());

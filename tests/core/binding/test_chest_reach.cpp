@@ -15,7 +15,7 @@ using namespace limber;
 using namespace limber::test;
 
 namespace {
-constexpr double kVoxel = 8;  // mm
+constexpr double kVoxel = 8;  // edge of a voxel, mm
 
 // Returns the distance of a point from the axis of a bone, mm.
 double away(const Bone& bone, const glm::dvec3& at) { return distance_to_bone(bone, at); }

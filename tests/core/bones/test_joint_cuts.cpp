@@ -22,7 +22,7 @@ namespace {
 // A shaft with a knob at either end.
 struct Dumbbell {
   glm::dvec3 from, to;
-  double shaft, knob;  // radii, mm
+  double shaft, knob;  // radii of the shaft and of both knobs, mm
   int rig_bone;
 };
 
@@ -62,7 +62,7 @@ FusedBody fused(const std::vector<Dumbbell>& bones, const Armature& rig, const g
 
 struct Wrong {
   std::int64_t voxels = 0;
-  double worst_share = 0;  // largest share of a rig bone's true voxels that follow another one
+  double worst_share = 0;  // largest share of a rig bone's true voxels that follow another rig bone
 };
 // Counts the voxels that follow another rig bone than the true one.
 Wrong wrong_bones(const FusedBody& made) {
@@ -273,7 +273,7 @@ TEST_CASE("joint cuts: where finger bones touch in a small spot they are cut the
       for (int z = 60; z < 72; ++z)
         if (int& bone = made.truth[made.body.volume.grid.index({x, y, z})]; bone >= 0) bone = z < 64;
     }
-  CHECK(wrong_bones(made).voxels < 10);  // the spot where they are joined has 9 voxels
+  CHECK(wrong_bones(made).voxels < 10);  // the two bones are joined at a spot of 9 voxels
 }
 
 TEST_CASE("joint cuts: a bone that hangs on the parent of the one it sits on is cut from both") {

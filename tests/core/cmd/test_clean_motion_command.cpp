@@ -85,10 +85,10 @@ TEST_CASE(
       for (auto f = first; f <= last; ++f) slides = std::max(slides, along_ground(places[f], places[first]));
       CHECK(slides < 2);
       slid = std::max(slid, std::stod(part[5]));
-      if (++stances == 6) break;  // each `limber fk` computes all frames
+      if (++stances == 6) break;  // six stances are enough: each takes a run of `limber fk`
     }
     CHECK(stances >= 4);
-    CHECK(slid > 5);  // mm that a foot slid before cleaning
+    CHECK(slid > 5);  // mm: a foot did slide before cleaning
     const Places hand = track(rig, clean, "LeftHand", "tail");
     for (int f = 38; f <= 42; ++f)
       CHECK(std::hypot(hand[f][0] - target[0], hand[f][1] - target[1], hand[f][2] - target[2]) < 3);

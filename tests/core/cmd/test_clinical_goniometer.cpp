@@ -25,7 +25,7 @@ using namespace limber::test;
 
 namespace {
 
-constexpr double kTolerance = 1;  // degrees
+constexpr double kTolerance = 1;  // largest difference between measured and requested angle, degrees
 
 using Json = nlohmann::json;
 

@@ -20,7 +20,7 @@ using namespace limber::test;
 namespace {
 
 struct LongBone {
-  glm::dvec3 middle{0}, along{0};  // mm; unit vector along the bone, downwards or forwards
+  glm::dvec3 middle{0}, along{0};  // middle of the bone, mm; unit vector along it, downwards or forwards
 };
 
 // Returns the line through each bone's voxels, along the direction of their largest spread.

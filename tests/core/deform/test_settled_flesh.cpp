@@ -163,7 +163,7 @@ TEST_CASE("settled flesh: bones stay where the pose has them") {
         furthest = std::max<double>(furthest, glm::length(shifts[PosedLattice::place(v.x, v.y, v.z)]));
     });
   }
-  CHECK(furthest < 0.1);  // voxels
+  CHECK(furthest < 0.1);  // largest shift of a corner of bone, voxels
 }
 
 TEST_CASE("settled flesh: a body that moves as one, or not at all, does not settle") {
@@ -282,7 +282,8 @@ struct Slabs {
 TEST_CASE("flesh contact: two sides go back by half of what they overlap by, and rest beside each other otherwise") {
   const Slabs slabs;
   const TissueDepth depth(slabs.tissue, glm::dvec3(1));
-  for (const double each : {8.0, 12.0}) {  // mm; the gap is 20: an overlap of 4, and a gap of 4 that stays open
+  // Each slab moves by 20 - `each` mm into the gap of 20 mm: first the slabs overlap by 4 mm, then 4 mm stay open.
+  for (const double each : {8.0, 12.0}) {
     const auto motions = slabs.together(20 - each);
     const double overlap = 2 * (20 - each) - 20;
     const BrickMotions bricks(slabs.tissue, slabs.weights, motions);

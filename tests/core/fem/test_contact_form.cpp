@@ -126,7 +126,7 @@ TEST_CASE("contact: the pairs that may come near are those that asking every pai
   std::vector<Key> expected;
   const auto consider = [&](Kind kind, const std::array<int, 4>& node) {
     const ContactPair pair{node, kind};
-    double least = 1e9;  // by sampling: every pair that comes nearer than 1 mm must be found
+    double least = 1e9;  // smallest distance, by sampling; every pair nearer than 1 mm must be found
     for (int k = 0; k <= 20; ++k) least = std::min(least, nearest_points(pair, boxes.rest + k / 20.0 * step).distance);
     if (least < 1) expected.push_back(key(pair));
   };

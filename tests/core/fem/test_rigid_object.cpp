@@ -15,7 +15,7 @@ using namespace limber;
 
 namespace {
 
-constexpr double kWidth = 60, kHeight = 120, kFoot = 8;  // mm; the column, and the height of the part that is held
+constexpr double kWidth = 60, kHeight = 120, kFoot = 8;  // mm: size of the column, and height of its held foot
 
 // Makes a column along z from the origin, in voxels of 2 mm.
 LabelVolume column() {

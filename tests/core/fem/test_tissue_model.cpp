@@ -133,7 +133,7 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
     same &= has(whole.free, body.tissue, v) == (from < INFINITY);
   });
   CHECK(same);
-  REQUIRE(voxels.size() > 2);  // free from the start, never free, and in between
+  REQUIRE(voxels.size() > 2);  // some voxels are free from the start, some never, some from later on
   CHECK(voxels.begin()->first == 0);
   for (const auto& [from, count] : voxels) {
     if (from == 0 || from == INFINITY) continue;
@@ -221,7 +221,7 @@ TEST_CASE(
   for (Tissue& tissue : body.tube.tissues.tissues)
     if (tissue.label == test::kFat) {
       tissue.young_modulus = 6;
-      tissue.poisson_ratio = 0.5;  // incompressible, which the solver limits
+      tissue.poisson_ratio = 0.5;  // incompressible; the solver uses at most 0.4999
     } else if (tissue.label == test::kSkin) {
       tissue.young_modulus = 30;
       tissue.poisson_ratio = 0.25;

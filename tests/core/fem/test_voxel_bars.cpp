@@ -93,7 +93,7 @@ TEST_CASE(
   // Linear tets are too stiff. The error falls with the square of their size.
   std::array<double, 2> before{INFINITY, INFINITY}, limit{};
   double size_before = 0;
-  for (const double spacing : {12.0, 8.0, 5.0}) {  // those of the qualities for a limb that thick: draft, normal, fine
+  for (const double spacing : {12.0, 8.0, 5.0}) {  // mm: for a limb of this thickness at quality draft, normal and fine
     CAPTURE(spacing);
     const TissueMesh meshed = mesh_tissue(volume, {.spacing_mm = spacing});
     const std::array<double, 2> error{moment(meshed.mesh, twisted, 2) / torque - 1,

@@ -17,7 +17,7 @@ TEST_CASE("label change: applied and taken back, it gives both volumes bit for b
     after.voxels[static_cast<std::size_t>(at)] = static_cast<Label>(9 + at % 2);
   const LabelChange change = label_difference(before, after);
   CHECK(change.voxel_count() == 8);
-  CHECK(change.runs.size() == 4);  // 0 to 2; 16 and 17, across the end of a row; 500 and 501; the last voxel
+  CHECK(change.runs.size() == 4);  // 0 to 2; 16 and 17, which are in two rows; 500 and 501; the last voxel
   LabelVolume moved = before;
   apply_change(change, moved);
   CHECK(moved.voxels == after.voxels);

@@ -12,7 +12,7 @@ using namespace limber::test;
 namespace {
 
 double distance_to_segment(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
-  double least = 1e300;  // by brute force over points of the segment
+  double least = 1e300;  // least distance to points of the segment, by brute force
   for (int i = 0; i <= 4000; ++i) least = std::min(least, glm::distance(p, glm::mix(a, b, i / 4000.0)));
   return least;
 }

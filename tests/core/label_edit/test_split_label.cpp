@@ -27,7 +27,7 @@ TEST_CASE("split: a cut across one leg divides it there, and leaves the other le
   LabelVolume split = volume;
   apply_change(split_label(volume, 1, {{0, 0, 61}, {40, 0, 61}, {0, 1, 0}}, 7), split);
   for_voxels(volume.grid, [&](const glm::ivec3& v) {
-    const bool upper = v.z * 2 > 61;  // the lower part is larger: 28 layers, the upper has 16
+    const bool upper = v.z * 2 > 61;  // the smaller part gets label 7: 16 of 44 layers
     CHECK(split.at(v) == (volume.at(v) == 1 && v.x < 20 && upper ? 7 : volume.at(v)));
   });
   // The same line drawn backwards gives the same parts.
@@ -47,7 +47,7 @@ TEST_CASE("split: a slanted cut divides along its plane") {
     const glm::dvec3 p = glm::dvec3(v) * 2.0;
     const double above = p.z - (from.z + (p.x - from.x) * (to.z - from.z) / (to.x - from.x));
     if (left_leg && std::abs(above) > 1e-6)
-      CHECK(split.at(v) == (above > 0 ? 1 : 7));  // the lower part is the smaller one
+      CHECK(split.at(v) == (above > 0 ? 1 : 7));  // the smaller part, here the lower one, gets label 7
   });
 }
 

@@ -78,7 +78,7 @@ TEST_CASE("crossings: triangles that pierce, touch or lie upon each other cross,
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 1e-12}, {1, 1, 1}, {5, 5, 1}}, two).empty());
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 1, 3}}).empty());  // an edge is shared
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}}, {{0, 1, 2}, {0, 1, 3}}) ==
-        Pairs{{0, 1}});  // folded flat
+        Pairs{{0, 1}});  // the triangles share an edge and are folded flat onto each other
   // The triangles share an edge and are unfolded flat.
   CHECK(crossings({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}}).empty());
   // The triangles share one corner.

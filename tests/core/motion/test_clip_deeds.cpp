@@ -93,7 +93,7 @@ TEST_CASE("mirrored clips: every frame plays the mirrored pose, and twice gives 
         CHECK(mm_apart(again.at(frame), pose) < 1e-6);
         moves = std::max(moves, degrees_apart(after.at(frame), pose));
       }
-      CHECK(moves > 20);  // degrees by which the mirror image differs
+      CHECK(moves > 20);  // degrees: the mirror image does differ
     }
 }
 

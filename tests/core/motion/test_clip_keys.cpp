@@ -17,7 +17,7 @@ TEST_CASE("clip keys: weights play on as before where the last of their keys are
   delete_clip_keys(deleted, {5, 15});
   CHECK(deleted.constraints->list[0].weight == 0.25);
   CHECK(!deleted.keys.weights.contains(limit.name));
-  CHECK(deleted.constraints->list[1].weight == 1);  // its weight still has a key
+  CHECK(deleted.constraints->list[1].weight == 1);  // unchanged, because one key of this weight is left
   CHECK(deleted.keys.weights.at(other.name) == std::map<int, double>{{90, 1}});
   for (const auto& [low, high] : {std::pair{35, 60}, {10, 30}, {0, 100}, {0, 3}, {95, 99}}) {
     CAPTURE(low);

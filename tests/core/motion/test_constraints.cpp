@@ -369,7 +369,7 @@ TEST_CASE("constraints: a target that goes smoothly, in and out of reach, is fol
     }
     CAPTURE(static_cast<int>(kind));
     MESSAGE("largest step of the tip ", tip, " mm, of the elbow ", elbow, " mm");
-    CHECK(tip < 12);  // mm; the target moves at most 7.3 mm in a step
+    CHECK(tip < 12);  // the hand's motion in a step, mm; the target moves at most 7.3 mm
     // When a limb becomes straight, its elbow moves like the square root of the missing length: up to 45 mm in a step
     // of 7 mm.
     CHECK(elbow < 60);

@@ -37,7 +37,7 @@ TEST_CASE("plants: limbs are found by name, and feet stand where they are low an
   CHECK(plants.size() >= 8);
   for (const Plant& plant : plants) {
     CHECK(limbs[plant.limb].is_leg);
-    CHECK(error_of(plant, rig, limbs, poses).slide > 10);  // mm that the feet slide before planting
+    CHECK(error_of(plant, rig, limbs, poses).slide > 10);  // mm: the feet do slide before planting
     // In the middle of each stance that was found, the walker has the foot down.
     const double lift = std::sin((plant.first + plant.last) / 2.0 * 0.15 + plant.limb * std::numbers::pi);
     CHECK(lift < 0.5);

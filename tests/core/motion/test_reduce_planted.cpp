@@ -98,9 +98,9 @@ TEST_CASE("plants: a limb rests while it is held, and neither where a swing turn
 
   std::vector<Pose> drifting(kFrames, rest_pose(walk.rig)), swinging = drifting, still = drifting;
   for (int f = 0; f < kFrames; ++f) {
-    drifting[f].root_translation = {0.25 * f, 0, 0};  // 15 mm/s
+    drifting[f].root_translation = {0.25 * f, 0, 0};  // the body drifts by 15 mm/s
     swinging[f].rotation[8] = glm::angleAxis(0.6 * std::sin(f * 0.1), glm::dvec3(1, 0, 0));
-    still[f].root_translation = {0.4 * std::sin(f * 1.3), 0, 0};  // mm: a tremor
+    still[f].root_translation = {0.4 * std::sin(f * 1.3), 0, 0};  // the body trembles, mm
   }
   CHECK(hands_of(drifting).empty());
   const std::vector<Plant> other_hand = hands_of(swinging);
@@ -113,7 +113,7 @@ TEST_CASE("plants: a limb rests while it is held, and neither where a swing turn
 
 TEST_CASE("plants: a limb that was held rests there, however slowly it moves before and after") {
   const CleanWalk walk;
-  for (const double speed : {4.0, 12.0}) {  // mm/s
+  for (const double speed : {4.0, 12.0}) {  // speed of the body, mm/s
     CAPTURE(speed);
     std::vector<Pose> poses(kFrames, rest_pose(walk.rig));
     for (int f = 0; f < kFrames; ++f)

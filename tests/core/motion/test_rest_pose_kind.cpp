@@ -115,7 +115,7 @@ TEST_CASE("rest stance: palms that no finger shows face as is said") {
     // Without stances, the palm keeps the direction to which the arm turns it.
     CHECK(glm::degrees(angle_between(palm({}, forward, hand), forward)) < 8);
   }
-  const glm::dvec3 inward(-1, 0, 0);  // the left palm's direction with thumbs forward
+  const glm::dvec3 inward(-1, 0, 0);  // the left palm faces inwards at rest, with the thumb forward
   CHECK(glm::degrees(angle_between(palm({RestStance::TPose, RestStance::APose}, inward, "LeftHand"), down)) < 8);
   CHECK(glm::degrees(angle_between(palm({RestStance::Anatomical, RestStance::TPose}, inward, "LeftHand"), forward)) <
         8);

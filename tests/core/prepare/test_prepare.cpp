@@ -286,7 +286,7 @@ TEST_CASE("specks take the label around them, pieces that are large enough stay"
   for (int z = 2; z < 18; ++z)
     for (int y = 2; y < 18; ++y)
       for (int x = 2; x < 18; ++x) volume.at({x, y, z}) = 1;
-  volume.at({5, 5, 5}) = 2;                               // alone
+  volume.at({5, 5, 5}) = 2;                               // a single voxel
   volume.at({9, 9, 9}) = 3, volume.at({10, 10, 10}) = 3;  // two voxels that touch at a corner
   volume.at({13, 9, 9}) = 4, volume.at({14, 9, 9}) = 4, volume.at({15, 9, 9}) = 4;
   volume.at({0, 0, 0}) = 1;  // a voxel in air

@@ -103,7 +103,7 @@ TEST_CASE("history: parts that steps share are counted once, weights by brick") 
   history.undo();
   Document named = first;
   named.tissues = std::make_shared<const TissueTable>();
-  history.commit("names", named);  // drops the stroke, and so its brick
+  history.commit("names", named);  // drops the step of the stroke, and thereby the brick that it stored
   CHECK(history.bytes() - alone < 2048);
 }
 

@@ -239,7 +239,7 @@ TEST_CASE(
   fs::remove(path);
   REQUIRE(soon([&] { return !session->status().message.empty(); }));
   CHECK(session->status().message.find("removed or replaced") != std::string::npos);
-  CHECK(same_contents(recover(journal_path(path)).document, edited));  // although the project is gone
+  CHECK(same_contents(recover(journal_path(path)).document, edited));  // recovered without the project's file
 
   CHECK(session->save({.document = edited}) == "The project's file had been removed. It was written anew.");
   CHECK(session->status().message.empty());

@@ -121,7 +121,7 @@ TEST_CASE("known figures: a torn-off piece is one more component, a hole inside 
   for (int y = 2; y < 10; ++y)
     for (int z = 2; z < 10; ++z)
       for (const int x : {27, 28}) after.at({x, y, z}) = 0;  // cuts the second box into two parts of 3 slices each
-  after.at({8, 5, 5}) = after.at({8, 6, 5}) = 0;             // a hole in the first
+  after.at({8, 5, 5}) = after.at({8, 6, 5}) = 0;             // a hole in the first box
   const VolumeMetrics metrics = compare(boxes.volume, after, boxes.tissues);
   REQUIRE(metrics.tissues.size() == 2);
   CHECK(metrics.tissues[0].components_after == 1);

@@ -17,7 +17,7 @@ using namespace limber;
 namespace {
 
 struct Case {
-  double gap;  // between the two bones at rest, voxels
+  double gap;  // gap between the two bones at rest, voxels
   double degrees, twist, tet_mm;
 };
 

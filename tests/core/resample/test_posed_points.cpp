@@ -115,7 +115,7 @@ TEST_CASE(
   double largest = 0, x = 0, y = 0, z = 0;
   for (nodes >> count >> four >> one >> one; nodes >> index >> x >> y >> z;)
     largest = std::max({largest, std::abs(x), std::abs(y), std::abs(z)});
-  CHECK(largest < 100);  // cm
+  CHECK(largest < 100);  // the unit is cm: in mm, coordinates would be larger
   CHECK(largest > 5);
 }
 

@@ -215,7 +215,7 @@ TEST_CASE(
   for (int z = 13; z < 15; ++z)
     for (int y = 5; y < 10; ++y)
       for (int x = 5; x < 10; ++x) rest.at({x, y, z}) = kShell;
-  REQUIRE(parts(rest, kMarrow) == 2);  // of 125 and 50 voxels
+  REQUIRE(parts(rest, kMarrow) == 2);  // pieces of 125 and 50 voxels
   for (const int rows : {1, 4}) {
     LabelVolume posed = rest;
     for (int y = 5; y < 5 + rows; ++y)
@@ -234,7 +234,7 @@ TEST_CASE("connectivity: bone tissue that the grid made large enough to count gi
     for (int y = 5; y < 10; ++y)
       for (int x = 5; x < 10; ++x) rest.at({x, y, z}) = kShell;
   for (int x = 5; x < 8; ++x) rest.at({x, 5, 12}) = kShell;
-  REQUIRE(parts(rest, kMarrow) == 1);  // of 125 voxels; the other piece, of 47, is too small to count
+  REQUIRE(parts(rest, kMarrow) == 1);  // a piece of 125 voxels; the other, of 47, is too small to count
   LabelVolume posed = rest;
   for (int x = 5; x < 10; ++x) posed.at({x, 5, 12}) = kMarrow;
   REQUIRE(parts(posed, kMarrow) == 2);

@@ -93,7 +93,7 @@ void check_shape(const FemShape& shape, const Fem& fem) {
   CHECK(solve.converged == solve.blocked_by.empty());
   CHECK(solve.bone_drift_mm <= std::max(2.0, *fem.spacing_mm / 2) + 1e-9);
   if (solve.converged)
-    CHECK(solve.residual_mm < 0.9);  // mm, of the few nodes that still move; all others are below 0.3
+    CHECK(solve.residual_mm < 0.9);  // mm; only of the few nodes that still move: all others are below 0.3
 }
 
 void check_volume(const Posed& posed, const Body& body) {

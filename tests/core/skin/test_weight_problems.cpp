@@ -109,7 +109,7 @@ TEST_CASE("weight problems: bones far apart in the rig are found in pairs, and t
     return v.z == 41 ? quantize({{3, 0.5}, {5, 0.5}}) : rigid_influence(0);
   });
   const auto far = of_kind(find_problems(painted.weighted_body(), *painted.weights), Kind::FarBones);
-  REQUIRE(far.size() == 2);  // bones 0 and 5, and bones 1 and 5
+  REQUIRE(far.size() == 2);  // far from each other: bones 0 and 5, and bones 1 and 5
   for (const WeightProblem& problem : far) CHECK(problem.voxels.size() == 2 * 12 * 12);
   CHECK(far[0].other == 5);
   EditScope scope;

@@ -133,8 +133,8 @@ TEST_CASE("weights io: damaged weights and weights of another volume or rig are 
   CHECK_THROWS_AS(parse(""), Error);
 
   std::string sum = whole, bone = whole;
-  sum[sum.size() - 8] ^= 1;        // the last voxel's largest weight
-  bone[bone.size() - 16 + 1] = 9;  // the bone of that weight
+  sum[sum.size() - 8] ^= 1;        // changes the last voxel's largest weight
+  bone[bone.size() - 16 + 1] = 9;  // changes the bone of the last voxel's largest weight
   CHECK_THROWS_WITH_AS(parse(sum), doctest::Contains("sum to"), Error);
   CHECK_THROWS_WITH_AS(parse(bone), doctest::Contains("belongs to bone"), Error);
 

@@ -201,7 +201,7 @@ TEST_CASE("dielectric: tissues give what others published from 10 Hz to 100 GHz"
     CHECK(std::abs(d.conductivity - published.conductivity) <=
           (last_digit > 0 ? last_digit : epsilon * published.conductivity));
   }
-  CHECK(checked.size() == 46);  // the 44 tissues, gas, and the metal of an implant
+  CHECK(checked.size() == 46);  // 44 tissues, gas, and the metal of implants
   for (const std::string& source : table.sources) CHECK(source.size() > 20);
 }
 

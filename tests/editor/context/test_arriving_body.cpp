@@ -37,7 +37,7 @@ TEST_CASE("arriving body: without frames a job goes on at once, and a cancelled 
   editor::ArrivingBodies arriving;
   const auto body = render::prepared_body(cube(), {}, render::Display::Solid, {.side = 2048}, no_progress());
   CHECK_FALSE(arriving.has_frames());
-  arriving.await(body, no_progress());  // returns although nothing uploads the body
+  arriving.await(body, no_progress());  // does not wait forever although nothing uploads the body
 
   class Stoppable : public Progress {};
   Stoppable progress;
@@ -66,7 +66,8 @@ TEST_CASE("arriving body: over a posed body with its weights shown, a volume of 
   posed.pose = std::make_shared<const Pose>(pose);
   const Path other = stage.home / "cube.nrrd";
   write_volume(*cube(), other);
-  for (const char* workspace : {"key Ctrl+2", "key Ctrl+3"}) {  // weights are shown; the body is shown posed
+  // The Skin workspace shows weights, the Pose workspace shows the body posed.
+  for (const char* workspace : {"key Ctrl+2", "key Ctrl+3"}) {
     CAPTURE(workspace);
     stage.editor().history.reset(posed, "Posed limb");
     stage.play(std::string(workspace) + "\n wait-idle");

@@ -16,7 +16,7 @@ using namespace limber::test;
 
 namespace {
 
-constexpr float kColumn = 200;  // pixels
+constexpr float kColumn = 200;  // width of the column, pixels
 
 // Shows one block in a narrow column.
 class OneBlock final : public Dialog {

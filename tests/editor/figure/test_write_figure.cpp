@@ -124,7 +124,7 @@ TEST_CASE("figure file: an SVG drawn by librsvg is the figure, with real text an
     double sum = 0;
     int far = 0;
     for (std::size_t i = 0; i < whole.rgba.size(); i += 4)
-      for (std::size_t c = i; c < i + 3; ++c) {  // compared on grey paper
+      for (std::size_t c = i; c < i + 3; ++c) {  // compares colours as they look on grey paper
         const auto seen = [&](const render::Image& image) {
           return (image.rgba[c] * image.rgba[i + 3] + 128 * (255 - image.rgba[i + 3])) / 255.0;
         };

@@ -31,7 +31,9 @@ struct Stance {
 // Finds when the recorded feet stand, from the recording only: low and slow for a tenth of a second, without the first
 // and last four frames.
 std::vector<Stance> stances_of_take() {
-  constexpr double kMm = 25.4 / 0.45, kSlow = 200, kLow = 30;  // mm per file unit; mm/s; mm
+  // Millimetres per unit of the file. A foot stands while it is slower than kSlow (mm/s) and less than kLow (mm) above
+  // the ground.
+  constexpr double kMm = 25.4 / 0.45, kSlow = 200, kLow = 30;
   constexpr int kLeftOut = 4, kShortest = 12;
   const BvhPlaces take(shared_path(kTake));
   std::vector<Stance> stances;

@@ -23,7 +23,7 @@ using namespace limber::editor;
 
 namespace {
 
-constexpr int kFrames = 85, kStart = 5;  // about two steps of the walk
+constexpr int kFrames = 85, kStart = 5;  // number of frames: about two steps; first frame
 constexpr double kRate = 60;
 
 // The editor with a walker whose left arm has keys on top of its steps. The clip begins at frame 5.

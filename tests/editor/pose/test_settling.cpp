@@ -316,7 +316,7 @@ TEST_CASE(
   SolveEditor test;
   test.set_worker_at({glm::angleAxis(0.6, glm::normalize(glm::dvec3(1, 2, 3))), glm::dvec3(8, -6, 12)});
   const render::Scene& scene = test.editor->views->scene;
-  run(*test.editor, "fem.show_volume_ratio");  // only shows a message why it cannot
+  run(*test.editor, "fem.show_volume_ratio");  // does nothing but show a message
   CHECK_FALSE(test.editor->fem_overlay->measure);
   test.play("key Ctrl+Return");
   REQUIRE(test.step_until([&] { return test.settles(); }));

@@ -19,7 +19,7 @@ namespace {
 struct Found {
   glm::ivec2 size{0};
   std::vector<glm::vec2> light;  // fractions of the key light and of the sky that reach the pixel
-  std::vector<float> depth;      // mm; kNothingDepth: no hit
+  std::vector<float> depth;      // depth of the surface, mm; kNothingDepth: no hit
 
   // Returns the mean over a square around a pixel, without pixels of the background.
   glm::dvec2 around(const glm::dvec2& pixel, int reach) const {

@@ -354,7 +354,7 @@ TEST_CASE(
     }
   };
   const int lots = (slots + WeightTexture::kLot - 1) / WeightTexture::kLot;
-  CHECK(to_the_end() == lots);  // first upload
+  CHECK(to_the_end() == lots);  // the first upload takes all lots
   is_as_anew();
 
   const auto before = scene.weights->weights;
