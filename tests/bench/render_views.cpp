@@ -111,7 +111,7 @@ void measure_turning(Renderer& renderer, const Scene& scene, const Camera& first
               view.scale(), 1 / median(wall), median(cpu));
 }
 
-// Draws only every `scale`-th pixel in x and in y.
+// Measures how fast the volume turns if only every `scale`-th pixel is drawn in x and in y, and prints it.
 void measure_turning_at(Renderer& renderer, const Scene& scene, const Camera& first, int scale) {
   View3D view(renderer);
   Camera camera = first;

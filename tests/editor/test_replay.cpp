@@ -48,7 +48,7 @@ TEST_CASE("replay: a key pressed and released between two frames is not lost") {
   for (int i = 0; i < 5; ++i)
     for (const bool down : {true, false}) test.host->events.push(editor::KeyChanged{editor::Key::T, down});
   test.player.settle();
-  CHECK(test.fact("strip") == "no");  // it was switched five times
+  CHECK(test.fact("strip") == "no");  // the key T, which shows or hides the strip, was pressed five times
 }
 
 TEST_CASE("replay: clicks faster than frames all arrive") {

@@ -88,7 +88,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Compares the tissues at every resolution that a moving picture may have.
+// Checks that the moving picture of the posed body shows the same tissues as the picture at rest, at every resolution
+// that a moving picture may have.
 void check_tissues(Studio& studio, const BentBody& body) {
   View3D rest(studio.renderer), view(studio.renderer);
   const Image whole = draw(rest, body.resting, body.camera, kSize);
@@ -102,7 +103,8 @@ void check_tissues(Studio& studio, const BentBody& body) {
   }
 }
 
-// Compares the cost with that of drawing the unposed volume, at the moving picture's resolution and at the full one.
+// Compares the cost of a moving picture of the posed body with that of a picture of the same scene by a second view, at
+// the resolution of the moving picture and at the full one.
 void check_cost(Studio& studio, const BentBody& body) {
   View3D view(studio.renderer), volume(studio.renderer);
   Camera camera = body.camera;

@@ -178,7 +178,7 @@ TEST_CASE("heat cells: no weight crosses a seam between fingers that touch, also
 
 TEST_CASE("heat cells: a sheet of one voxel beside another sheet keeps its own weights") {
   // From x = 18 on, the fingers are sheets of one voxel, one voxel apart, that run side by side across the hand: all
-  // their blocks hold parts of both. Each is joined to the flesh of its own finger only.
+  // their blocks hold parts of both. Each sheet is joined to the flesh of its own finger only.
   const auto finger_of = [](const glm::ivec3& v) {
     if (v.x < 18) return v.z < 40 ? 0 : -1;
     if (v.x >= 30) return 1;

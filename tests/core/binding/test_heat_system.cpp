@@ -101,7 +101,9 @@ std::vector<double> exact_temperatures(const RandomBody& body, int bone, int col
   return {x.data(), x.data() + x.size()};
 }
 
-// Returns the temperatures by bone and tissue voxel.
+// Returns the temperatures by bone and tissue voxel, as HeatSolver finds them.
+//   residual    largest residual of the solution that the solver accepts
+//   iterations  out: number of iterations
 std::vector<std::vector<float>> solved_temperatures(const RandomBody& body, double residual,
                                                     int* iterations = nullptr) {
   const HeatGraph soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);

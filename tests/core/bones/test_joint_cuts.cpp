@@ -97,7 +97,8 @@ FusedBody coarse_leg(const glm::dvec3& off) {
   return fused({{hip, knee, 13, 32, 0}, {knee, ankle, 12, 30, 1}}, rig, {51, 51, 52}, {2, 2, 8});
 }
 
-// Makes a finger whose bones join the given joints, in voxels of 1 mm.
+// Makes the bones of a finger, each from one of the joints to the next, mm.
+//   first_bone  index of the first one's rig bone; the next ones follow
 std::vector<Dumbbell> finger(const std::vector<glm::dvec3>& joints, int first_bone) {
   std::vector<Dumbbell> bones;
   for (std::size_t k = 0; k + 1 < joints.size(); ++k)

@@ -44,7 +44,8 @@ struct Arm {
   }
 };
 
-// Starts the program, sends it a signal after a while and tells how it ended.
+// Starts the program and sends it a signal after `wait`. Returns its exit code, or 128 + the signal's number if a
+// signal ended it.
 int exit_code_after(int signal, std::chrono::milliseconds wait, const std::vector<std::string>& arguments) {
   std::vector<std::string> words{LIMBER_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());

@@ -50,7 +50,8 @@ int cells_there(const Path& folder) {
   return cells;
 }
 
-// Starts the study, sends it a signal `after` seconds after `cells` cells are there, and returns its exit code.
+// Starts the study, waits until `cells` cells are computed and then `after` seconds, and sends it a signal. Returns its
+// exit code, or 128 + the signal's number if a signal ended it.
 int ended_by(int signal, const Path& study, const Path& out, int cells, double after) {
   const pid_t child = ::fork();
   if (child == 0) {

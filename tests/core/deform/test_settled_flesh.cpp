@@ -248,8 +248,8 @@ TEST_CASE("posed bones: the way out of a bone is the shortest, wherever the pose
       PosedBones(limb.volume, limb.tissue, limb.weights, LabelSet(65536), motions).way_out({middle, middle, 30}));
 }
 
-// Two slabs of 12 voxels with air between, each on its own bone. Both have a third bone's weight in part, so that both
-// have cells.
+// Two slabs of 12 voxels with air between, each on its own bone. Both also follow a third bone in part, since cells are
+// made only where weights blend.
 struct Slabs {
   LabelVolume volume;
   TissueVoxels tissue;

@@ -146,7 +146,7 @@ TEST_CASE(
     // the shaken box has negative eigenvalues, so the projection changes something
     CHECK((projected - exact).norm() > 1e-6);
   }
-  // The same holds with patches, whose pressures have any sign.
+  // The projected Hessian has no negative eigenvalues with patches either, whose pressures have any sign.
   for (unsigned seed = 0; seed < 3; ++seed) {
     Shaken shaken(2.0, seed);
     NodePositions g;

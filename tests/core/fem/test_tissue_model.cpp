@@ -137,7 +137,7 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
   CHECK(voxels.begin()->first == 0);
   for (const auto& [from, count] : voxels) {
     if (from == 0 || from == INFINITY) continue;
-    // A pose that goes no further than `from` does not have these voxels free.
+    // If the pose ends at the position `from` of the path, the voxels that become free there are not free.
     const DeformingRegion part = body.moving(kWhole * from, settings);
     bool still = true;
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {

@@ -41,6 +41,9 @@ void check_refused(const std::string& gltf, const std::string& part) {
 }
 
 // Returns a file with the positions of a square's four corners and the given indices.
+//   mode       glTF's number for the kind of primitive, 4 to 6: triangles, strip, fan
+//   component  glTF's number for the type of the indices: 5121, 5123 or 5125 for 8, 16 or 32 bits
+//   stride     bytes from one position to the next
 std::string square(int mode, const std::vector<std::uint32_t>& indices, int component, int stride) {
   std::string data;
   for (const glm::vec3& p : {glm::vec3(0, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(1, 1, 0)}) {

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kTau = 2 * std::numbers::pi;
 
-// Makes one cycle of a walk along a circle that does not quite close: at its end the arms are higher and the body is
-// lower.
+// Makes one cycle of a walk along a circle that does not quite close: at its end all bones but the root are turned by
+// `open` radians more than at its start, and the body is 30 mm times `open` lower.
 std::vector<Pose> circling(const Armature& rig, int frames, double open) {
   std::vector<Pose> poses;
   for (int f = 0; f < frames; ++f) {

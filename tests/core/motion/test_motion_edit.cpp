@@ -25,7 +25,8 @@ glm::dquat about(int axis, double angle) {
   return glm::angleAxis(angle, unit);
 }
 
-// Returns the largest distance between the same joint in two motions over all frames.
+// Returns the largest distance between the same joint in two motions, over all frames of `a`.
+//   frame_of_b  returns the frame of `b` that is compared with a frame of `a`
 double farthest(const Motion& a, const Motion& b, const std::function<int(int)>& frame_of_b) {
   double most = 0;
   for (int frame = 0; frame < a.frame_count; ++frame) {

@@ -212,7 +212,7 @@ TEST_CASE("reorient moves no voxel in the world, and back again is the identity"
     CHECK(labels_by_place(turned) == labels_by_place(volume));
     CHECK(reorient(turned, code).grid == turned.grid);
   }
-  const LabelVolume back = reorient(reorient(volume, "SLP"), "LAS");  // the volume's own orientation
+  const LabelVolume back = reorient(reorient(volume, "SLP"), "LAS");  // LAS is the orientation of `volume`
   CHECK(back.voxels == volume.voxels);
   CHECK(back.grid.size == volume.grid.size);
   CHECK(glm::length(back.grid.origin - volume.grid.origin) < 1e-9);

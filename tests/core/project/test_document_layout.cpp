@@ -66,7 +66,8 @@ TEST_CASE("project: a document of the first layout opens, its motion as a clip")
   const Node root = chunks.node(writer.write(now, chunks, Packing::Quick));
   REQUIRE(root.nodes.size() == 2);
 
-  // Layout 1: volume, tissues, volume type, armature, weights, pose, motion, visibility; then the results.
+  // Layout 1 has a flag for each of volume, tissues, volume type, armature, weights, pose, motion and visibility, then
+  // the number of results.
   Node old;
   old.nodes = {root.nodes[0], chunks.node(root.nodes[1]).nodes[0]};
   ByteWriter out;

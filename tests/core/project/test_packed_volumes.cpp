@@ -198,7 +198,7 @@ TEST_CASE("packed volumes: a volume that something still holds comes back as the
   History history(first, "Open", 6 * kMb);
   Document now = first;
   for (int i = 0; i < 20; ++i) history.commit("stroke", now = painted(now, random));
-  CHECK_FALSE(history.steps().front().document.volume);  // it exists only in packed form
+  CHECK_FALSE(history.steps().front().document.volume);  // the oldest state's volume is kept only in packed form
   history.jump(0);
   CHECK(history.current().volume == held);
 }

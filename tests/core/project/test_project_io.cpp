@@ -124,7 +124,7 @@ TEST_CASE("project: saving writes only what changed") {
   project.document.weights = std::make_shared<const SkinWeights>(std::move(weights));
   update_project(project, path, mark, Unused::Keep, writer);
   const ProjectSummary after = summarize_project(path);
-  CHECK(after.chunks - before.chunks == 3);  // the bricks' group, the weights' node, the root
+  CHECK(after.chunks - before.chunks == 3);  // new chunks: the bricks' group, the weights' node, the root
   CHECK(after.chunk_bytes - before.chunk_bytes < before.chunk_bytes / 3);
   CHECK(same_contents(read_project(path).document, project.document));
 }

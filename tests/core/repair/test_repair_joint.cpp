@@ -47,8 +47,10 @@ Limb phantom_arm(double spacing) {
   return {std::move(phantom.volume), std::move(phantom.tissues), std::move(phantom.armature), "Forearm"};
 }
 
-// Reads a limb.
-//   spacing  resamples the volume to this spacing, mm; none: the file's spacing
+// Reads a limb from shared files.
+//   tissues  a tissue table, or empty: the tissues of the volume's file
+//   bone     the rig bone at whose head the repaired joint is
+//   spacing  resamples the volume to this spacing, mm; none: keeps the file's spacing
 Limb shared_limb(const std::string& volume, const std::string& rig, const std::string& tissues, const std::string& bone,
                  std::optional<double> spacing = {}) {
   VolumeFile file = read_volume(shared_path(volume));

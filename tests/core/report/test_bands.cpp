@@ -29,8 +29,9 @@ struct PulledBar {
   }
 };
 
-// Makes the bar.
+// Makes a bar along z with a rig of two bones that meet at `joint`.
 //   begin, length  start and length of the stretched part along z, mm; all above it moves up rigidly
+//   factor         factor by which this part becomes longer
 PulledBar pulled_bar(double begin, double length, double factor, const glm::dvec3& joint) {
   PulledBar bar;
   const double lift = length * (factor - 1);

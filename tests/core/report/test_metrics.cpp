@@ -19,6 +19,8 @@ LabelVolume random_volume(const glm::ivec3& size, int labels, double air, unsign
 }
 
 // Counts voxels of one label that steps from `start` reach, across faces (6) or also across edges and corners (26).
+//   seen            out: 1 for each voxel that was counted
+//   reaches_border  out: set to true if a step across a face would leave the grid
 std::int64_t flood(const LabelVolume& volume, std::vector<char>& seen, const glm::ivec3& start, int connectivity,
                    bool* reaches_border) {
   const Label label = volume.at(start);

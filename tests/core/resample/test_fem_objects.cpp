@@ -54,7 +54,8 @@ TriangleMesh placed(TriangleMesh surface, const glm::dvec3& at) {
   return surface;
 }
 
-// Returns a block that comes from the side of +x and ends `depth` mm under the skin of the forearm.
+// Returns a block that comes from the side of +x and ends `depth` mm under the skin of the forearm, or where it presses
+// with a force of `newton`, if this is not 0.
 FemObject block(double depth, double newton = 0) {
   FemObject object{"block", {}, glm::dvec3(1, 0, 0)};
   const glm::dvec3 middle = (arm().low + arm().high) / 2.0;

@@ -108,10 +108,10 @@ TEST_CASE(
   rig.bones.push_back({"Hips", -1, {0, 0, 0}, {0, 0, 100}, 0, {}});
   rig.bones.push_back({"Spine", 0, {0, 0, 100}, {0, 0, 400}, 0, {}});
   rig.bones.push_back({"Neck", 1, {0, 0, 400}, {0, -30, 480}, 0, {}});
-  rig.bones.push_back({"LeftArm", 1, {150, 0, 380}, {450, 0, 380}, 0, {}});  // T-pose
+  rig.bones.push_back({"LeftArm", 1, {150, 0, 380}, {450, 0, 380}, 0, {}});  // the arm of a T-pose
   rig.bones.push_back({"LeftForeArm", 3, {450, 0, 380}, {700, 0, 380}, 0, {}});
   rig.bones.push_back({"LeftHand", 4, {700, 0, 380}, {790, 0, 330}, 0, {}});
-  rig.bones.push_back({"LeftUpLeg", 0, {90, 0, 0}, {90, -400, 0}, 0, {}});  // sitting
+  rig.bones.push_back({"LeftUpLeg", 0, {90, 0, 0}, {90, -400, 0}, 0, {}});  // the thigh of a sitting body
   rig.bones.push_back({"LeftLeg", 6, {90, -400, 0}, {90, -400, -400}, 0, {}});
   // This foot slopes down to the toes by 18 degrees.
   rig.bones.push_back({"LeftFoot", 7, {90, -400, -400}, {90, -520, -440}, 0, {}});
@@ -128,7 +128,7 @@ TEST_CASE(
   // Of the hip's 120 degrees, 30 are left, but the 90 that straighten the thigh need a cone of 90.
   CHECK(glm::degrees(usual_limits(rig, 6, joint("Hip")).cone) == doctest::Approx(90));
   CHECK(glm::degrees(usual_limits(rig, 7, joint("Knee")).minimum) == doctest::Approx(-90));
-  rig.bones[8].tail = {90, -480, -540};  // on tiptoe
+  rig.bones[8].tail = {90, -480, -540};  // the foot stands on tiptoe
   CHECK(glm::length(swing("LeftFoot", BodyPart::Foot)) == doctest::Approx(glm::degrees(std::atan2(140.0, 80.0))));
   // Without a trunk, the direction of a hanging arm is unknown.
   CHECK(ball_swing_at_rest(bent_arm(60, {1, 0, 0, 0}), 0, BodyPart::UpperArm) == glm::dvec3(0));

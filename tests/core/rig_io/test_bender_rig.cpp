@@ -41,7 +41,7 @@ TEST_CASE("bender armature: the roll is the one that gives the bone's own axes")
   const Armature rig = parse_bender_arm(
       R"(<armature><bone name="b" head="0 0 0" tail="0 3 0" orientation="0 0.38268343 0 0.92387953"/></armature>)",
       "test");
-  // The file's quarter turn about y is applied by half: x turns to (1, 0, -1) in RAS, which is (-1, 0, -1) in LPS.
+  // The orientation is a rotation by 45 degrees about y. It takes x to (1, 0, -1) in RAS, which is (-1, 0, -1) in LPS.
   const glm::dvec3 x = rest_axes(rig.bones[0])[0];
   CHECK(is_near(x, glm::normalize(glm::dvec3(-1, 0, -1))));
 }

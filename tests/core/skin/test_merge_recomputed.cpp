@@ -50,7 +50,8 @@ TEST_CASE("recomputed weights: one bone's alone, the others share the rest as th
     CHECK(std::abs(influence.of(0) / influence.of(1) - 0.5 / 0.3) < 1e-3);
     CHECK(influence.weight[0] + influence.weight[1] + influence.weight[2] + influence.weight[3] == kFullWeight);
   });
-  // If a bone loses all its weight and no other bone has any, the computed weights replace it.
+  // If only the recomputed bone had weight in a voxel, what it loses there goes to the bones that have it in the
+  // computed weights.
   Painted all_right = even();
   all_right.set([](const glm::ivec3&) { return rigid_influence(2); });
   const SkinWeights taken =

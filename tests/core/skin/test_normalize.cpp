@@ -45,7 +45,8 @@ BoneSet any_locks(std::mt19937& random) {
 
 int weight_of(const Influence& influence, int bone) { return WeightRules::sum_of(influence, std::span(&bone, 1)); }
 
-// Returns true if the weights fall, sum to kFullWeight, name no bone twice, and have bone 0 where the weight is 0.
+// Returns true if the weights are in descending order, sum to kFullWeight, name no bone twice, and name bone 0 where
+// the weight is 0.
 bool is_sound(const Influence& influence) {
   int sum = 0;
   for (int i = 0; i < 4; ++i) {

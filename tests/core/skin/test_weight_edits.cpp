@@ -31,7 +31,7 @@ Painted random_arm(double spacing, unsigned seed) {
   return painted;
 }
 
-// Sets weights that change smoothly along the arm's bones.
+// Sets weights that fall exponentially with the distance from each bone, to 1/e at `width` mm.
 void blend_along_bones(Painted& painted, double width) {
   const AffineTransform world = world_from_voxel(painted.body.volume.grid);
   painted.set([&](const glm::ivec3& v) {

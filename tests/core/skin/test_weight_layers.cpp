@@ -87,7 +87,7 @@ TEST_CASE("weight layers: the base may change below a layer, which keeps what it
   const SkinWeights after = composed(layers);
   CHECK(at(painted.tissue, after, {3, 3, 20}) == at(painted.tissue, before, {3, 3, 20}));
   CHECK(at(painted.tissue, after, {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
-  // While layer 0 is painted, the new base shows beside it.
+  // While layer 0 is painted, the new base shows where the layer covers nothing.
   CHECK(at(painted.tissue, canvas(layers, 0), {3, 3, 40}).of(1) == doctest::Approx(0.25).epsilon(1e-3));
 }
 

@@ -144,7 +144,7 @@ struct Agreement {
 };
 
 Agreement dice(const LabelVolume& a, const LabelVolume& b) {
-  std::vector<std::array<double, 3>> count(65536);  // voxels in a, in b, in both
+  std::vector<std::array<double, 3>> count(65536);  // by label: voxels in a, in b, in both
   for (size_t i = 0; i < a.voxels.size(); ++i) {
     ++count[a.voxels[i]][0];
     ++count[b.voxels[i]][1];

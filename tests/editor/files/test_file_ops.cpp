@@ -23,7 +23,7 @@ using Effect = std::function<bool(Stage&, const Seen&)>;
 Effect becomes(const char* fact, const char* value = "shown") {
   return [=](Stage& s, const Seen&) { return s.is(fact, value); };
 }
-// The effect is a file of this name that holds what the document holds.
+// The effect is a file of this name in the home folder that `same` finds equal to the document.
 template <class Same>
 Effect writes(const char* name, Same same) {
   return [=](Stage& s, const Seen&) {

@@ -159,7 +159,7 @@ class RandomUser {
     while (!test_.host->events.empty());
     for (int i = 0; i < 3; ++i) step();
   }
-  // Counts the commands so far, and whether a tool is active.
+  // Returns a number that changes when a command runs, and when a tool starts or ends.
   std::size_t commands() {
     std::size_t count = editor().history.position();
     for (const auto& [id, times] : editor().preferences.command_counts)

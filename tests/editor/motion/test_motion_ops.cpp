@@ -84,7 +84,7 @@ std::function<void(Stage&)> edited(int frame, const std::function<void(Clip&)>& 
     s.play("wait-idle");
   };
 }
-// Sets keys at frames 10 and 30, and selects some of them.
+// Sets keys at frames 10 and 30, and selects those at the frames `chosen`.
 std::function<void(Stage&)> with_chosen(std::set<int> chosen) {
   return [=](Stage& s) {
     with_keys(0, {10, 30})(s);

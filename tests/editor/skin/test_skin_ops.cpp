@@ -255,7 +255,7 @@ TEST_CASE("skin: an isolated region is all that rays, slices and the pointer fin
   CHECK(tissue_shown() == fore);
   CHECK(fore < all);
   CHECK(test.fact("weights") == "active");
-  // Later edits change the count too. In a large body this happens in the background.
+  // Weight edits change which voxels are shown. With edited_at_once = 0, this is computed in the background.
   const auto shown_of_large = [&](std::int64_t at_once) {
     test.editor->skin->painting->edited_at_once = at_once;
     Document next = test.editor->document();

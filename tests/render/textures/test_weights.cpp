@@ -354,7 +354,7 @@ TEST_CASE(
     }
   };
   const int lots = (slots + WeightTexture::kLot - 1) / WeightTexture::kLot;
-  CHECK(to_the_end() == lots);  // the first upload takes all lots
+  CHECK(to_the_end() == lots);  // the first upload takes one frame per lot of slots
   is_as_anew();
 
   const auto before = scene.weights->weights;
