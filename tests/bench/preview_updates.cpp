@@ -92,7 +92,7 @@ Pose turned(const Armature& rig, const std::string& bone, double degrees) {
   return pose;
 }
 
-// Turns every bone a little.
+// Returns a pose in which every bone is turned a little, by an angle that depends on i.
 Pose new_pose(const Armature& rig, int i) {
   Pose pose = rest_pose(rig);
   for (size_t bone = 0; bone < pose.rotation.size(); ++bone)

@@ -39,7 +39,8 @@ void Stage::put_away() {
 
 void Stage::watch() {
   ran_.clear();
-  // The editor may replace its operators, so they are wrapped again each time.
+  // Wraps each operator, so that it is recorded when it runs. The editor may replace its operators, so this is done
+  // each time.
   for (editor::Operator& op : editor().operators)
     op.run = [this, id = op.id, act = op.run](editor::Editor& e) {
       ran_.insert(id);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Fuzzes the import of a DICOM series, with images whose elements are arbitrary: they become a volume with a valid grid
-// and all of its voxels, or are refused with Error. GDCM itself is not fuzzed: a separate process runs it because of
-// its behaviour on damaged files. The two functions that the program calls in it are replaced by functions that read a
-// plain list of elements.
-//   an image: its number of elements, then for each group and element (4 bytes), length (1 byte) and bytes; then pixels
+// and all of its voxels, or are refused with Error. GDCM itself is not fuzzed: it ends its process on some damaged
+// files, so the program runs it in a separate one. The two functions through which the program calls GDCM are replaced
+// by functions that read a plain list of elements. An image is the number of its elements, then for each group and
+// element (4 bytes), length (1 byte) and bytes; then its pixels.
 #include <array>
 #include <cmath>
 #include <cstdint>

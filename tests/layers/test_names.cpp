@@ -88,8 +88,8 @@ TEST_CASE("names: no file has a name that was replaced") {
     }
 }
 
-// Two types of one name in one namespace violate the one-definition rule, even in files that do not include each other:
-// the linker keeps only one of two inline functions, such as the destructors.
+// Two types of one full name violate the one-definition rule, even in files that do not include each other: of two
+// inline functions of these types, such as their destructors, the linker keeps only one.
 TEST_CASE("names: no two types of one namespace have the same name") {
   static const std::regex opens(R"(^namespace\s*([\w:]*)\s*\{)"), closes(R"(^\}.*// namespace)"),
       type(R"(^(?:struct|class|union|enum class|enum)\s+(\w+)(?:\s+final)?\s*(?::[^:].*)?\{)");

@@ -105,7 +105,7 @@ class PartsOfBody {
   std::map<int, int> part_of_bone_;
 };
 
-// Those limbs of a rig that are parts of the body.
+// The limbs of a rig that are parts of the body, and where they are free.
 class FreeLimbs {
  public:
   FreeLimbs(const Json& truth, const Armature* armature) : armature_(armature) {

@@ -14,9 +14,10 @@ struct EditScript {
   int edits = 200;
   double pause = 0.01;  // mean pause between two edits, seconds
   std::uint32_t seed = 0;
-  // Called when the session has got the edit.
+  // Called with the edit's number when the session has received the edit.
   std::function<void(int edit)> after_edit;
-  // Called after each pause. all_kept: the session says that all edits are on the disk.
+  // Called with the number of the last edit after each pause. all_kept: the session says that all edits are on the
+  // disk.
   std::function<void(int edit, bool all_kept)> after_pause;
 };
 

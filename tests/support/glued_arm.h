@@ -22,6 +22,7 @@ struct GluedArm {
   Armature rig;
   std::vector<bool> is_arm;  // for each voxel of the grid: true if it belongs to the arm
 
+  // Makes the body in voxels of 4 mm.
   //   gap    smallest distance of air between arm and trunk, mm; negative: they are grown together
   //   names  true: the arm's flesh has a label and a name of its own
   explicit GluedArm(double gap, bool names = false) {

@@ -11,6 +11,7 @@
 
 namespace limber::test {
 
+// Returns a volume of `size` voxels with that many seed points.
 //   labels  number of labels besides air
 inline LabelVolume random_blobs(std::mt19937& random, const glm::ivec3& size, int seeds, Label labels) {
   LabelVolume volume{{.size = size}, ZeroedVector<Label>(std::size_t(size.x) * size.y * size.z)};

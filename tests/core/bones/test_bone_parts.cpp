@@ -54,7 +54,7 @@ SmallBody muscle_block(const glm::ivec3& size) {
   body.tissues = muscle_and_bone();
   return body;
 }
-// Draws a tube of bone with a pointed start, so that it touches a neighbouring bone only there.
+// Draws a tube of bone with a pointed start, which touches a neighbouring bone by its point only.
 void draw_tube(SmallBody& body, const glm::dvec3& from, const glm::dvec3& to, double radius) {
   const glm::dvec3 along = glm::normalize(to - from);
   const glm::ivec3 size = body.volume.grid.size;

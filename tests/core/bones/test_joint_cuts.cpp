@@ -174,6 +174,7 @@ struct Head {
   double radius, apex;  // mm; the apex of the head lies this far beyond the joint
 };
 // Makes a finger as one rod whose bones end in rounded heads, in voxels of 1 mm.
+//   heads  the head at each joint between two bones
 FusedBody rounded_finger(const std::vector<glm::dvec3>& joints, const Armature& rig, const std::vector<Head>& heads) {
   std::vector<Dumbbell> bones = finger(joints, 0);
   for (Dumbbell& bone : bones) bone.shaft = bone.knob = 5;

@@ -112,8 +112,8 @@ TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated w
     return to;
   };
   const std::string walk = made(shared_path("data/bvh/cmu_12_01_walk.bvh").string(), "walk.bvh", {"--smooth", "6"});
-  // The recording has two steps of kSteps frames from frame kFirst on, after which the body is back in its first pose.
-  // Loops are blended over kSeam frames.
+  // From frame kFirst on, the recording has two steps that take kSteps frames together. Then the body is back in its
+  // first pose. Loops are blended over kSeam frames.
   constexpr int kFirst = 174, kSteps = 152, kSeam = 36;
   limber::Motion cycle = limber::read_bvh(walk);
   cycle.values.erase(cycle.values.begin() + (kFirst + kSteps + 1) * cycle.channel_count, cycle.values.end());

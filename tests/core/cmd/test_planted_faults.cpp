@@ -170,7 +170,7 @@ TEST_CASE("planted faults: a rig that is mirrored, in RAS axes, or beside the bo
     const TemporaryFolder folder;
     Figure figure = block_figure();
     rewrite_rig(figure, one.move);
-    // The body must lie behind the origin, where the rig in RAS axes has it.
+    // Moves the body behind the origin, so that a rig with the signs of x and y exchanged lies far from it.
     if (std::string(one.sentence) == "RAS axes") figure.volume.grid.origin.y += 100;
     write_figure(figure, folder.path());
     check_caught(resample(folder, {}), folder, one.sentence);

@@ -18,7 +18,7 @@ struct Ball {
   SkinWeights weights;
   LabelSet shown = LabelSet(65536, 0);
 
-  //   edge  voxels
+  // Makes the ball, 22 mm in diameter, on a grid of `edge` voxels along each axis.
   explicit Ball(int edge = 30) {
     volume.grid.size = glm::ivec3(edge);
     volume.grid.spacing = 30.0 / edge * glm::dvec3(1, 1, 1.5);

@@ -143,7 +143,7 @@ TEST_CASE(
     CHECK(values[0] >= -1e-10 * std::max(1.0, values[80]));
     CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected - exact).eigenvalues()[0] >=
           -1e-10 * std::max(1.0, values[80]));
-    // the shaken box has negative eigenvalues, so the projection changes something
+    // The shaken box has negative eigenvalues, so the projection changes something.
     CHECK((projected - exact).norm() > 1e-6);
   }
   // The projected Hessian has no negative eigenvalues with patches either, whose pressures have any sign.

@@ -75,7 +75,7 @@ double pressure_at(const TetMesh& mesh, double nu, double inner, double a, int p
   for (const int v : pins.node)
     if (radius(rest.row(v)) < inner * (1 + 1e-6))
       for (int c = 0; c < (axial ? 2 : 3); ++c) work += force(v, c) * rest(v, c) / inner;
-  // A meshed surface of radius r encloses `unit` r^n.
+  // A meshed surface of radius r encloses the volume `unit` r^n, with `unit` from the mesh's volume.
   double solid = 0;
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
     solid += determinant(rest, mesh.T(t, 0), mesh.T(t, 1), mesh.T(t, 2), mesh.T(t, 3)) / 6;

@@ -74,7 +74,8 @@ Eigen::RowVector3d twisted(const Eigen::RowVector3d& p) {
   return {c * p[0] - s * p[1], s * p[0] + c * p[1], p[2]};
 }
 
-// Pure bending about y, to first order [Timoshenko & Goodier, Theory of Elasticity, 1970, section 102].
+// Returns the position of a point of the bar in pure bending about y, to first order [Timoshenko & Goodier, Theory of
+// Elasticity, 1970, section 102].
 Eigen::RowVector3d bent(const Eigen::RowVector3d& p) {
   const double z = p[2] - kLength / 2;
   return p + kCurvature * Eigen::RowVector3d(0.5 * (z * z + kPoisson * (p[0] * p[0] - p[1] * p[1])),

@@ -35,7 +35,8 @@ double largest_difference(const Corners& a, const Corners& b) {
   return largest;
 }
 
-// Returns the largest distance from a triangle to the nearest one of the others, which may start at another corner.
+// Returns the largest distance from a triangle of `triangles` to the nearest one of `others`. The distance of two
+// triangles is that of their corners; their lists of corners may start at different corners.
 double farthest_triangle(const Corners& triangles, const Corners& others) {
   double farthest = 0;
   for (std::size_t a = 0; a < triangles.size(); a += 3) {

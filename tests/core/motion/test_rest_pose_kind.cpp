@@ -96,7 +96,7 @@ TEST_CASE("rest stance: a stick named a T-pose becomes the T-pose, which stays a
       CHECK(glm::distance(is[j].translation - is[parent].translation, was[j].translation - was[parent].translation) <
             1e-6);
   }
-  // A motion that is straightened while it moves is unchanged too.
+  // The rest pose of a motion decides: a motion that moves but rests in the T-pose is unchanged too.
   const Motion moving = t_pose_body({{10, 20, 30}});
   CHECK(straightened(moving, RestStance::TPose, -1).turned.empty());
 }

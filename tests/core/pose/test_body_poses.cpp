@@ -97,7 +97,7 @@ Body body_of(const RigNames& names, const std::vector<HandTurn>& turns = {}) {
   return {names, rested(body_rig(names), turns)};
 }
 
-// Turns of bones of kAnatomistsNames that give the rig another rest pose.
+// Returns rotations of bones, by kAnatomistsNames, that make a T-pose the rest pose. Angles of arms and palms, degrees.
 std::vector<HandTurn> t_pose(double abduction, double palms) {
   return {{"LeftUpperArm", {0, 1, 0}, -abduction},
           {"RightUpperArm", {0, 1, 0}, abduction},

@@ -190,11 +190,11 @@ TEST_CASE("close skin: at the volume's border a cut stays open, and what only to
   CHECK_FALSE(inward.is_padded);
   CHECK(inward.volume.at({10, 10, 0}) == kSkin);
   CHECK(inward.volume.at({30, 10, 0}) == kFlesh);
-  // With air added around it, the post counts as ending there and is closed.
+  // With a layer of air around the body, nothing is cut off by the border, so the ends of the post get skin too.
   const ClosedSkin padded = close_skin(pad(volume, 1), table(), SkinGrowth::Inward);
   CHECK(padded.volume.at({31, 11, 1}) == kSkin);
   CHECK(padded.cut == std::array<std::int64_t, 6>{});
-  // Bone at the border always counts as a cut.
+  // Where bone touches the border, the body always counts as cut off by it.
   volume.at({10, 10, 0}) = kUpper;
   CHECK_FALSE(close_skin(volume, table(), SkinGrowth::Outward).is_padded);
 }

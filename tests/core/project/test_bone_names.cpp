@@ -231,7 +231,8 @@ TEST_CASE("bone names: constraints follow their bones and targets, mirrored ones
     CHECK(now.clips[0]->keys.weights ==
           std::map<std::string, std::map<int, double>>{{name, {{1, 0.25}}}, {name + " 2", {{2, 0.5}}}});
   }
-  // On the mirrored rig, the constrained clip turns bone 1 by the mirror image of its old rotation.
+  // The arm's constraint, whose target is fixed to the trunk, turns the mirrored arm by the mirror image of its old
+  // rotation.
   const auto after = std::make_shared<const Armature>(mirrored);
   for (const int frame : {0, 9, 20}) {
     const glm::dquat was = ClipOnRig(before.clips[0], before.armature).at(frame).rotation[1];

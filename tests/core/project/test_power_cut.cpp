@@ -73,7 +73,8 @@ TEST_CASE(
                      random());
       kept = work_until_the_cut(folder, power, static_cast<std::uint32_t>(round));
       happened = power.happened();
-      // How often files are synced depends on the speed of the machine.
+      // The number of operations depends on the machine's speed. If the work ended before the cut, later cuts come
+      // earlier.
       if (happened) power.restore();
       else operations = std::min(operations, power.operations());
     }

@@ -101,7 +101,7 @@ TEST_CASE("connectivity: a strand that fell between the voxels' centres is trace
   const LabelVolume rest = block_with_strand();
   LabelVolume posed = rest;
   cut(posed, 9, 14, kFlesh);
-  // In the cut, each voxel's rest point lies two voxels beside the voxel, so the posed voxels did not read the strand.
+  // In the cut, each voxel's rest point lies two voxels beside the voxel, so the voxels of the strand read flesh.
   const auto beside = [](const glm::ivec3& v) {
     return glm::dvec3(v) + glm::dvec3(v.z >= 9 && v.z <= 14 ? 2 : 0, 0, 0);
   };

@@ -38,8 +38,9 @@ inline Bone bone_between(const char* name, int parent, const glm::dvec3& head, c
   return bone;
 }
 
+// Makes the limb, with two voxels of air on every side.
 //   width   voxels across the bar; the bones are a third of it
-//   length  voxels along it, with two of air at either end
+//   length  voxels along it
 //   gap     voxels between the bones
 inline SmallBody two_bone_bar(int width = 12, int length = 40, int gap = 6, const glm::dvec3& spacing = glm::dvec3(2)) {
   SmallBody body;

@@ -206,7 +206,7 @@ TEST_CASE("tissue table: organs have the colours of anatomy atlases in any vocab
                   artery = colour("aorta", TissueKind::Vessel);
   CHECK((bile.g > bile.r && bile.g > bile.b));
   CHECK((vein.b > vein.r && artery.r > artery.b));
-  // Tissues without an organ's name get a colour by their label, and kinds keep theirs.
+  // An organ that is not known gets a colour by its label. All muscles have the colour of their kind.
   CHECK(organ("thing", 5) != organ("thing", 6));
   CHECK(colour("Left brachialis", TissueKind::Muscle) == colour("Right soleus", TissueKind::Muscle));
 }

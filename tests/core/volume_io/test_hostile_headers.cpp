@@ -60,7 +60,7 @@ TEST_CASE("hostile headers: a DICOM element that claims four gigabytes gets no m
   const std::string claim = little_endian(9, 2) + little_endian(0x1001, 2) + "UN" + little_endian(0, 2);
   for (const std::uint32_t length : {0xfffffff0u, 0x7ffffff0u, 0x20000000u})
     check_refused(info(folder, "image.dcm", dicom_start() + claim + little_endian(length, 4) + "a few bytes"));
-  // Names an image of 65535 x 65535 pixels in a file of a megabyte.
+  // Makes a file of one megabyte that claims to hold an image of 65535 x 65535 pixels.
   std::string large = dicom_image("1");
   for (const std::uint16_t side : {0x10, 0x11}) {
     const std::string name = little_endian(0x28, 2) + little_endian(side, 2) + "US" + little_endian(2, 2);

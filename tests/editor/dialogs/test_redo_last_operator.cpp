@@ -169,7 +169,7 @@ TEST_CASE("adjust: the box in the view unfolds and its numbers act, and forms ha
   CHECK(test.rig().bones[1].tail == glm::dvec3(3, 0, -36));
   CHECK(test.position() == 1);
   test.play("move \"3D view/view\"\nkey F9\nwait-idle\nkey Escape");
-  // The operator can be repeated; adjusting its form does not count as one.
+  // Opening the form to adjust the last operator does not count as an operator.
   CHECK(test.editor->last_operator == "rig.move");
   test.play("key Ctrl+F2\nclick Bones/All\nclick Suffix/text\ntype \".L\"\nwait-idle\nkey Return\nwait-idle");
   REQUIRE(test.rig().bones[1].name == "Fore.L");

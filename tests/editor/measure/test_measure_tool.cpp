@@ -254,7 +254,7 @@ TEST_CASE("measure tool: a dialog that opens gets the keyboard, and undo works b
   CHECK_FALSE(test.editor->modal);
   test.play("key Ctrl+A\n type hint\n key Return\n wait-idle\n expect dialog no");
   CHECK(measured(test.editor->document()).back().name == "hint");
-  // As a command, H would hide a tissue.
+  // If the h of "hint" were taken as the command H, it would hide a tissue.
   CHECK_FALSE(test.editor->document().visibility);
 }
 

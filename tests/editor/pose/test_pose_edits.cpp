@@ -100,7 +100,7 @@ TEST_CASE("posing: an axis lock, a typed number, Escape and undo") {
   test.play("key Ctrl+Shift+Z");
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(45));
 
-  // Tests the bone's own axis after the world's, and a corrected digit.
+  // The second X selects the bone's own x axis instead of the world's. Backspace corrects a digit.
   test.play("key Alt+R\nkey R\nkey X\nkey X\nkey 3\nkey 9\nkey Backspace\nkey 5\nkey Return");
   const glm::dvec3 own = rest_axes(test.editor->document().armature->bones[1])[0];
   CHECK(std::abs(test.degrees(1, own)) == doctest::Approx(35));

@@ -265,7 +265,7 @@ TEST_CASE("settling: a solve that may not take the memory it needs ends with a l
   test.editor->worker_program = LIMBER_PROGRAM;
   const Document before = test.editor->document();
   int failures = 0;
-  // These are too little to start, to read, to mesh and to solve; the last is enough.
+  // With the first limits, memory runs out when the worker starts, reads, meshes or solves. The last one is enough.
   for (const int megabytes : {16, 60, 75, 90, 105, 120, 160}) {
     test.editor->preferences.worker_memory_mb = megabytes;
     test.editor->messages.last_failure.clear();
@@ -361,7 +361,7 @@ TEST_CASE(
   REQUIRE(shown);
   CHECK(shown->least < 0.98);
   CHECK(shown->most > 1.01);
-  // The value is that of the report.
+  // The shown volume ratio equals that of the result's report.
   const auto json = nlohmann::json::parse(result->report);
   CHECK(shown->least == doctest::Approx(json["mesh"]["min_det_f"].get<double>()).epsilon(1e-3));
   run(*test.editor, "fem.show_energy");

@@ -142,7 +142,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
   const render::Scene& scene = stage.editor().views->scene;
   CHECK(scene.display == render::Display::XRay);
   REQUIRE(scene.weights);
-  // As many voxels are pink as collide. Once the fitted axis is shown, none are.
+  // The colliding voxels, and no others, are pink. With the fitted axis, none are.
   const auto pink = [&] {
     return std::count(scene.weights->field->begin(), scene.weights->field->end(), glm::u8vec3(0xFF, 0x3E, 0xA5));
   };

@@ -40,7 +40,7 @@ struct LabelEditor : LimbEditor {
     editor->skin->painting->radius = 11;
     before = editor->document();
   }
-  // Returns the script position of a world point in a view.
+  // Returns the position of a world point in a view, as scripts write it.
   std::string at(ViewId id, const glm::dvec3& point) {
     for (const ViewPlace& place : editor->layout.view_places)
       if (place.id == id) {

@@ -279,7 +279,7 @@ TEST_CASE("painting: radius, strength and value are set with the pointer, typed,
   test.play("key 2\nkey 5\nkey Return");
   CHECK(!test.editor->modal);
   CHECK(painting.radius == 25);
-  // The pointer moves away from the centre by another radius, which doubles the radius.
+  // While F sets the radius, the pointer moves away from the brush's centre by 10 mm, so the radius grows by 10 mm.
   const double millimetres = body_seen(*test.editor)->millimetres_per_pixel({0, -38.7, 10});
   test.play("key F");
   const glm::vec2 from = test.editor->input.pointer;

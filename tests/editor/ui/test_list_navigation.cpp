@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lists in which the arrow keys move the selection after a click.
+// Tests lists in which the arrow keys move the selection after a click.
 #include "editor/resample/results.h"
 #include "tests/editor/small_limb.h"
 

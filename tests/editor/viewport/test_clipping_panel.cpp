@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The clip box and the clip plane, set by dragging handles and by typing numbers.
+// Tests the clip box and the clip plane, which are set by dragging handles and by typing numbers.
 #include <fstream>
 
 #include "editor/files/export.h"

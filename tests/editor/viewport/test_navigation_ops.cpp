@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Navigation in the 3D view: orbiting about a point, a trackpad, and walking. Also, the window's place is restored at
-// the next start.
+// Tests navigation in the 3D view: orbiting about a point, a trackpad, and walking. Also tests that the position of the
+// window is restored at the next start.
 #include "editor/context/cursor_wrap.h"
 #include "tests/editor/small_limb.h"
 
