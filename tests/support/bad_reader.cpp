@@ -103,7 +103,8 @@ class SparseLie final : public VoxelSource {
   std::string message_;
 };
 
-// A message of `count` voxels in one span, and `more` after it.
+// Returns a message that announces `count` voxels in one span of `zeros` zeros and `others` other bytes, with `more`
+// after it.
 std::string sparse_message(std::uint64_t count, std::uint32_t zeros, std::uint32_t others, const std::string& more) {
   ByteWriter message;
   message.put(count);

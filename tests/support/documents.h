@@ -15,7 +15,7 @@ Document small_document();
 // Returns the document after a random edit of one part: labels, names, bones, a brush stroke on the weights, a pose,
 // looks, or a result added or removed.
 Document random_edit(const Document& document, std::mt19937& random);
-// Returns a document with 1 MB of random weights, generated from `seed`, and a volume that they fit.
+// Returns a document with 1 MB of random weights, generated from `seed`, and with the volume that they belong to.
 Document large_document(std::uint32_t seed);
 
 // Returns true if the documents have the same contents, bit for bit.

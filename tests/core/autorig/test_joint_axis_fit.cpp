@@ -18,8 +18,8 @@ namespace {
 constexpr Label kBone = 1;
 
 // Two bars of square section, 10 voxels high, that meet end to end at x = 20 with one voxel between them, and a rig
-// whose hinge lies in the middle of their section, so that bending drives a corner of one bar into the other. The right
-// hinge lies at the edge towards which the bars bend.
+// whose hinge lies in the middle of their section, so that bending drives a corner of one bar into the other. The
+// correct hinge lies at the edge towards which the bars bend.
 struct Bars {
   LabelVolume volume{{.size = {41, 41, 12}, .spacing = {2, 2, 2}, .origin = {-40, -40, -10}},
                      ZeroedVector<Label>(41 * 41 * 12)};
@@ -83,7 +83,7 @@ TEST_CASE("fit joint: bars that bend into each other are hinged at their edge, a
   CHECK(fitted.colliding_after.empty());
   for (int degrees = 0; degrees <= 60; degrees += 3) CHECK(bars.collisions(fitted.armature, degrees) == 0);
 
-  // The right hinge lies at the edge, 11 mm from the middle of the section. A positive turn about z bends towards +y.
+  // The correct hinge lies at the edge, 11 mm from the middle of the section. A positive turn about z bends towards +y.
   const Bone& turning = fitted.armature.bones[1];
   CHECK(fitted.moved_mm < 13);
   CHECK(turning.head.y > 5);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The commands that the user guide tells the reader to type work as printed.
+// Tests that the commands in the user guide work as the reader is told to type them.
 #include <fstream>
 
 #include <doctest/doctest.h>
@@ -35,7 +35,7 @@ void write_ct(const fs::path& path) {
   }
 }
 
-// Runs the commands among a page's bullet points one after the other, in their own folder. Returns their number.
+// Runs the commands in the bullet points of a page, one after the other, in a new folder. Returns their number.
 int run_commands_of(const fs::path& page) {
   const TemporaryFolder folder;
   std::ifstream guide(page);

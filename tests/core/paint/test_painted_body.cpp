@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Compares the program's weights with those of an artist, on a whole body whose bones are drawn as tubes.
+// Compares the program's skin weights with those that an artist painted, on a whole body whose bones are drawn as
+// tubes.
 #include <algorithm>
 #include <cmath>
 #include <fstream>

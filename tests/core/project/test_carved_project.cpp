@@ -202,7 +202,7 @@ TEST_CASE(
   const Document document = small_document();
   create_project({.document = document, .editor = "{}"}, whole, writer);
   const SaveMark mark = read_mark(whole);
-  // Damages the root chunk. Its packed beginning tells where it lies in the file.
+  // Damages the root chunk, which the test finds in the file by the chunk's packed bytes.
   const auto packed = rows(whole, "SELECT packed FROM chunk ORDER BY rowid DESC LIMIT 1");
   std::string bytes = read_file(whole);
   const std::size_t at = bytes.find(packed.at(0).at(0));

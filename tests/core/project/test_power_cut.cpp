@@ -18,7 +18,7 @@ namespace {
 
 struct PowerGone {};
 
-// Works until the power cut. Returns the last edit that was certainly on the disk.
+// Works until the power cut. Returns the number of the last edit that was certainly on the disk.
 int work_until_the_cut(const TemporaryFolder& folder, PowerCut& power, std::uint32_t seed) {
   int kept = 0;
   EditScript script{.edits = 60, .pause = 0.001, .seed = seed};

@@ -245,7 +245,7 @@ TEST_CASE(
   CHECK(session->status().message.empty());
   CHECK(same_contents(read_project(path).document, edited));
 
-  // Another project at this path is not overwritten by a save, only by save as.
+  // A save does not overwrite another project that is now at this path. Only save as does.
   fs::remove(path);
   DocumentWriter writer;
   create_project({}, path, writer);

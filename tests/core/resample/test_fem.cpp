@@ -92,7 +92,7 @@ TEST_CASE(
   }
   CHECK(std::abs(gained / voxels) < 0.5);
 
-  // Measures each tissue by voxels.
+  // Measures the volume change of each tissue by voxels.
   const double fem =
       summed_change(compare(arm.phantom.volume, by_fem.volume, arm.phantom.tissues), arm.phantom.tissues, 1000);
   const double dqs =
