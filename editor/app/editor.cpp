@@ -42,11 +42,13 @@ namespace limber::editor {
 namespace {
 
 constexpr double kCameraMove = 0.18;  // duration of a camera move, s
-constexpr double kLongestRest = 60;   // upper limit on the wait for an event, s, so that every wait ends
+constexpr double kLongestRest = 60;   // the editor waits at most this long for an event before it draws again, s
 constexpr double kJobPulse = 0.1;     // time between frames while a job runs, s
 constexpr int kJobsAtOnce = 2;
-constexpr int kMostTurns = 200;  // upper limit on the extra draws of the panels in one frame, for typed keys
-constexpr int kMostAgain = 3;    // upper limit on the extra draws of the panels in one frame, after a widget has moved
+// Typed keys cause at most this many extra draws of the panels per frame; later keys wait.
+constexpr int kMostTurns = 200;
+// Panels are drawn at most this many extra times per frame because a widget moved under the pointer.
+constexpr int kMostAgain = 3;
 constexpr float kTurnSeconds = 1e-5f;  // ImGui's time step in an extra draw of the panels, s: almost no time passes
 constexpr double kUploadTime = 0.008;  // time per frame in which weights are uploaded to the GPU, s
 
@@ -316,8 +318,8 @@ void Editor::draw() {
   follow_keyboard(*this);
   if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
   host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
-  // Moves the ImGui windows of the regions behind popups and dialogs. Among themselves they keep the order in which
-  // they were drawn.
+  // Moves the ImGui windows of the regions behind popups and dialogs. The regions' windows keep the order in which they
+  // were drawn.
   for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name)
     ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
 }

@@ -8,7 +8,7 @@
 
 namespace limber::editor {
 
-// Reads the stored state. Call it before the first frame.
+// Reads the recent files, preferences and other state that earlier runs stored. Call it before the first frame.
 //   files  files to open; if there are any, the start screen is not shown
 void begin_editor_session(Editor& editor, const Folders& folders, std::vector<Path> files);
 // Writes the stored state when it has not changed for a second. Call it once per frame.

@@ -175,7 +175,7 @@ class Window final : public Host {
   GLFWwindow* window_ = nullptr;
   std::array<GLFWcursor*, 7> cursors_{};
   Cursor cursor_ = Cursor::Arrow;
-  glm::ivec4 windowed_{0};  // position and size of the window before full screen
+  glm::ivec4 windowed_{0};  // position (x, y) and size (z, w) of the window before full screen, to restore them
 };
 
 void Window::set_callbacks() {

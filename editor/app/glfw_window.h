@@ -15,5 +15,6 @@ std::unique_ptr<Host> open_window(const glm::ivec2& size, const std::string& tit
 
 }  // namespace limber::editor
 
-// The function of the module: makes the window, which the caller owns, and throws as open_window() does.
+// Opens the window for open_window(), which finds this function by its name in the module. The caller must delete the
+// window. Throws Error if no window can be opened.
 extern "C" limber::editor::Host* limber_open_window(const glm::ivec2& size, const std::string& title);

@@ -13,7 +13,8 @@ namespace limber::editor {
 class Offscreen : public Host {
  public:
   virtual void resize(const glm::ivec2& size) = 0;
-  // Draws the last presented frame and waits until OpenGL has drawn it, as a window does that swaps its buffers.
+  // Draws the last presented frame and waits until OpenGL has finished. (A window on a desktop does this when it swaps
+  // its buffers.)
   virtual void finish() = 0;
   // Draws the last presented frame and returns its picture. Frames are drawn only on request, because a script needs
   // few pictures.

@@ -13,15 +13,18 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kDragSteps = 8;             // number of pointer moves into which a drag is divided, as by a slow hand
-constexpr double kLongestJob = 300;       // upper limit on the wait for a job, s
-constexpr int kLongestSettling = 20'000;  // upper limit on the frames to wait until the editor is idle
+// A drag is divided into this many moves of the pointer, so that it resembles a slow hand.
+constexpr int kDragSteps = 8;
+constexpr double kLongestJob = 300;  // a job that takes longer stops the script with an error, s
+// A script that needs more frames until the editor is idle stops with an error.
+constexpr int kLongestSettling = 20'000;
 
 // Upper limits for the numbers in a script. A larger number is reported as an error.
-constexpr double kFarthestMove = 20'000;   // upper limit on a drag's length and on positions, pixels
-constexpr double kLargestWindow = 16'384;  // upper limit on the window's width and height, pixels
-constexpr double kMostSteps = 1000;        // upper limit on wheel steps
-constexpr double kLongestWait = 3600;      // upper limit on the time of `wait`, s
+// A drag that is longer, or a position beyond this, is an error in the script, pixels.
+constexpr double kFarthestMove = 20'000;
+constexpr double kLargestWindow = 16'384;  // a larger width or height of the window is an error in the script, pixels
+constexpr double kMostSteps = 1000;        // more steps of the wheel in one command are an error in the script
+constexpr double kLongestWait = 3600;      // a longer `wait` is an error in the script, s
 
 double number(const std::string& word, double least = -kFarthestMove, double most = kFarthestMove) {
   double value = 0;

@@ -12,14 +12,14 @@
 namespace limber::editor {
 
 struct FigureFlags {
-  std::string size;  // WIDTHxHEIGHT, mm; empty: no figure
+  std::string size;  // size of the figure, WIDTHxHEIGHT in mm; empty: the picture does not become a figure
   FigureOptions options;
   bool no_legend = false, no_scale_bar = false;
 };
 
 void add_figure_options(CLI::App& command, FigureFlags& flags);
-// Returns the figure options that the command line gives; nothing if it asks for no figure. Throws Error for wrong
-// values.
+// Returns the figure options that the command line gives. Returns no value if the command line asks for no figure.
+// Throws Error for wrong values.
 std::optional<FigureOptions> figure_of(const FigureFlags& flags);
 
 }  // namespace limber::editor

@@ -265,7 +265,7 @@ Image picture_3d(Renderer& renderer, const Scene& scene, const Camera& camera, c
   return view.read();
 }
 
-// Returns the camera that shows the whole slice in a picture of a given size.
+// Returns a function that takes a picture's size in pixels and returns the camera that shows the whole slice in it.
 SliceCameraAt slice_camera_of(const PosedScene& posed, const Options& options) {
   static const std::map<std::string, SliceAxis> axes = {
       {"axial", SliceAxis::Axial}, {"coronal", SliceAxis::Coronal}, {"sagittal", SliceAxis::Sagittal}};
@@ -292,7 +292,7 @@ Image picture_slice(Renderer& renderer, const Scene& scene, const Options& optio
   return view.read();
 }
 
-// Returns the camera that shows the whole body in a picture of a given size.
+// Returns a function that takes a picture's size in pixels and returns the camera that shows the whole body in it.
 CameraAt camera_of(const PosedScene& posed, const Options& options) {
   Camera camera;
   if (options.orthographic) camera.projection = Projection::Orthographic;
@@ -356,7 +356,7 @@ void draw_pictures(Renderer& renderer, const PosedScene& posed, const Options& o
   if (video) video->finish();
 }
 
-// Checks what can be checked of the output before a long computation.
+// Throws Error if the output cannot be written or the options exclude each other, before a long computation begins.
 void check_output(const Options& options, bool figure) {
   const Path output = options.output;
   check_place(options.turntable && !is_video(output) ? Path(numbered(options.output, 0)) : output);

@@ -13,7 +13,8 @@ namespace limber::editor {
 
 class PointerWrap {
  public:
-  // The pointer leaps when it is less than `margin` pixels inside the edge of the rectangle `inside`.
+  // Creates a wrap that moves the pointer away from an edge of `inside` when it comes nearer than `margin` pixels to
+  // that edge. A wrap without a rectangle never moves the pointer.
   PointerWrap() = default;
   PointerWrap(const Rect& inside, float margin) : inside_(inside), margin_(margin) {}
 
@@ -27,7 +28,8 @@ class PointerWrap {
  private:
   std::optional<Rect> inside_;
   float margin_ = 0;
-  glm::vec2 awaited_{0};  // the last leap until a pointer position after it arrives, pixels; zero: none awaited
+  // The last leap, pixels, until the pointer's position shows that the leap happened; zero: none.
+  glm::vec2 awaited_{0};
 };
 
 }  // namespace limber::editor

@@ -162,7 +162,7 @@ struct Editor : Ui {
   struct {
     std::string search;
     bool searching = false, focus_search = false;
-    std::map<std::string, bool> open;  // true: the user unfolded a row, false: folded it; by row
+    std::map<std::string, bool> open;  // true: the user unfolded a row, false: folded it; by the row's id
   } outliner;
   struct {
     std::string name;
@@ -214,7 +214,7 @@ struct Editor : Ui {
   std::map<int, double> stopping_since;  // time at which a job that still runs was cancelled, s, by the job's id
   std::optional<Drag> drag;
   std::optional<PendingPress> pending_press;
-  std::shared_ptr<Modal> modal;  // null: none
+  std::shared_ptr<Modal> modal;  // the modal tool that gets all input; null: none
   PointerWrap modal_wrap;
   std::unique_ptr<Timeline> timeline;  // declared in timeline.h; never null
   Rect timeline_area;         // area of the timeline's rows in the last frame; empty while the timeline is not shown

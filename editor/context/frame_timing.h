@@ -24,7 +24,8 @@ class FrameLog {
   };
 
   void begin();
-  // Ends a part of the frame, which began at the end of the previous part. `name` must be a string literal.
+  // Ends a part of the frame and names it. The part began where the previous part of the frame ended. `name` must be a
+  // string literal.
   void part(const char* name);
   void end(const std::string& doing);  // ends the frame; `doing` says why it was drawn
   const std::vector<Frame>& frames() const { return frames_; }

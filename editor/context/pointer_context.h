@@ -9,7 +9,8 @@
 
 namespace limber::editor {
 
-// Returns the names of the key map's contexts that apply at the pointer's position. Keys are searched in this order.
+// Returns the names of the key map's contexts that apply at the pointer's position. A key means what the first context
+// that binds it says.
 std::vector<std::string> contexts(const Editor& editor);
 // Returns the view under the pointer; nullptr if the pointer is outside the views, or a menu or dialog covers them.
 const ViewPlace* hovered_view(const Editor& editor);

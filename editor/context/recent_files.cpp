@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostRecents = 30;
 constexpr std::size_t kMostFolders = 8;
-constexpr std::uint64_t kLargestSettings = 4 << 20;  // largest settings file that is read, bytes
+constexpr std::uint64_t kLargestSettings = 4 << 20;  // a settings file that is larger is not read, bytes
 constexpr const char* kSchema = "limber-remembered/1";
 
 // Reads an entry of a JSON object into `value`. `value` keeps its content if the entry is missing or of another type.

@@ -32,10 +32,11 @@ struct RecentFiles {
   bool operator==(const RecentFiles&) const = default;
 };
 
-// The recent files as they were last written to the disk. Comparing them shows whether they must be written again.
+// The recent files as they were last written to the disk. The editor writes its recent files again when they differ
+// from these.
 struct RecentFilesOnDisk {
   RecentFiles contents;
-  std::vector<Recent> named;         // the recent files for which operators exist that open them
+  std::vector<Recent> named;         // the recent files that have an operator which opens them
   std::optional<double> changed_at;  // time of the first change that is not written yet, seconds on the editor's clock
   bool failure_told = false;         // true: the user has been told that writing failed
 };

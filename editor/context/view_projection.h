@@ -33,8 +33,8 @@ struct ViewProjection {
   std::optional<double> along_line(const glm::dvec2& pixel, const glm::dvec3& point, const glm::dvec3& direction) const;
 
   ViewPlace place;
-  render::Camera camera;              // used if this is the 3D view
-  render::SliceCamera slice;          // used if this is a slice
+  render::Camera camera;              // camera of the 3D view; unused in a slice
+  render::SliceCamera slice;          // camera of a slice; unused in the 3D view
   glm::dvec3 right, up, towards_eye;  // the picture's axes in the world, unit vectors
 };
 

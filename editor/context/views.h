@@ -131,13 +131,14 @@ std::string name_of(ViewId id);
 // Sets Views::scene to the scene that shows this document.
 void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);
 
-// Returns the bounding box of the volume's grid in the world, mm. If there is no volume, returns a cube of 300 mm.
+// A box in the world, mm. world_box() returns the bounding box of the volume's grid, or without a volume a cube of 300
+// mm.
 struct Box {
   glm::dvec3 low, high;
 };
 Box world_box(const Document& document);
 // Returns the bounding box in the world, mm, of one tissue, or of all visible tissues if `tissue` has no value. If
-// there is no voxel of them, returns the volume's box.
+// these tissues have no voxels, returns the volume's box.
 Box tissue_box(Views& views, const Document& document, std::optional<Label> tissue);
 
 // Returns the voxel of the volume at rest that is shown at a world point of the scene. The body in the scene may be

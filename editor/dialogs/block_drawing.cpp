@@ -23,7 +23,7 @@ Colour colour_of(const Look& look, Block::Kind kind, Run::Style style) {
   return strong ? look.theme.text : look.theme.text2;
 }
 
-// A word of a run, with the position that for_each_word() gives it.
+// A word of a text, and the place where for_each_word() lays it out.
 struct Word {
   const Run& run;
   std::string_view text;
@@ -44,8 +44,10 @@ std::size_t bytes_within(ImFont* font, std::string_view word, float width) {
   return fitting;
 }
 
-// Lays out the words of a block in lines, and calls `draw` for each word. Splits a word that is wider than a line.
-// Returns the y coordinate of the block's lower end.
+// Lays out the words of a block in lines between the x coordinates `left` and `right`, beginning at the y coordinate
+// `y`, and calls `draw` for each word. Splits a word that is wider than a line. Returns the y coordinate of the block's
+// lower end.
+//   line  height of a line, pixels
 float for_each_word(const Look& look, const Block& block, float left, float right, float y, float line,
                     const std::function<void(const Word&)>& draw) {
   float x = left;

@@ -13,7 +13,8 @@ Rect begin_dialog(Editor& editor, const std::string& title, float width, float h
   const glm::vec2 corner = glm::round((window - size) * 0.5f);
   const Rect rect{corner, corner + size};
 
-  // The region "dim" darkens the whole window. Presses of mouse buttons outside the dialog end in it and do nothing.
+  // The region "dim" darkens the whole window. It also takes presses of mouse buttons outside the dialog, so that they
+  // do nothing.
   begin_region(editor, Region::Dialog, "dim", editor.layout.window, with_alpha(0xFF000000, 0.45f));
   end_region(editor);
   begin_region(editor, Region::Dialog, "dialog", rect, 0);

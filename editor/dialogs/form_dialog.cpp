@@ -16,7 +16,7 @@ namespace {
 
 constexpr float kWidth = 480, kRow = 34, kLabel = 130, kProblem = 18, kPicture = 240;
 constexpr std::size_t kMostBeside = 4;
-constexpr int kMostLines = 5;  // upper limit on the lines of the text that tells what the form's action will do
+constexpr int kMostLines = 5;  // the text that tells what the form's action will do is cut off after this many lines
 
 bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
   const Look& look = editor.look;

@@ -17,7 +17,7 @@ namespace limber::editor {
 using ActWith = std::function<void(Editor&, const std::vector<FormField>&)>;
 
 struct LastOperation {
-  std::string label;  // the history's label of its edit; "": there is nothing to redo
+  std::string label;  // label of the operation's step in the undo history; "": no operation can be redone
   std::vector<FormField> fields;
   std::vector<FormField> shown = fields;  // the displayed fields; they differ from `fields` while the user drags one
   ActWith act;

@@ -19,9 +19,10 @@ constexpr double kRise = 0.75;  // height of capitals above the baseline plus a 
 constexpr double kMargin = 1.5, kGap = 1.5, kColumnGap = 3;
 constexpr double kSwatch = 0.8 * kTextSize, kSwatchGap = 1;
 constexpr double kBarHeight = 0.5, kTickHeight = 1.4;
-constexpr double kLongestBar = 0.3;        // largest length of the scale bar, as a fraction of the picture's width
-constexpr double kSmallestPicture = 0.35;  // smallest height of the picture, as a fraction of the figure's height
-// Largest number of layout rounds, in case each new legend changes which tissues the picture shows.
+constexpr double kLongestBar = 0.3;  // the scale bar is at most this long, as a fraction of the picture's width
+// A figure whose picture would be lower is an error; fraction of the figure's height.
+constexpr double kSmallestPicture = 0.35;
+// A figure is laid out at most this many times, even if each new legend changes which tissues the picture shows.
 constexpr int kMostRounds = 4;
 
 // Returns the largest number that is 1, 2 or 5 times a power of ten and not larger than `most`.
@@ -70,7 +71,8 @@ class Composer {
     return result_;
   }
 
-  // Returns the layout with the scale bar for a picture with this scale.
+  // Returns `figure` with a scale bar for a picture in which a pixel shows `millimetres_per_pixel` of the body.
+  //   at_focus  true: the bar's text says that the scale is that at the camera's focus
   FigureLayout with_bar(FigureLayout figure, double millimetres_per_pixel, bool at_focus) const {
     if (!figure.options.scale_bar) return figure;
     const double pixel = 25.4 / figure.options.dots_per_inch;

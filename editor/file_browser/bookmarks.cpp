@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kRecentFolders = 6;
 
-// Adds the disks and memory sticks.
+// Appends the mounted disks and memory sticks to the list of bookmarks, until it has 13 entries.
 void add_volumes(std::vector<Place>& places) {
   for (const Path& folder : mounted_folders()) {
     if (places.size() > 12) return;

@@ -228,7 +228,7 @@ void export_posed_image(Editor& editor, const std::shared_ptr<const Result>& res
   check_writable(path);
   const PosedImage* kept = posed_image_of(*editor.views, result->volume);
   if (!kept) throw Error("this result was made without an image", result->name, "show the image, and resample again");
-  // The folder is kept alive, also if the result is deleted while the file is written.
+  // The task holds the folder of the posed image, so that the folder remains even if the result is deleted meanwhile.
   start_task(editor, "Export " + path.filename().string(),
              [file = kept->file, folder = kept->folder, path](Progress& progress) -> Finish {
                write_grey_volume(read_grey_volume(file, progress), path);

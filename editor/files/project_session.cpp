@@ -40,8 +40,8 @@ Project project_of(Editor& editor) {
   return project;
 }
 
-// Updates the editor after a save: marks the saved revision in the history, and sets the project's path and name. Call
-// this in the editor's thread.
+// Updates the editor after a save: marks the saved revision in the history, and sets the project's path and name. Shows
+// `remark` as a message unless it is empty. Call this in the editor's thread.
 void met_save(Editor& editor, const Path& path, std::int64_t revision, const std::string& remark) {
   editor.history.mark_saved(revision);
   editor.life.saved_at = seconds_now();

@@ -13,7 +13,8 @@ namespace limber::editor {
 struct Editor;
 
 struct TourStep {
-  const char *title, *text, *widget, *operator_id;  // operator_id: the bubble shows this operator's shortcut
+  // Title and text of the bubble, the widget at which it points, the operator whose shortcut it shows.
+  const char *title, *text, *widget, *operator_id;
   bool (*done)(const Editor&, const TourStart&);
 };
 const std::vector<TourStep>& tour_steps();

@@ -42,7 +42,7 @@ std::size_t count_in(const std::vector<std::string>& words, const std::string& t
 
 struct Ranked {
   Found found;
-  int rank = 0;  // lower is better
+  int rank = 0;  // rank of the match; pages with a lower rank are listed first
 };
 
 std::optional<Ranked> rank_page(const Page& page, int index, const std::vector<std::string>& words) {

@@ -15,7 +15,7 @@ using Surface = render::PassResources::Surface;
 // Largest part of the grid, as a fraction of its voxels, that is uploaded as a change. Uploading a larger part takes
 // as long as uploading the whole volume.
 constexpr double kMostOfGrid = 0.25;
-// Largest volume of which a spare copy is kept, bytes. The copy of a larger volume would need too much memory.
+// A volume that is larger is not copied for the next stroke, because the copy would need too much memory, bytes.
 constexpr std::size_t kMostSpare = std::size_t{512} << 20;
 
 void keep_spare(LabelBrush& brush, const std::shared_ptr<const LabelVolume>& volume) {

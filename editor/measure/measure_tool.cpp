@@ -66,7 +66,7 @@ bool navigate(Editor& editor, const Chord& chord) {
   return true;
 }
 
-// Returns true if a dialog, an error message, a text field or a popup is open, which gets the input instead of the
+// Returns true if a dialog, an error message, a text field or a popup is open. It then gets the input instead of the
 // tool.
 bool is_busy(const Editor& editor) {
   return editor.dialog || !editor.messages.errors.empty() || is_typing(editor) ||

@@ -22,10 +22,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are recorded at once
+constexpr std::int64_t kMostFrames = 1e6;  // a command that would record or repeat more frames fails with an error
 // A clip of fewer frames changes its speed at once, a longer clip in a background task.
 constexpr double kFewFrames = 2000;
-// The user is warned of a loop in which bones turn faster than this at the seam.
+// The user is warned of a loop in which bones turn faster at the seam than elsewhere by more than this factor.
 constexpr double kHasty = 1.5;
 
 std::string needs_clip(const Editor& editor) {

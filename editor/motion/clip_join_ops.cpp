@@ -18,7 +18,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames of the joined clip
+constexpr std::int64_t kMostFrames = 1e6;  // takes are not joined if the joined clip would have more frames
 constexpr double kSlides = 10;             // mm; the user is warned of a standing foot that slides farther than this
 
 // A take (a recorded motion) that was read from a file, before the user says how it is joined to the clip.

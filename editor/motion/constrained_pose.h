@@ -42,6 +42,7 @@ Pose unconstrained_pose(Editor& editor, const Pose& changed, const std::vector<i
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 // Returns the pose to show after the user has changed the document's pose to `changed`: the new free pose, with the
 // constraints applied again.
+//   set  bones whose rotations the user has set to a value; the free pose gets exactly these rotations
 Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
 // Stores the free pose that belongs to the pose `shown` at the frame of the document's shown clip.
 void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);

@@ -17,7 +17,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 100'000;  // longest range, in frames, that is baked into keys
+constexpr std::int64_t kMostFrames = 100'000;  // constraints are not baked into keys if the range has more frames
 constexpr double kInFrontMm = 300;             // distance from the bone to the target of a new aim constraint
 
 void change_list(Clip& clip, const std::function<void(Constraints&)>& change) {

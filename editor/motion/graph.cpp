@@ -13,11 +13,13 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kMostBones = 12;         // largest number of bones whose curves are shown
+// If more bones are selected, only the curves of the first ones are shown.
+constexpr std::size_t kMostBones = 12;
 constexpr int kMostFrames = 20'000;            // largest number of frames shown; a longer clip shows its first frames
 constexpr std::chrono::milliseconds kTime{6};  // time limit per drawn frame for sampling the motion's poses
-constexpr float kHeight = 300;                 // height of the bottom area for curves, pixels at scale 1
-constexpr double kRoom = 0.12;                 // margin above and below the curves, as a fraction of their height
+// The graph editor enlarges the bottom area to this height, pixels at scale 1.
+constexpr float kHeight = 300;
+constexpr double kRoom = 0.12;  // margin above and below the curves, as a fraction of their height
 
 glm::dquat motion_rotation(const GraphCurves& curves, int bone, double frame) {
   if (!curves.has_motion || curves.motion->empty()) return {1, 0, 0, 0};
@@ -78,8 +80,8 @@ void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curv
   }
 }
 
-// Returns the smallest range that contains the clip's frames and the given keys instead of the clip's own keys, as
-// all_frames() does. It runs in every drawn frame, so it reads only the first and last key of each track.
+// Returns the smallest range that contains the clip's motion, playing range and markers, and the keys `keys` in place
+// of the clip's own. It runs in every drawn frame, so it reads only the first and last key of each track.
 FrameRange range_of(const Clip& clip, const Keys& keys) {
   Clip without = {.motion = clip.motion, .start = clip.start, .first = clip.first, .last = clip.last};
   without.range_start = clip.range_start;
@@ -339,7 +341,7 @@ void show_graph(Editor& editor, bool on) {
     for (std::size_t i = 0; i < editor.arrangements.size(); ++i) {
       const float before = std::exchange(graph.heights_before[i], 0.0f);
       float& height = editor.arrangements[i].bottom_height;
-      // Restores the height if the user has not dragged the splitter since.
+      // Restores the height of the bottom area, unless the user has dragged its splitter while the graph was shown.
       if (before > 0 && height == kHeight) height = before;
     }
   }

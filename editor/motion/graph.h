@@ -46,7 +46,8 @@ struct GraphCurve {
   std::map<int, glm::dquat> turns;
   std::map<int, glm::dvec3> shifts;
   KeyShapes shapes;
-  // By frame, degrees or mm: the curve with its keys; the motion alone (empty: there is no motion).
+  // `values` is the curve with its keys, `motion` the curve of the recorded motion alone (empty: there is none). Both
+  // have one element for each frame, degrees or mm.
   std::vector<glm::dvec3> values, motion;
 };
 

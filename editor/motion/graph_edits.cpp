@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFurthest = 1e7;  // largest absolute value of a frame number
+constexpr double kFurthest = 1e7;  // frame numbers are clamped to plus or minus this
 
 // For each track, the frames of its keys and the channels that are selected at each.
 using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;
@@ -83,8 +83,8 @@ void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track
   if (shape.handles == HandleKind::Aligned || shape.handles == HandleKind::Free) put_shape(keys, track, frame, shape);
 }
 
-// Returns the straight difference `way(key, next key)` from a key to the next one, and the number of frames between
-// them. Returns nothing for the last key.
+// Returns way(key, next key), the difference from a key's value to that of the next key, and the number of frames
+// between the two. Returns nothing for the last key.
 template <class Value, class Way>
 std::optional<std::pair<glm::dvec3, int>> way_on(const std::map<int, Value>& keys, int frame, const Way& way) {
   const auto key = keys.find(frame);

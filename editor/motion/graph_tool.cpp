@@ -20,7 +20,8 @@ constexpr float kStart = 3;       // the pointer moves this far before a press o
 constexpr float kLeastThird = 2;  // least width of a handle that is drawn, pixels at scale 1
 constexpr double kStep = 1.25, kMostFrames = 1e7;         // zoom factor per wheel step; largest number of frames shown
 constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // smallest and largest range of values shown
-constexpr double kFurthestMove = 1e7;                     // largest change of a key by a move, in frames or in values
+// A move changes a key by at most this, in frames or in values.
+constexpr double kFurthestMove = 1e7;
 
 // Shows these keys instead of the clip's keys, in the graph and in the body's pose.
 void preview(Editor& editor, Keys keys) {

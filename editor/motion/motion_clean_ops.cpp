@@ -20,10 +20,10 @@ namespace limber::editor {
 
 namespace {
 
-// Mm; a limb that stays farther from its position than this counts as not reaching it.
+// The user is warned if a limb stays farther than this from the position at which it is held, mm.
 constexpr double kOff = 3;
-constexpr double kFarthest = 1e6;          // mm: upper limit on each of the typed x, y and z
-constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are cleaned at once
+constexpr double kFarthest = 1e6;          // a typed coordinate beyond plus or minus this is an error, mm
+constexpr std::int64_t kMostFrames = 1e6;  // a longer playing range is not cleaned
 
 enum class Becomes { NewClip, SameClip };
 

@@ -105,7 +105,8 @@ void add_marker(Editor& editor) {
   });
 }
 
-// The keys of the timeline's rows cannot be seen while the graph editor is shown in their place.
+// Returns why commands for the timeline's keys cannot run now, or "" if they can. They cannot run while the graph
+// editor hides these keys.
 std::string needs_rows(const Editor& editor) {
   return editor.timeline->shows_graph ? "The graph editor is shown: select keys in its curves" : needs_keys(editor);
 }

@@ -16,7 +16,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 100'000;  // upper limit on the frames that are reduced at once
+constexpr std::int64_t kMostFrames = 100'000;  // a longer playing range is not reduced to keys
 
 std::string needs_clip_and_rig(const Editor& editor) {
   if (!shown_clip(editor)) return "Import a motion first, or insert a key";
@@ -25,14 +25,14 @@ std::string needs_clip_and_rig(const Editor& editor) {
 
 struct Wanted {
   ReduceSettings settings;
-  double plant_mm = 0;  // largest error of the position of planted feet and hands, mm; 0: not limited
+  double plant_mm = 0;  // the keys may move planted feet and hands by at most this, mm; 0: not limited
   bool is_new = true;
 };
 
 struct Reduced {
   PlantedKeys keys;
   std::size_t plants = 0;  // number of times that a foot stands or a hand rests in place
-  double plant_mm = 0;     // largest allowed error of their position, mm
+  double plant_mm = 0;     // the error in the position of these feet and hands that the user allowed, mm
 
   bool is_short() const { return plants > 0 && !(keys.most_off <= plant_mm); }
 };

@@ -44,7 +44,7 @@ constexpr std::int64_t kMostVertices =
 constexpr float kCell = 2;  // edge of the grid cells from which silhouette() finds outlines, pixels at scale 1
 // Time limit per drawn frame for new outlines. At least one missing outline is computed in each drawn frame.
 constexpr std::chrono::milliseconds kTime{8};
-constexpr std::size_t kMostKept = 1000;  // largest number of cached outlines
+constexpr std::size_t kMostKept = 1000;  // all cached outlines are discarded when there are more than this
 
 void take_surface(Editor& editor, OnionOutlines& outlines) {
   const Document& document = editor.document();

@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFurthest = 1e7;     // largest absolute value of a frame number
+constexpr double kFurthest = 1e7;     // frame numbers are clamped to plus or minus this
 constexpr double kLeastScale = 0.01;  // smallest absolute value of the factor by which time is scaled
 
 void show_under_pointer(Editor& editor) {
@@ -68,7 +68,8 @@ void scale_keys(Keys& keys, const std::map<int, int>& frame_of, double factor) {
   move_keys(keys, frame_of);
 }
 
-// clip  the shown clip when the change began. If a job has meanwhile shown another clip, nothing is changed.
+// Commits the move, scaling or copying of the selected keys as one edit. Does nothing if no key changes its frame.
+//   clip  the shown clip when the change began; if a job has meanwhile shown another clip, nothing is changed
 void commit_change(Editor& editor, const std::shared_ptr<const Clip>& clip, KeyChange change, double factor = 1) {
   const std::map<int, int> frame_of = std::exchange(editor.timeline->moving, {});
   if (clip != graph_clip(editor)) return;
