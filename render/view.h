@@ -39,7 +39,8 @@ enum class Light { Draft, Fine };
 // The resources of one OpenGL context: textures of the volumes in use, and shader programs.
 class Renderer {
  public:
-  // Throws Error when the context is older than OpenGL 3.3.
+  // Makes the resources of the current context; volumes are uploaded later. Throws Error when the context is older than
+  // OpenGL 3.3.
   //   largest_texture  largest number of texels per axis of a 3D texture; 0: as many as the driver allows. A larger
   //                    volume is divided into blocks.
   explicit Renderer(int largest_texture = 0);
@@ -51,15 +52,15 @@ class Renderer {
   const std::string& note() const;
 
   // Begins a frame. Until the next call, all views and upload() together spend about `upload_seconds` on uploading
-  // large changes of weights, grey images and prepared bodies. While changes that a view shows wait for their upload,
-  // it is not complete. If this function is never called, each draw uploads everything.
+  // large changes of weights, grey images and prepared bodies. While changes that a view shows still wait, the view's
+  // complete() returns false. If begin_frame() is never called, each draw uploads everything.
   void begin_frame(double upload_seconds);
 
   // Uploads as much of a prepared body as the frame's time limit allows. Returns true when the body can be drawn
   // without delay. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);
-  // Limits the memory for the textures of each volume that is uploaded from now on, bytes. By default, only the driver
-  // limits it.
+  // Limits the memory for the textures of each volume that is uploaded from now on, bytes. A volume that needs more is
+  // drawn at a coarser resolution. By default, only the driver limits the memory.
   void limit_memory(std::int64_t bytes);
   const TextureLimits& limits() const;
 

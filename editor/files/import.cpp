@@ -176,7 +176,7 @@ void take_image(Editor& editor, const std::shared_ptr<const GreyLevels>& image, 
 
 // Opens a label volume by calling `take`. A grey image is shown with the body instead. If the file may be either, first
 // shows the image in a dialog, and calls `take` only if the user agrees to open the image as labels.
-// agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
+//   agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
 void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take,
                   std::int64_t agreed) {
   if (!read.image) return take(editor);

@@ -25,7 +25,8 @@ namespace {
 constexpr std::int64_t kMostFrames = 1e6;  // a command that would record or repeat more frames fails with an error
 // A clip of fewer frames changes its speed at once, a longer clip in a background task.
 constexpr double kFewFrames = 2000;
-// The user is warned of a loop in which bones turn faster at the seam than elsewhere by more than this factor.
+// The user is warned of a loop whose blended seam makes a bone turn faster than in the original take by more than this
+// factor.
 constexpr double kHasty = 1.5;
 
 std::string needs_clip(const Editor& editor) {

@@ -71,7 +71,8 @@ class MapMaker {
 
   void ask(const PoseWish& wish);  // replaces a request that still waits; ignores a repeated request
   std::optional<Made> take();      // returns a new result; nothing if there is none since the last call
-  void forget();                   // drops the request that waits and the new result; a repeated request counts again
+  // Drops the waiting request and the new result; the next ask() may then repeat the dropped request.
+  void forget();
   bool busy() const;
 
  private:

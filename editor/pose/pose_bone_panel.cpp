@@ -17,10 +17,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;  // largest offset of the body from rest along each axis, mm
+constexpr double kFar = 1e5;  // the offset of the body from rest is limited to plus or minus this along each axis, mm
 
-// Draws a field for one number of the pose, such as an angle. The views show the changed pose while the user edits the
-// number, and one edit is committed at the end.
+// Draws a field for one number of the pose, such as an angle, with the range from -farthest to +farthest. The views
+// show the changed pose while the user edits the number, and one edit is committed at the end.
+//   set  called with a pose and the new number; changes the pose
 void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown,
                  double farthest, const char* format, const char* unit, const std::function<void(Pose&, double)>& set) {
   auto& edited = editor.edited_number;

@@ -35,7 +35,7 @@ Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 void preview_pose(Editor& editor, const Pose& pose, const std::vector<int>& set = {});
 // Commits the pose as one edit; does nothing when the document does not change.
 void commit_pose(Editor& editor, const std::string& label, Pose pose, const std::vector<int>& set = {});
-//   next  the document to commit with the pose; it may contain other changes
+// Commits the pose together with the document `next`, which may contain other changes, as one edit.
 void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next, const std::vector<int>& set = {});
 // Returns the indices of the bones whose rotations differ between the two poses.
 std::vector<int> changed_bones(const Pose& before, const Pose& after);

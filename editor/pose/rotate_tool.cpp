@@ -36,7 +36,8 @@ int nearest_axis(const glm::dmat3& axes, const glm::dvec3& direction) {
 constexpr double kSnapDegrees = 5, kSnapFine = 1;  // snapping steps in degrees: Ctrl, Ctrl + Shift
 constexpr double kTrackballPerPixel = 0.01;        // trackball: turn per pixel of pointer motion at scale 1, radians
 constexpr double kNearLimit = 5;  // angles closer than this to a limit have the warning colour, degrees
-constexpr double kHeld = 0.1;     // a bone counts as stopped by a limit above this error of its rotation, degrees
+// A bone counts as stopped by a limit if its rotation is farther than this from the asked one, degrees.
+constexpr double kHeld = 0.1;
 constexpr double kLimitArc = 96;  // radius of the arc that shows the limits, pixels at scale 1
 
 class Turning final : public TransformTool {

@@ -25,7 +25,7 @@ void start_auto_fit(Editor& editor, const std::string& which);
 
 // Asks the user whether an imported rig should be fitted to the volume.
 //   file    name of the imported file
-// inside  fraction of the total bone length that lies in tissue, [0, 1]
+//   inside  fraction of the total bone length that lies in tissue, [0, 1]
 void offer_fit(Editor& editor, const std::string& file, double inside);
 
 // Shows a message with the result of a fit. The console lists how each joint was found, the least certain joint last.

@@ -16,8 +16,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;       // largest coordinate of a bone's head or tail, mm
-constexpr double kShortest = 0.1;  // smallest length of a bone, mm
+constexpr double kFar = 1e5;       // a coordinate or length beyond this cannot be typed, mm
+constexpr double kShortest = 0.1;  // a change that makes a bone shorter is rejected, mm
 
 bool too_short(const Bone& bone) { return glm::distance(bone.head, bone.tail) < kShortest; }
 

@@ -73,7 +73,7 @@ class CommandSearch final : public Dialog {
   void draw_foot(Editor& editor, const Rect& rect);
   void run_chosen(Editor& editor);
 
-  std::string query_, last_query_ = "\n";  // differs from query_, so that the first frame searches
+  std::string query_, last_query_ = "\n";  // last_query_ differs from query_ at first, so that the first frame searches
   std::vector<FoundCommand> found_;
   int chosen_ = 0, first_ = 0;
   bool focus_ = true, accept_ = false, assign_ = false;

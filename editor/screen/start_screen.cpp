@@ -19,7 +19,8 @@ namespace {
 
 constexpr float kWidth = 1100, kHeight = 716, kPadding = 32, kMargin = 8;
 constexpr float kSmallWidth = 1180, kSmallHeight = 800;  // smallest window with the full layout, px at scale 1
-constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;  // heights of sample buttons, px at scale 1
+// Heights of sample buttons: largest and smallest in two rows, and in a single row; px at scale 1.
+constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;
 constexpr float kRecentRow = 52, kRecovery = 58;
 constexpr float kSampleAspect = 504.0f / 232;
 

@@ -171,7 +171,7 @@ SavedState saved_state(const Editor& editor) {
 }
 
 // Draws a slot of the status bar that tells whether the project is saved. The slot ends at the x coordinate `right`.
-// Returns the x coordinate at which the next slot to the left must end; the functions below do the same.
+// Returns the x coordinate at which the next slot to the left must end.
 float draw_saved(Editor& editor, const Rect& bar, float right) {
   if (!editor.document().volume) return right;
   const Look& look = editor.look;
@@ -218,8 +218,9 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   return left;
 }
 
-// Draws how much the pose changes the volume of all tissue, which is the most important figure of a pose. Draws nothing
-// while the sidebar is open, because the sidebar shows this figure too.
+// Draws how much the pose changes the volume of all tissue, in a slot of the status bar that ends at the x coordinate
+// `right`. Draws nothing while the sidebar is open, because the sidebar shows this figure too. Returns the x coordinate
+// at which the next slot to the left must end.
 float draw_volume_change(Editor& editor, const Rect& bar, float right) {
   LivePose& live = *editor.live;
   if (editor.workspace != Workspace::Pose || !editor.layout.sidebar.empty() || !live.posed() || !live.trouble().empty())

@@ -18,7 +18,9 @@ namespace {
 
 class Header {
  public:
-  //   drawn  false: draws nothing, and only finds which groups of buttons fit into the header
+  // Begins to draw the buttons of the tool header from the left.
+  //   drawn         false: draws nothing, and only finds which groups of buttons fit into the header
+  //   short_labels  true: buttons show icons in place of labels
   Header(Editor& editor, bool drawn, bool short_labels)
       : editor_(editor),
         bar_(editor.layout.tool_header),
@@ -78,7 +80,7 @@ class Header {
     ImGui::EndPopup();
   }
 
-  // Draws a button labelled `word` that opens a menu.
+  // Draws a button labelled `word` that opens the menu pointer_menu(name).
   void menu(const char* name, const char* word) {
     const float width = width_of_button(editor_, {"", word}), height = px(26),
                 y = std::round(bar_.centre().y - height / 2), x = x_;

@@ -121,7 +121,8 @@ void draw_body_overlay(Editor& editor, const ViewPlace& place) {
   const BodyView& body = editor.views->body;
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   if (editor.layout.by_sides) draw_side_chip(editor, place);
-  if (place.side_a) {  // in a side-by-side comparison, the view of side A has only its title and these two overlays
+  // In a side-by-side comparison, the view of side A has only its title, clip handles and scale bar.
+  if (place.side_a) {
     draw_clip_handles(editor, rect);
     return draw_scale_bar(editor, rect, visible_height / rect.height());
   }

@@ -15,9 +15,9 @@ namespace limber::editor {
 namespace {
 
 // Sizes of the names, the gizmo and the drawn axes, pixels at scale 1.
-constexpr float kShortest = 40;  // a bone that looks shorter has a name only while it is selected
-constexpr float kBeside = 10, kHeight = 16, kPad = 4;
-constexpr float kGizmo = 114, kJointGizmo = 136;  // radius of the gizmo without and with joint handles
+constexpr float kShortest = 40;                        // a bone that looks shorter has a name only while it is selected
+constexpr float kBeside = 10, kHeight = 16, kPad = 4;  // gap between bone and name; height and padding of a name
+constexpr float kGizmo = 114, kJointGizmo = 136;       // radius of the gizmo without and with joint handles
 // Length of the drawn bone axes: this fraction of the bone's length, but at most kLongestAxis.
 constexpr double kAxisShare = 0.25, kLongestAxis = 36;
 

@@ -15,8 +15,8 @@ namespace {
 constexpr double kStraight = 0.17;
 
 // Returns the axis about which the test pose bends a bone against its parent. For a hinge joint, this is the hinge's
-// axis. For other joints, it is the normal of the plane that contains both bones, as in flex_axis(). If both bones lie
-// on a straight line, it is the bone's own x axis.
+// axis. For other joints, it is the normal of the plane that contains both bones. If both bones lie on a straight line,
+// it is the bone's own x axis.
 glm::dvec3 bend_axis(const Armature& armature, int index) {
   const Bone& bone = armature.bones[static_cast<std::size_t>(index)];
   if (bone.limits.type == JointLimits::Type::Hinge) return bone.limits.axis;

@@ -11,8 +11,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kMostSteps = 96;  // largest number of steps in the search for the surface along the normal
-constexpr int kHalvings = 4;    // number of bisections that refine where the last step crossed the surface
+// The surface is searched along the normal in at most this many steps over the brush's radius.
+constexpr int kMostSteps = 96;
+constexpr int kHalvings = 4;  // number of bisections that refine where the last step crossed the surface
 // Number of neighbours on either side of a ring point whose heights above the tangent plane are averaged with the
 // point's own height. The average smooths the ring, because a surface of voxels has steps.
 constexpr int kSmoothed = 2;

@@ -19,8 +19,8 @@ namespace {
 
 constexpr float kCurveHeight = 56;
 constexpr int kCurvePoints = 48;
-constexpr int kMostPoints = 16;     // upper limit on the points of a custom falloff curve
-constexpr double kPointGap = 0.02;  // smallest distance between two points, a fraction of the radius
+constexpr int kMostPoints = 16;     // a click adds no point to a custom falloff curve that has this many
+constexpr double kPointGap = 0.02;  // points of the curve keep at least this distance in x, as a fraction of the radius
 constexpr float kPointReach = 8;
 
 // Draws the brush's falloff from its centre (left) to its rim (right).

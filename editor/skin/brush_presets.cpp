@@ -24,7 +24,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kSchema = "limber-brushes/1";
 // Names in the file, in the order of FalloffShape.
 constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear", "constant"};
-constexpr std::size_t kMostPoints = 16;  // largest number of points of a falloff curve, the same as in the Brush panel
+// A falloff curve with more points is ignored; the Brush panel has the same limit.
+constexpr std::size_t kMostPoints = 16;
 constexpr std::size_t kLongestName = 100;
 
 Path presets_path(const Editor& editor) {

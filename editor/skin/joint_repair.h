@@ -16,7 +16,7 @@ class Column;
 // The outcome of the last repair.
 struct RepairedJoint {
   std::string bone;  // name of the bone below the joint
-  // Numbers that rate the joint before and after the repair; without the repaired weights.
+  // What the repair has changed, with ratings of the joint before and after it. The weights in it are empty.
   JointRepair figures;
   // The document's weights right after the repair; if they have changed, the outcome is not shown.
   std::weak_ptr<const SkinWeights> in;

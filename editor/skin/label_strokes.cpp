@@ -38,8 +38,8 @@ EditMask mask_of(const Editor& editor, const LabelBrush& brush, const BrushPlace
 void paint_labels_to(Editor& editor, const glm::vec2& pixel) {
   Painting& painting = *editor.skin->painting;
   LabelBrush::Running& running = *painting.labels->running;
-  // In a slice, one step suffices: the brush paints the whole capsule between two pointer positions. On the curved
-  // surface of the body, the brush follows the pointer in short steps.
+  // In a slice, the brush paints the whole capsule between two pointer positions in one step. On the curved surface of
+  // the body, it follows the pointer in short steps.
   const int steps =
       running.view.id == ViewId::Body
           ? std::clamp(static_cast<int>(glm::distance(pixel, running.pixel) / (4 * editor.look.scale)), 1, 24)

@@ -24,7 +24,7 @@ namespace {
 constexpr int kRingPoints = 64;
 // Distance between the points of the pointer's path at which the brush paints, relative to the brush's radius.
 constexpr double kStepOfRadius = 0.5;
-constexpr int kMostSteps = 24;  // upper limit on the points at which one pointer movement paints
+constexpr int kMostSteps = 24;  // one movement of the pointer paints at no more points than this
 
 // Returns the mirror image of the point on the other side of the body. With X mirror on, a stroke paints there too.
 glm::dvec3 mirrored(const Armature& armature, const glm::dvec3& point) { return mirror_plane(armature).place(point); }

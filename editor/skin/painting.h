@@ -59,7 +59,7 @@ struct Painting {
   Normalize normalize = Normalize::Unlocked;  // the user's setting; strokes use normalize_of(), which may replace it
   bool relative_to_locks = false;
 
-  std::shared_ptr<BrushPresets> presets;  // the user's (editor/skin/brush_presets.h); null: not read yet
+  std::shared_ptr<BrushPresets> presets;  // the user's brush presets (editor/skin/brush_presets.h); null: not read yet
 
   int dragged_point = -1;  // the point of `falloff_curve` being dragged; -1: none
   // The weight layer being painted (editor/skin/weight_layers.h).

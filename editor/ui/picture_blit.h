@@ -7,8 +7,8 @@
 
 namespace limber::editor {
 
-// Adds the picture to what ImGui's current window draws. The picture must keep its texture until the frame is drawn.
-// Where its size differs from that of the rectangle, it is stretched.
+// Adds the picture to what ImGui's current window draws, and stretches it to the rectangle. The picture must keep its
+// texture until the frame is drawn.
 //   texture  RGBA8, bottom row first, without transparency
 //   rect     in pixels of the window, below 65536; parts outside of ImGui's clip rectangle are not drawn
 void blit_picture(unsigned texture, const Rect& rect);

@@ -26,7 +26,7 @@ struct Theme {
          view_plate = 0;  // colours in the views, which are dark in every theme
 };
 
-// Reads a theme. Throws Error if the file is no theme or a colour is missing or unreadable, and names the first such
+// Reads a theme. Throws Error if the file is no theme, or if a colour is missing or unreadable; the Error names this
 // colour.
 Theme read_theme(const Path& path);
 

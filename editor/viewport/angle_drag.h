@@ -11,6 +11,7 @@ class AngleDrag {
  public:
   static constexpr double kRing = 86;  // radius of the ring, pixels at scale 1
 
+  // Begins to measure a turn about the point `pivot`; about() then sets the axis.
   //   on_ring  true: the angle is measured in the plane of the ring; false: on the screen, around the pivot's pixel
   AngleDrag(const ViewProjection& view, float scale, const glm::dvec3& pivot, bool on_ring);
 

@@ -12,8 +12,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kPrecise = 0.1;    // factor on the pointer's moves while Shift is held
-constexpr double kClickPixels = 4;  // largest move of the pointer in a click, pixels at scale 1
+constexpr double kPrecise = 0.1;  // factor on the pointer's moves while Shift is held
+// A press is a drag, and no click, if the pointer moves farther than this, pixels at scale 1.
+constexpr double kClickPixels = 4;
 
 constexpr const char* kAxisNames[] = {"X", "Y", "Z"};
 constexpr double kFarthest = 10'000;  // largest translation that can be entered in the form, mm

@@ -40,7 +40,7 @@ class BodySeams {
   bool has_limbs(const std::shared_ptr<const Armature>& armature);
 
  private:
-  std::mutex searching_, known_;  // known_ guards the members below; it is locked only briefly
+  std::mutex searching_, known_;  // searching_: locked during a search for seams; known_: guards the members below
   std::shared_ptr<const Armature> asked_;
   bool has_limbs_ = false;
   SeamSource source_;

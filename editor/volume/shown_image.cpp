@@ -80,7 +80,7 @@ void close_image(Editor& editor) {
 }
 
 void reopen_image(Editor& editor, const Path& path, const std::optional<render::ShownGrey>& shown) {
-  editor.views->image_path = path;  // so that a project saved meanwhile still names it
+  editor.views->image_path = path;  // set already now, so that a project saved before the image is read names the image
   start_task(
       editor, "Open image " + path.filename().string(),
       [path, shown](Progress& progress) -> Finish {

@@ -22,6 +22,7 @@ void start_preparation(Editor& editor, Preparation preparation);
 // Returns the document with another volume in place of its own. Weights, rig and seams are removed if they do not fit
 // the new volume. `note` receives a message that says what was removed, or "".
 //   same_tissue  true if the new volume has the same grid as the old one, and tissue in the same voxels
+//   mirrored     true if the new volume is a mirror image of the old one: rig and measurements are removed
 Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> volume, bool same_tissue, bool mirrored,
                      std::string& note);
 

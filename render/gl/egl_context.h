@@ -10,7 +10,8 @@ namespace limber::render {
 // such context at a time.
 class HeadlessContext {
  public:
-  // Throws Error when this machine has no EGL, or an OpenGL older than 3.3.
+  // Creates the context and makes it current on this thread. Throws Error when this machine has no EGL, or an OpenGL
+  // older than 3.3.
   HeadlessContext();
   ~HeadlessContext();
   HeadlessContext(const HeadlessContext&) = delete;

@@ -15,7 +15,7 @@ class Object {
  public:
   Object() = default;
   static Object create();
-  // Takes ownership of an OpenGL object that was made elsewhere.
+  // Returns the owner of an OpenGL object that was made elsewhere. The owner deletes this object.
   static Object adopt(unsigned name);
   ~Object() { reset(); }
   Object(Object&& other) noexcept : name_(std::exchange(other.name_, 0u)) {}

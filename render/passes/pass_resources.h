@@ -37,6 +37,7 @@ struct PreparedBody {
 };
 
 struct PassResources {
+  // Compiles the shader programs. Textures are made when a volume is drawn.
   //   largest  largest number of texels per axis of a 3D texture; 0: as many as the driver allows
   explicit PassResources(int largest);
 
@@ -88,7 +89,7 @@ struct PassResources {
 
   TextureLimits limits;
   int pictures_at_rest = 6;  // number of pictures that are averaged while nothing in the 3D view moves
-  bool fine_light = false;   // true: after these pictures, as many with light that is computed by rays are averaged
+  bool fine_light = false;   // true: after the other pictures, as many with light by rays are averaged
   ShadePass shade;
   LightPass light;
   ComposePass compose;

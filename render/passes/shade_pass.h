@@ -21,18 +21,18 @@ class ShadePass {
   enum class Colours { Tissues, Weights, WeightsWithContours, WeightsWithBorders };
   // Blends one layer, with premultiplied alpha, over the bound framebuffer. The framebuffer must have the buffer's
   // size, and the first layer's GBuffer::hull_depth as its depth. Layers must be drawn from the innermost outward.
-  //   ghost  draws the layer as the outer layer of X-ray
-  //   layer  index of the layer; labels that also belong to a deeper layer are not drawn here
-  //   posed  the inverse map of the posed body; null: the body is at rest
-  // light  light by rays at the buffer's pixels; null: creases are darkened by the body's blurred occupancy instead
-  //   line_scale  width of the outlines of tissues on cut faces, which pictures with light by rays have, pixels
+  //   ghost       draws the layer as the outer layer of X-ray
+  //   layer       index of the layer; labels that also belong to a deeper layer are not drawn here
+  //   posed       the inverse map of the posed body; null: the body is at rest
+  //   light       light by rays at the buffer's pixels; null: the body's blurred occupancy darkens creases instead
+  //   line_scale  width of the outlines of tissues on cut faces, which only pictures with light by rays have, pixels
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
             const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost,
             Colours colours, const LightBuffer* light, float line_scale);
 
  private:
   gl::Program solid_, posed_, ghost_, weights_, posed_weights_;
-  std::unique_ptr<gl::Program> lit_, lit_weights_;  // compiled at the first picture with light by rays
+  std::unique_ptr<gl::Program> lit_, lit_weights_;  // for pictures with light by rays; compiled at the first of them
   gl::VertexArray nothing_;
 };
 

@@ -24,7 +24,8 @@ struct Camera {
 enum class StandardView { Front, Back, Left, Right, Top, Bottom };
 Camera looking_from(StandardView side, const Camera& camera);
 
-// Returns `camera` moved so that the box fills the picture.
+// Returns `camera` moved so that the box from `low` to `high` (world, mm) fills the picture.
+//   aspect  width / height of the picture
 Camera framing(const Camera& camera, const glm::dvec3& low, const glm::dvec3& high, double aspect);
 
 glm::dvec3 eye_of(const Camera& camera);

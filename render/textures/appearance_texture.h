@@ -24,8 +24,8 @@ std::vector<LabelSet> layers_of(const LabelLooks& looks, Display display, const 
 
 class LooksTexture {
  public:
-  // exposure  for each of the 65536 labels, the fraction of its voxels that touch air; it tells outer from inner
-  // tissues
+  // Computes the layers of the labels, and uploads their looks as a texture.
+  //   exposure  for each of the 65536 labels, the fraction of its voxels that touch air; tells outer from inner tissues
   LooksTexture(const LabelLooks& looks, Display display, const std::vector<float>& exposure);
 
   // Returns a texture of 256 x 256 texels in RGBA16UI; label = x + 256 y. RGB is the label's colour in 1/255. Bits 0 to

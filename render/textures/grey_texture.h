@@ -34,7 +34,7 @@ class GreyTexture {
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
   // Converts a value of the image to a level in [0, 1], as the shaders read it. May lie outside [0, 1].
   double level_of(double value) const { return (value - least_) / range_; }
-  // Corners of the box around all voxels, in the padded coordinates of a volume.
+  // Returns the corners of the box around all voxels of the image, in the padded coordinates of a volume.
   std::array<glm::dvec3, 2> padded_box(const VolumeTexture& volume) const;
 
  private:

@@ -27,8 +27,8 @@ class VisibleField {
  public:
   // Computes the field and uploads it. Throws Error when the driver has no memory for it.
   VisibleField(const VolumeTexture& volume, const LabelSet& set);
-  // Takes a field that was prepared for the volume; upload() must be called to upload it. Throws Error when the driver
-  // has no memory.
+  // Allocates the textures of a field that was prepared for the volume, but uploads nothing: the caller calls upload()
+  // until complete(). Throws Error when the driver has no memory for the textures.
   VisibleField(const VolumeTexture& volume, PreparedField&& prepared);
 
   // Uploads the field: as much as `time` allows, or all if `time` is null.

@@ -57,7 +57,8 @@ class WeightTexture {
   static constexpr std::int64_t kAtOnce = 8 * kSlot * kSlot * kSlot;
   static constexpr int kLot = 16;  // number of slots that are computed together; their texels take 3 MB
 
-  // Throws Error when the driver has no memory for the texture.
+  // Allocates textures for the volume's weights, but uploads nothing. Throws Error when the driver has no memory for
+  // them.
   explicit WeightTexture(const VolumeTexture& volume);
 
   // Uploads changed weights: as many as `time` allows, or all if `time` is null. Throws std::logic_error if the weights
