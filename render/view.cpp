@@ -22,7 +22,7 @@ constexpr int kTile = 128;             // edge length of a tile, pixels
 constexpr int kLightTile = 64;         // edge length of a tile in pictures with light by rays, pixels
 // Edge length of a tile of a grey image, whose rays take ten times as long, pixels.
 constexpr int kImageTile = 40;
-constexpr int kImagePictures = 2;  // largest number of averaged pictures of a grey image
+constexpr int kImagePictures = 2;  // at most this many pictures of a grey image are averaged
 // Length of the steps of rays through a grey image, in voxels of the image: in a picture in full resolution, and while
 // something moves.
 constexpr double kFineStep = 0.7, kCoarseStep = 1.4;

@@ -15,7 +15,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kDragThreshold = 4;    // a press becomes a drag when the pointer has moved this far, px at scale 1
-constexpr double kLongestClick = 0.3;  // longest press that counts as a click, s
+constexpr double kLongestClick = 0.3;  // a press that takes longer is not a click, s
 
 bool dialog_open(const Editor& editor) { return editor.dialog || !editor.messages.errors.empty(); }
 

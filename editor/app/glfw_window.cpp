@@ -15,7 +15,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr glm::ivec2 kSmallest = {800, 520};  // smallest window, px; the regions do not fit into a smaller one
+// The user cannot make the window smaller, px, because the regions would not fit.
+constexpr glm::ivec2 kSmallest = {800, 520};
 
 Key key_of_position(int key) {
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) return static_cast<Key>(static_cast<int>(Key::A) + key - GLFW_KEY_A);

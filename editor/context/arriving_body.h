@@ -28,7 +28,7 @@ class ArrivingBodies {
   // Uploads in a frame, after Renderer::begin_frame(), as much as the frame's time limit allows. Returns true if bodies
   // are still waiting.
   bool upload(render::Renderer& renderer);
-  bool has_frames() const;  // whether a frame came in the last half second
+  bool has_frames() const;  // true if a frame came in the last half second
 
  private:
   bool has_frames_locked() const;

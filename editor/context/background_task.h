@@ -15,7 +15,8 @@ namespace limber::editor {
 
 struct Editor;
 
-// The function that handles a task's result in the editor's own thread. May be empty.
+// The function that handles a task's result in the editor's own thread. An empty function means that the result needs
+// no handling.
 using Finish = std::function<void(Editor&)>;
 using TaskWork = std::function<Finish(Progress&)>;
 // The function that handles a task's failure. If it is empty, an error message is shown instead. `error` is the text of

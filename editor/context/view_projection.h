@@ -17,8 +17,9 @@ struct ViewProjection {
 
   std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // no value: the point is behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
-  glm::dvec3 direction_to_eye(const glm::dvec3& point) const;   // unit vector
-  double millimetres_per_pixel(const glm::dvec3& point) const;  // at the point, perpendicular to the line of sight
+  glm::dvec3 direction_to_eye(const glm::dvec3& point) const;  // unit vector
+  // Size of a pixel at the point, across the line of sight.
+  double millimetres_per_pixel(const glm::dvec3& point) const;
 
   // Returns true if the view shows the point: always in the 3D view, and in a slice if the point lies within 20 mm of
   // the slice's plane.

@@ -22,11 +22,12 @@ struct FigureOptions {
   enum class Paper { White, Black, Transparent } paper = Paper::White;
   bool scale_bar = true, legend = true;
 };
-inline constexpr double kSmallestFigure = 20, kLargestFigure = 1000;  // smallest and largest side of a figure, mm
+// A figure with a shorter or longer side is an error, mm.
+inline constexpr double kSmallestFigure = 20, kLargestFigure = 1000;
 inline constexpr double kLowestResolution = 30, kHighestResolution = 2400;
-inline constexpr int kMostFigurePixels = 8192;  // largest side of a figure, pixels
+inline constexpr int kMostFigurePixels = 8192;  // a figure with more pixels along a side is an error
 inline constexpr double kLargestFigureArea =
-    32e6;  // largest area of a figure, pixels; drawing a 3D picture of this size needs gigabytes of memory
+    32e6;  // a figure with more pixels is an error, because drawing its 3D picture would need gigabytes of memory
 
 // Returns the figure's size in pixels. Throws Error when it is too large or too small.
 glm::ivec2 figure_pixels(const FigureOptions& options);

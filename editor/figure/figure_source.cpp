@@ -17,7 +17,7 @@ constexpr double kScreenHeight = 700, kScreenResolution = 96, kFinestLines = 288
 // A tissue is listed in the legend if it covers at least this fraction of the picture. A smaller area cannot be
 // recognized.
 constexpr double kSmallestShare = 1.0 / 20000;
-constexpr double kLegendPixels = 1e6;  // largest size of the picture in which the legend's tissues are counted, pixels
+constexpr double kLegendPixels = 1e6;  // tissues for the legend are counted in a picture of at most this many pixels
 constexpr int kRows = 16;              // number of a slice's rows that one parallel work block looks up
 
 // Returns the size of the smaller picture in which the legend's tissues are counted, for a picture of the given size.

@@ -46,7 +46,7 @@ std::string name_of_file(const Path& path) {
   return (has_two && !stem.stem().empty() ? stem.stem() : stem).string();
 }
 
-constexpr std::uint64_t kLargestJson = 64 << 20;  // largest accepted JSON file of a rig or pose, bytes
+constexpr std::uint64_t kLargestJson = 64 << 20;  // a larger JSON file of a rig or pose is an error, bytes
 
 std::string extension_of(const Path& path) {
   std::string end = path.extension().string();

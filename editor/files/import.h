@@ -33,7 +33,7 @@ void open_image(Editor& editor, const Path& path);
 
 enum class Sample { Arm, ArmXray, Body, BodyTissues };
 struct SampleFacts {
-  const char *name, *facts, *picture;  // picture: a file in assets/samples
+  const char *name, *facts, *picture;  // name, a line about the content, picture file in assets/samples
 };
 const SampleFacts& facts_of(Sample sample);
 void open_sample(Editor& editor, Sample sample, Then then = {});

@@ -22,7 +22,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kMostPictures = 100'000;  // upper limit on the pictures of one export
+constexpr int kMostPictures = 100'000;  // an export of more pictures is an error
 
 Path numbered(const Path& path, int number) {
   char suffix[16];

@@ -19,7 +19,7 @@ using Json = nlohmann::json;
 namespace {
 
 constexpr const char* kSchema = "limber-editor/1";
-constexpr double kFarthest = 1e6;  // mm: largest accepted camera distance or coordinate
+constexpr double kFarthest = 1e6;  // a stored camera distance or coordinate beyond this is ignored, mm
 
 template <class Vector>
 Json json_of(const Vector& v) {

@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kLeast = 4;  // shortest line, pixels at scale 1; a shorter one is ignored as a slip of the hand
+constexpr double kLeast = 4;  // a shorter line is ignored as a slip of the hand, pixels at scale 1
 
 class SplitTool final : public Modal {
  public:

@@ -73,7 +73,7 @@ bool is_busy(const Editor& editor) {
          ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
-// Returns the direction of the bone nearest to a point of the body at rest. Nothing without a rig.
+// Returns the direction of the bone nearest to a point of the body at rest; no value without a rig.
 std::optional<glm::dvec3> along_nearest_bone(const Document& document, const glm::dvec3& point) {
   if (!document.armature) return std::nullopt;
   double least = std::numeric_limits<double>::max();

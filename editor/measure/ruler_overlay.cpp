@@ -11,7 +11,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kApart = 64;  // smallest distance between two numbers, pixels at scale 1
+constexpr float kApart = 64;  // numbers on a ruler are at least this far apart, pixels at scale 1
 // Height of the horizontal ruler, width of the vertical one, pixels at scale 1.
 constexpr float kHeight = 20, kWidth = 34;
 constexpr float kLong = 8, kShort = 4;  // lengths of the ticks with and without a number, pixels at scale 1

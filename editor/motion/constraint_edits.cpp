@@ -235,7 +235,7 @@ const Constraint* order_neighbour(const Editor& editor, const std::string& name,
 }
 
 void move_constraint(Editor& editor, const std::string& name, InOrder where) {
-  clip_on_rig(editor);  // prepares the shown clip
+  clip_on_rig(editor);  // retargets the clip to the rig if needed; order_neighbour() uses the result
   const Constraint* found = order_neighbour(editor, name, where);
   if (!found) return;
   const std::string neighbour = found->name;

@@ -18,8 +18,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e5;          // largest coordinate of a position that can be typed, mm
-constexpr double kWidestLimit = 180;  // largest absolute angle of a rotation limit, degrees
+constexpr double kFar = 1e5;          // a coordinate beyond plus or minus this cannot be typed, mm
+constexpr double kWidestLimit = 180;  // a rotation limit beyond plus or minus this cannot be typed, degrees
 constexpr int kLongestChain = 64;
 
 // A number field of the panel that shows and changes one number of a constraint.

@@ -53,7 +53,7 @@ struct GraphCurve {
 
 struct GraphCurves {
   std::shared_ptr<const Clip> clip;     // the clip whose motion is sampled
-  std::shared_ptr<const Armature> rig;  // null: nothing is sampled
+  std::shared_ptr<const Armature> rig;  // the rig whose poses are sampled; null: nothing is sampled
   bool has_motion = false;
   FrameRange range{0, -1};
   // The poses of the motion that are sampled so far, from the first frame of `range`. Copies of GraphCurves share

@@ -16,7 +16,7 @@ namespace {
 
 // Widths, pixels at scale 1: the list of tracks, the numbers beside the plot, a channel's button.
 constexpr float kList = 176, kValues = 62, kButton = 20;
-constexpr float kLeastValues = 26;  // smallest distance between two values beside the plot, pixels at scale 1
+constexpr float kLeastValues = 26;  // the values beside the plot are at least this far apart, pixels at scale 1
 constexpr int kMostTicks = 1000;
 // If frames are farther apart than this, curves are also drawn between frames; pixels at scale 1.
 constexpr float kFine = 5;

@@ -15,11 +15,11 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kReach = 8;       // largest distance from the pointer to a key or a handle's end, pixels at scale 1
+constexpr float kReach = 8;       // the pointer hits a key or a handle's end at most this far away, pixels at scale 1
 constexpr float kStart = 3;       // the pointer moves this far before a press on a key drags it, pixels at scale 1
-constexpr float kLeastThird = 2;  // least width of a handle that is drawn, pixels at scale 1
-constexpr double kStep = 1.25, kMostFrames = 1e7;         // zoom factor per wheel step; largest number of frames shown
-constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // smallest and largest range of values shown
+constexpr float kLeastThird = 2;  // a handle that would be less wide is not drawn, pixels at scale 1
+constexpr double kStep = 1.25, kMostFrames = 1e7;  // zoom factor per wheel step; zooming out stops at this many frames
+constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // zooming keeps the range of shown values between these
 // A move changes a key by at most this, in frames or in values.
 constexpr double kFurthestMove = 1e7;
 

@@ -69,7 +69,7 @@ std::string frames_text(int first, int last) {
 
 struct Result {
   std::vector<Pose> poses;
-  std::string line, detail;  // message about the result for the user
+  std::string line, detail;  // the message about the result: its line and its details
   bool is_short = false;     // true: a limb does not reach the position at which it should stay
 };
 

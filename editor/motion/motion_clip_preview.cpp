@@ -15,7 +15,7 @@ namespace {
 constexpr int kMeasured = 60;         // approximate number of frames that are sampled to measure the figure's size
 constexpr double kSide = 0.6;         // angle by which the camera is turned from the front to the side, radians
 constexpr double kAbove = 0.2;        // angle by which the camera looks down, radians
-constexpr double kFinest = 1.0 / 60;  // shortest time between two drawn frames, s
+constexpr double kFinest = 1.0 / 60;  // a playing preview is drawn again after this time at the earliest, s
 
 // Projects a 3D point into the picture. The returned x points to the right and y up.
 glm::dvec2 seen(const glm::dvec3& p) {

@@ -17,7 +17,8 @@ namespace {
 
 constexpr char kPingPongIcon[] = "\uf07e";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1, 2, 4};
-constexpr double kZoomStep = 1.25, kMostFrames = 1e7;  // zoom factor per wheel step; largest number of frames shown
+// Zoom factor per wheel step; zooming out stops at this many frames.
+constexpr double kZoomStep = 1.25, kMostFrames = 1e7;
 
 std::string needs_clip(const Editor& editor) {
   return shown_clip(editor) ? "" : "Import a motion first, or insert a key";

@@ -16,8 +16,8 @@ namespace {
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A, kKey = 0xFF23A6F5;
 // Longest path, in frames; a longer playing range shows only its first frames.
 constexpr int kMostFrames = 100'000;
-constexpr std::size_t kMostBones = 8;          // if more bones are selected, only the active bone has a path
-constexpr float kRoom = 5;                     // smallest distance between the dots of two frames, pixels at scale 1
+constexpr std::size_t kMostBones = 8;  // if more bones are selected, only the active bone has a path
+constexpr float kRoom = 5;  // a frame gets a dot only this far or farther from the last dot, pixels at scale 1
 constexpr std::chrono::milliseconds kTime{8};  // time limit per drawn frame for computing new points
 
 void add_points(const ClipOnRig& clip, MotionPaths& paths) {

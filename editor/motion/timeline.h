@@ -78,7 +78,8 @@ struct Timeline {
     double low = 0, count = 250;
     std::optional<int> followed;  // play head's frame when follow_head() ran last
   } window;
-  Rect ruler, marks, lane, keys, area;  // rectangles of the timeline's rows, pixels; empty: not shown
+  // Rows: ruler, markers, clip, keys, and the area of all rows; pixels, empty: not shown.
+  Rect ruler, marks, lane, keys, area;
 
   std::int64_t revision = -1;  // history revision made by the last frame change; -1: none
   std::unique_ptr<ClipOnRig> prepared;

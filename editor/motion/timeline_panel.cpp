@@ -283,8 +283,9 @@ std::vector<Rect> draw_markers(Editor& editor) {
 
 // ---- The curve of the active bone's angle
 
-constexpr double kPerSample = 3;     // smallest distance between two samples of the curve, pixels at scale 1
-constexpr std::size_t kAtOnce = 24;  // samples of the curve computed per drawn frame at most, to keep drawing fast
+constexpr double kPerSample = 3;  // samples of the curve are at least this far apart, pixels at scale 1
+// Each drawn frame computes at most this many samples of the curve, so that drawing stays fast.
+constexpr std::size_t kAtOnce = 24;
 
 float degrees_from_rest(const Pose& pose, int bone) {
   const glm::dquat& q = pose.rotation[bone];

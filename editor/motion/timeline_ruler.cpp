@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kLeastTicks = 60;  // smallest distance between two numbers of the ruler, pixels at scale 1
+constexpr float kLeastTicks = 60;  // the numbers of the ruler are at least this far apart, pixels at scale 1
 
 std::string seconds_text(double frames, double rate) {
   char text[24];

@@ -13,7 +13,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFurthest = 1e7;     // frame numbers are clamped to plus or minus this
-constexpr double kLeastScale = 0.01;  // smallest absolute value of the factor by which time is scaled
+constexpr double kLeastScale = 0.01;  // factors by which time is scaled have at least this absolute value
 
 void show_under_pointer(Editor& editor) {
   const double frame =
@@ -21,7 +21,7 @@ void show_under_pointer(Editor& editor) {
   show_frame(editor, static_cast<int>(frame));
 }
 
-constexpr float kReach = 7;  // largest distance from the pointer to the centre of a key, pixels at scale 1
+constexpr float kReach = 7;  // the pointer hits a key at most this far from the key's centre, pixels at scale 1
 
 std::optional<int> key_under_pointer(const Editor& editor) {
   const Timeline& timeline = *editor.timeline;

@@ -10,7 +10,7 @@ namespace limber::editor {
 
 double frame_at(const Timeline& timeline, float x);
 float x_of(const Timeline& timeline, double frame);
-constexpr double kFewestFrames = 8;  // fewest frames that the timeline shows
+constexpr double kFewestFrames = 8;  // the timeline shows at least this many frames, however far the user zooms in
 // Fits the whole motion and the playing range into the timeline, with a small margin on both sides.
 void fit_window(Editor& editor);
 void fit_window_to_keys(Editor& editor);  // fits the selected keys into the timeline; needs selected keys

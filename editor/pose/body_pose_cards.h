@@ -10,8 +10,8 @@
 
 namespace limber::editor {
 
-// Returns the built-in poses for the open rig. They are computed again when the rig changes. Empty without a rig, or
-// when the names of the rig's bones are not recognised.
+// Returns the built-in poses for the open rig. They are computed again when the rig changes. The library is empty
+// without a rig, or when the names of the rig's bones are not recognised.
 const PoseLibrary& body_pose_cards(const Editor& editor);
 // Returns the built-in poses for the open rig with their pictures. The pictures are drawn at the first call.
 const PoseLibrary& pictured_body_pose_cards(const Editor& editor);

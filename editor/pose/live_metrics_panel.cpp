@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kMostTissues = 6;  // tissues listed before the user expands the list
 constexpr char kAll[] = "Volume, live: all tissues";
-constexpr double kBeyond = 1e-6;  // smallest excess over a joint limit that is reported, radians
+constexpr double kBeyond = 1e-6;  // an excess over a joint limit is reported if it is larger than this, radians
 
 Rect padded(const Editor& editor, const Rect& row) {
   const float inset = editor.look.px(10);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Marks in the 3D view and in slices where the compared volumes A and B differ. A voxel of A is marked in a colour of
-// A if B has another tissue, or no tissue, at its position. A voxel of B is marked likewise in a colour of B. All
-// other voxels are dimmed. The renderer gets one colour per voxel. A task computes the colours once for a pair of
-// volumes.
+// Marks in the 3D view and in slices where the compared volumes A and B differ. A voxel of A is marked in a colour of A
+// if B has another tissue, or no tissue, at its position. A voxel of B is marked in a colour of B if A has another
+// tissue, or none, at its position. All other voxels are dimmed. The renderer gets one colour per voxel. A task
+// computes the colours once for a pair of volumes.
 #pragma once
 
 #include <array>

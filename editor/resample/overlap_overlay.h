@@ -27,8 +27,8 @@ struct OverlapView {
   std::optional<int> task;
 };
 
-// Returns the colour that marks overlap, sRGB. There are two colours: `of_bones` is for voxels where two bones overlap,
-// the other one for voxels where other tissue overlaps.
+// Returns the colour that marks overlap, sRGB. If `of_bones` is true, this is the colour of voxels where two bones
+// overlap, otherwise the colour of voxels where other tissue overlaps.
 glm::vec3 mark_of_overlap(bool of_bones);
 
 // Returns why there is no overlap to show, such as "Resample a pose first"; "" when there is an overlap.

@@ -18,7 +18,7 @@ constexpr int kMostRows = 8, kLastUsed = 5;
 // Amounts subtracted from a command's score if the query matches the command's category (kPlacePenalty) or description
 // (kSentencePenalty) instead of its label.
 constexpr int kPlacePenalty = 30, kSentencePenalty = 60;
-constexpr std::size_t kLeastForSentence = 3;  // smallest length of a query that searches descriptions, letters
+constexpr std::size_t kLeastForSentence = 3;  // a query with fewer letters does not search descriptions
 
 bool can_be_searched(const Editor& editor, const Operator& op) {
   return op.id != "search.commands" && !needs_pointer(editor, op);

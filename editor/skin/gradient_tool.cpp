@@ -12,7 +12,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kLeast = 3;  // shortest drag, pixels at scale 1; a shorter one is ignored as a slip of the hand
+constexpr double kLeast = 3;  // a shorter drag is ignored as a slip of the hand, pixels at scale 1
 
 using Fields = std::vector<FormField>;
 

@@ -12,8 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kStep = 2;        // smallest distance between two points of a lasso, pixels
-constexpr double kLeastArea = 4;  // smallest area of an outline, square pixels; a smaller outline is ignored as a slip
+constexpr float kStep = 2;        // the lasso gets a new point when the pointer has moved this far, pixels
+constexpr double kLeastArea = 4;  // a smaller outline is ignored as a slip of the hand, square pixels
 
 // The pixels of a view that lie inside an outline (even-odd rule), stored as one byte per pixel. With this table, each
 // of millions of voxels is tested in constant time.

@@ -37,7 +37,7 @@ struct BrushPlace {
 };
 
 struct Painting {
-  static constexpr double kLeastRadius = 0.5, kMostRadius = 300;  // smallest and largest radius, mm
+  static constexpr double kLeastRadius = 0.5, kMostRadius = 300;  // the brush's radius is clamped to this range, mm
 
   BrushKind kind = BrushKind::Add;
   double radius = 20;      // radius of the brush, mm
@@ -78,7 +78,7 @@ struct Painting {
   std::optional<BrushPlace> place;  // the brush's position in the last frame; none: no tissue was under the pointer
 
   // State of the weight edits that change many voxels at once, without a brush (weight_edits.h)
-  std::int64_t edited_at_once = 300'000;  // largest body, in voxels, edited without a job (some 10 ms)
+  std::int64_t edited_at_once = 300'000;  // a body with more voxels is edited in a job (a smaller one takes some 10 ms)
   std::optional<int> edit_job;            // id of the running job of an edit; none: no edit runs
   PaintedRegion region;                   // the region that limits brushes and edits
   std::vector<std::int64_t> unmatched;    // indices of the tissue voxels for which Mirror weights found no match

@@ -20,7 +20,7 @@ void ask_for_keyboard(Ui& ui, const std::string& id) {
   await_field(ui, ImGui::GetID(id.c_str()));
 }
 
-constexpr double kFastest = 1;  // upper limit on the change of a number per pixel of a drag
+constexpr double kFastest = 1;  // a drag by one pixel changes a number by at most this
 
 // Returns the margin at the left and right of a field's text, pixels. A narrow field has a smaller margin, so that more
 // digits fit.

@@ -9,7 +9,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kThinnest = 1;  // smallest distance between opposite faces of the clip box, voxels
+constexpr double kThinnest = 1;  // opposite faces of the clip box keep at least this distance, voxels
 constexpr double kSnap = 10;     // step to which a dragged handle snaps while Ctrl is held, mm
 
 const Visibility& shown(const Editor& editor) {

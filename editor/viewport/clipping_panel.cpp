@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the section "Clipping": number fields for the positions of the clip box and the clip plane, in mm. Changing a
-// number does the same as dragging a handle in the 3D view.
+// Draws the section "Clipping": number fields for the positions of the clip box and the clip plane, in mm. The user can
+// also change these positions by handles in the 3D view.
 #include <algorithm>
 #include <cmath>
 

@@ -15,14 +15,14 @@ namespace limber::editor {
 
 // A circle in the world. Angles on it are in radians, from the direction `from`, right-handed about `axis`.
 struct Ring {
-  glm::dvec3 centre{0}, axis{0, 0, 1}, from{1, 0, 0};  // mm; unit vectors
+  glm::dvec3 centre{0}, axis{0, 0, 1}, from{1, 0, 0};  // centre: mm; axis, from: unit vectors at a right angle
   double radius = 0;                                   // mm
 
   glm::dvec3 at(double angle) const {
     return centre + radius * (std::cos(angle) * from + std::sin(angle) * glm::cross(axis, from));
   }
   // Returns the angle on the ring, radians, of the point where the pixel's line of sight meets the ring's plane.
-  // Nothing if the line of sight misses the plane.
+  // Returns no value if the line of sight misses the plane.
   std::optional<double> angle_under(const ViewProjection& view, const glm::dvec2& pixel) const;
   // Returns the part of the ring that faces the eye, as its first angle and its extent in radians. It is a little more
   // than half of the ring, or the whole ring if the line of sight is nearly parallel to its axis.

@@ -17,7 +17,7 @@ constexpr double kPrecise = 0.1;  // factor on the pointer's moves while Shift i
 constexpr double kClickPixels = 4;
 
 constexpr const char* kAxisNames[] = {"X", "Y", "Z"};
-constexpr double kFarthest = 10'000;  // largest translation that can be entered in the form, mm
+constexpr double kFarthest = 10'000;  // a longer translation cannot be entered in the form, mm
 
 int axis_of_key(Key key) { return key == Key::X ? 0 : key == Key::Y ? 1 : key == Key::Z ? 2 : -1; }
 

@@ -60,7 +60,7 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   bool confirm(Editor& editor);
   bool drop(Editor& editor);
   double snapped(const Editor& editor, double value, double step, double fine) const;
-  // Returns the axis that the tool is locked to, as a unit vector in the world. Zero without a lock.
+  // Returns the axis that the tool is locked to, as a unit vector in the world; the zero vector without a lock.
   glm::dvec3 lock_axis() const;
   std::string lock_text(const char* word) const;  // the lock in words: " about local X"
   std::vector<KeyHint> shared_hints() const;

@@ -14,7 +14,7 @@ namespace {
 // Initial walking speed, as a fraction of the distance between the eye and the view's centre per second.
 constexpr double kSpeed = 0.4;
 constexpr double kFasterPerStep = 1.25;           // factor by which a wheel step changes the speed
-constexpr double kSlowest = 0.1, kFastest = 1e5;  // limits of the speed, mm/s
+constexpr double kSlowest = 0.1, kFastest = 1e5;  // the walking speed is clamped to this range, mm/s
 constexpr double kHurry = 5, kCreep = 0.2;
 // Rotation per pixel, relative to orbiting; smaller than 1, because looking around feels faster.
 constexpr double kLookPerPixel = 0.35;

@@ -25,14 +25,14 @@ struct SeamSource {
   bool operator==(const SeamSource&) const = default;
 };
 SeamSource seam_source(const Document& document);
-// Returns the entries of the document's bone map whose tissue and rig bone exist in the document. Empty if the document
-// has no bone map.
+// Returns the entries of the document's bone map whose tissue and rig bone exist in the document; an empty map if the
+// document has no bone map.
 BoneMap usable_bone_map(const SeamSource& source);
 
 class BodySeams {
  public:
-  // Returns the seams; finds them first if needed. Null if the document has no seams of its own and either has no rig
-  // or has a rig whose bone names do not tell which bones are limbs.
+  // Returns the seams; finds them first if needed. Returns null if the document has no seams of its own and limbs
+  // cannot be told apart: it has no rig, or a rig whose bone names do not say which bones are limbs.
   std::shared_ptr<const Seams> of(const SeamSource& source, Progress& progress = no_progress());
   // Returns the seams as of() does, but never searches for seams. Returns nothing if a search is needed.
   std::optional<std::shared_ptr<const Seams>> known(const SeamSource& source);

@@ -208,7 +208,7 @@ class GreyImageDialog final : public Dialog {
                                                 render::SliceAxis::Sagittal};
   ShownImage shown_;
   GreyWindow window_;
-  glm::dvec3 middle_{0}, cross_{0};  // world, mm
+  glm::dvec3 middle_{0}, cross_{0};  // centre of the image, and position of the cross-hair; world, mm
   glm::dvec3 sides_{0};              // size of the image's bounding box in the world, mm
   double least_ = 0, most_ = 1, turn_ = 0;
   std::array<Pane, 4> panes_;

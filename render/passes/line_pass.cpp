@@ -11,7 +11,7 @@ namespace {}  // namespace
 
 std::vector<Segment> lines_on_cuts(const CutMesh& mesh, const Clip& clip, const Grid& grid) {
   struct Plane {
-    glm::dvec3 point, normal;  // the normal points to the side that is cut away
+    glm::dvec3 point, normal;  // a point of the plane; its normal, which points to the side that is cut away
   };
   std::vector<Plane> planes;
   if (clip.plane) planes.push_back({(*clip.plane)[0], (*clip.plane)[1]});

@@ -81,7 +81,7 @@ struct PassResources {
   // if no weights are shown.
   enum class Extent { Whole, InTime };
   WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent);
-  // Returns the hull of a layer of the posed body. Rays start at the hull. Null if `map` is null.
+  // Returns the hull of a layer of the posed body, at which rays start. Returns null if `map` is null.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
   // Uploads the shown grey image, whole or as much as the frame's time limit allows. Returns null if none is shown.
   GreyTexture* grey(const std::optional<ShownGrey>& shown, Extent extent);

@@ -4,7 +4,7 @@
 // which later passes use for shading, outlines and picking.
 //
 // The hull of the visible labels is drawn first and gives each ray its start; pixels outside the hull cost nothing.
-// From there a ray reads one texel per step and skips as far as the texel allows. Near the surface it reads filtered
+// A ray reads one texel per step and skips as far as the texel allows. Near the surface it reads filtered
 // values, and finds the crossing by the secant method. If the clip box or plane makes a ray start inside the body, the
 // ray ends at once, on a cap (the cut face).
 //

@@ -10,7 +10,8 @@ namespace limber::render {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kNearest = 1e-2, kFarthest = 1e6;  // limits of the distance from the eye to the centre, mm
+// The distance from the eye to the centre is clamped to this range, mm.
+constexpr double kNearest = 1e-2, kFarthest = 1e6;
 // Rotation per pixel of mouse motion, radians: 0.4 degrees, as in Blender's turntable.
 constexpr double kOrbitPerPixel = kPi / 450;
 

@@ -32,7 +32,8 @@ class GreyTexture {
   // Sets the uniforms that shaders/grey.glsl declares, and binds the textures to the texture units from `first` on.
   // Returns the next free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
-  // Converts a value of the image to a level in [0, 1], as the shaders read it. May lie outside [0, 1].
+  // Converts a value of the image to a level as the shaders read it. The levels of the image's own values lie in [0,
+  // 1].
   double level_of(double value) const { return (value - least_) / range_; }
   // Returns the corners of the box around all voxels of the image, in the padded coordinates of a volume.
   std::array<glm::dvec3, 2> padded_box(const VolumeTexture& volume) const;
