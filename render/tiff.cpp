@@ -63,7 +63,7 @@ class Directory {
     std::uint32_t count;
     std::string bytes;
   };
-  std::vector<Entry> entries_;  // sorted by tag
+  std::vector<Entry> entries_;  // the directory's tags and values, sorted by tag
 };
 
 // Returns the rows [from, to) of the picture, compressed. Each channel is stored as its difference from the pixel to

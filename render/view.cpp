@@ -123,8 +123,8 @@ struct BodyKey {
   Camera camera;
   glm::ivec2 size{0};
   bool places = false;            // true: the rest position of each pixel is needed, to look up its weights
-  std::optional<ShownGrey> grey;  // only if the grey image is drawn instead of the body
-  int revision = 0;               // of the volume's labels (PassResources::relabel())
+  std::optional<ShownGrey> grey;  // the grey image that is drawn instead of the body; empty: the body is drawn
+  int revision = 0;               // revision of the volume's labels (PassResources::relabel())
 
   bool operator==(const BodyKey&) const = default;
 };
@@ -214,7 +214,7 @@ glm::dvec2 jitter_of(int sample) {
 // Returns the offset of the positions at which averaged picture `sample` reads labels, voxels. Averaging pictures with
 // different offsets blends the borders between voxels.
 glm::vec3 label_shift_of(int sample) {
-  constexpr float kReach = 0.8f;  // largest offset along each axis, voxels
+  constexpr float kReach = 0.8f;  // the offset is at most this large along each axis, voxels
   if (sample == 0) return glm::vec3(0);
   return glm::vec3(halton(sample, 3) - 0.5, halton(sample, 5) - 0.5, halton(sample, 7) - 0.5) * 2.0f * kReach;
 }
@@ -256,7 +256,7 @@ struct View3D::Impl {
     const PosedTexture* pose = nullptr;
     const WeightTexture* weights = nullptr;
     const GreyTexture* image = nullptr;         // the grey image to draw instead of the body; null: the body is drawn
-    std::vector<const PosedHull*> posed_hulls;  // one for each layer; null at rest
+    std::vector<const PosedHull*> posed_hulls;  // hull of the posed body for each layer; null at rest
 
     const Hull& hull(size_t layer) const {
       return posed_hulls[layer] ? posed_hulls[layer]->hull() : layers[layer]->hull();
@@ -601,7 +601,7 @@ std::vector<Label> View3D::shown_labels(int pixels) const {
   const glm::ivec2 size = my.shown[0].size();
   const size_t count = static_cast<size_t>(size.x) * static_cast<size_t>(size.y);
   std::vector<std::uint16_t> labels(count);
-  std::vector<std::uint8_t> hidden(count);  // 1: an opaque tissue lies in front
+  std::vector<std::uint8_t> hidden(count);  // for each pixel, 1 if an opaque tissue lies in front
   std::vector<int> shown(65536);
   for (size_t layer = 0; layer < source->layers.size(); ++layer) {
     glBindFramebuffer(GL_FRAMEBUFFER, my.shown[layer].march_target.name());

@@ -87,8 +87,8 @@ class Renderer {
 struct Hit {
   Label label = 0;
   glm::ivec3 voxel{0};   // voxel of the volume; of a posed body, the voxel at the rest position
-  glm::dvec3 point{0};   // world, mm
-  glm::dvec3 normal{0};  // world, unit length; zero on a cut face or slice
+  glm::dvec3 point{0};   // position of the point in the world, mm
+  glm::dvec3 normal{0};  // unit normal of the surface in the world; zero on a cut face or slice
 };
 
 // A 3D picture that is refined over several calls: coarse while something moves, in full resolution when nothing moves.
@@ -112,7 +112,7 @@ class View3D {
   // Returns the number of rays in all pictures so far. A picture counts one ray for each pixel of the rectangle that
   // the body covers.
   std::int64_t rays_followed() const;
-  unsigned texture() const;  // RGBA8, `size` pixels, top row first when drawn with uv (0, 1) to (1, 0)
+  unsigned texture() const;  // returns the picture as an RGBA8 texture of `size` pixels; its top row is at v = 1
   Image read() const;        // the finished picture
 
   // Returns the labels that the last picture shows on at least `pixels` of its pixels, in ascending order. Tissue
@@ -122,7 +122,8 @@ class View3D {
   // These functions return what the last picture shows at a pixel. Pixels are counted from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;
   std::optional<int> pick_bone(const glm::ivec2& pixel) const;
-  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;  // all bones whose drawn shapes are under the pixel
+  // Returns all bones whose drawn shapes are under the pixel.
+  std::vector<BoneHit> pick_bones(const glm::ivec2& pixel) const;
 
  private:
   struct Impl;

@@ -74,7 +74,7 @@ class Dialog {
  public:
   virtual ~Dialog() = default;
   virtual void draw(Editor& editor) = 0;  // calls begin_dialog() and end_dialog() of dialog.h
-  virtual void escape(Editor& editor);    // closes the dialog
+  virtual void escape(Editor& editor);    // closes the dialog; called when the user presses Escape
   // Handles a pressed key before a text field of the dialog gets it. Returns true if the dialog used the key.
   virtual bool key(Editor&, const Chord&) { return false; }
 };
@@ -115,8 +115,8 @@ struct Editor : Ui {
   std::string shown_theme;
   Keymap keymap;
   std::vector<Operator> operators;
-  std::function<void(Editor&)> before_change = [](Editor&) {
-  };  // called before an operator that must not run during playback; stops the playback
+  // Called before an operator that must not run during playback. It stops the playback.
+  std::function<void(Editor&)> before_change = [](Editor&) {};
   Messages messages;
   bool error_details = false;  // true: the details of the shown error are unfolded
 
@@ -138,7 +138,7 @@ struct Editor : Ui {
   std::vector<Path> to_open;      // files dropped on the window or given on the command line
 
   // Stored on disk between runs of the program
-  Folders folders;  // an empty path: files of that kind are not stored
+  Folders folders;  // folders of the editor's own files; an empty path: files of that kind are not stored
   RecentFiles recent_files;
   RecentFilesOnDisk recent_files_on_disk;
   std::map<Path, RecentFacts> recent_facts;
@@ -171,22 +171,24 @@ struct Editor : Ui {
   std::optional<glm::vec3> edited_colour;
   Tool tool = Tool::Select;
   std::unique_ptr<TransformSettings> transform_settings;  // how tools transform bones; never null
-  std::unique_ptr<SkinDisplay> skin;                      // declared in weight_display.h; never null
-  std::string open_menu;                                  // title of the top bar's open menu; "" for none
+  // How the Skin workspace shows weights (weight_display.h); never null.
+  std::unique_ptr<SkinDisplay> skin;
+  std::string open_menu;            // title of the top bar's open menu; "" for none
   std::string open_popup;           // the menu of menus.h to open at the pointer in the next frame; "" for none
   std::string shown_popup;          // the menu of menus.h that is open; "" for none
   bool open_pick_list = false;      // true: the list of bones and tissues under the pointer opens in the next frame
   std::vector<Pickable> pick_list;  // bones and tissues under the pointer, nearest first
   Comparison comparison;
   std::unique_ptr<LivePose> live;
-  std::unique_ptr<FemView> fem;                // declared in fem_live_view.h; never null
-  std::unique_ptr<FemOverlay> fem_overlay;     // declared in fem_overlay.h; never null
+  // The running FEM solves and the one that is shown (fem_live_view.h); never null.
+  std::unique_ptr<FemView> fem;
+  std::unique_ptr<FemOverlay> fem_overlay;     // the shown FEM measure and mesh (fem_overlay.h); never null
   std::unique_ptr<TestPose> trial;             // settings of the test pose, declared in test_pose.h; never null
-  std::unique_ptr<DifferenceView> difference;  // declared in difference_overlay.h; never null
-  std::unique_ptr<OverlapView> overlap;        // declared in overlap_overlay.h; never null
-  std::unique_ptr<SeamView> seams;             // declared in seam_view.h; never null
-  std::unique_ptr<BoneTable> bone_table;       // declared in bone_table.h; never null
-  std::unique_ptr<MeasureView> measures;       // declared in measure_view.h; never null
+  std::unique_ptr<DifferenceView> difference;  // the comparison of two volumes (difference_overlay.h); never null
+  std::unique_ptr<OverlapView> overlap;        // the shown overlap of a result (overlap_overlay.h); never null
+  std::unique_ptr<SeamView> seams;             // the shown seams and the seam brush (seam_view.h); never null
+  std::unique_ptr<BoneTable> bone_table;       // which rig bone each bone label follows (bone_table.h); never null
+  std::unique_ptr<MeasureView> measures;       // the shown measurements (measure_view.h); never null
   struct {
     std::string result;  // the result whose name is being edited; "" for none
     std::string text;
@@ -216,12 +218,13 @@ struct Editor : Ui {
   std::optional<PendingPress> pending_press;
   std::shared_ptr<Modal> modal;  // the modal tool that gets all input; null: none
   PointerWrap modal_wrap;
-  std::unique_ptr<Timeline> timeline;  // declared in timeline.h; never null
+  std::unique_ptr<Timeline> timeline;  // playback, keys and the shown frame (timeline.h); never null
   Rect timeline_area;         // area of the timeline's rows in the last frame; empty while the timeline is not shown
   Rect graph_area;            // the part of timeline_area in which the graph editor draws curves; empty: not shown
   float wheel_rest = 0;       // fraction of a wheel step that has not moved a slice yet; touch pads send fractions
   std::string last_operator;  // the id of the operator that the command Repeat runs again
-  std::unique_ptr<LastOperation> last_operation;  // declared in redo_last_operator.h; never null
+  // The operation that can be redone with other numbers (redo_last_operator.h); never null.
+  std::unique_ptr<LastOperation> last_operation;
 
   Cursor cursor = Cursor::Arrow;  // the pointer's shape in this frame
   int hovered_splitter = -1;

@@ -115,8 +115,8 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
   if ((arrangement.console || arrangement.results || arrangement.timeline) && !alone) {
     const float most = std::max(kBottomLow, unscaled.y / 2);
     const float height = unscaled.y < 720 ? kBottomInSmall : std::clamp(arrangement.bottom_height, kBottomLow, most);
-    views_bottom = std::max(bottom - px(height),
-                            std::round((header_bottom + bottom) / 2));  // the views keep at least half of the height
+    // The bottom area takes at most half of the height, so that the views keep the other half.
+    views_bottom = std::max(bottom - px(height), std::round((header_bottom + bottom) / 2));
     layout.bottom = {{0, views_bottom}, {right, bottom}};
   }
 

@@ -59,7 +59,8 @@ struct Splitter {
 };
 
 struct Layout {
-  Rect window, top_bar, tool_header, tool_strip, views, sidebar, sidebar_handle, bottom, status;  // empty if not shown
+  // Rectangles of the window's regions, pixels; empty if not shown.
+  Rect window, top_bar, tool_header, tool_strip, views, sidebar, sidebar_handle, bottom, status;
   bool sidebar_over_views = false;
   bool by_sides = false;  // true: each view appears twice, to compare two results side by side
   bool search_as_icon = false, few_hints = false, short_labels = false;
@@ -67,8 +68,8 @@ struct Layout {
   std::vector<Splitter> splitters;
 
   bool several() const { return view_places.size() > (by_sides ? 2u : 1u); }
-  const ViewPlace* view_at(const glm::vec2& point) const;  // nullptr if the point is outside every view
-  const Rect* place_of(ViewId id) const;                   // nullptr if the view is not shown
+  const ViewPlace* view_at(const glm::vec2& point) const;  // returns nullptr if the point is outside every view
+  const Rect* place_of(ViewId id) const;                   // returns nullptr if the view is not shown
 };
 Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrangement);
 // Splits each view into two views with a gap between them, to compare two results. The left view shows result A.

@@ -21,13 +21,15 @@ struct Operator {
   std::function<void(Editor&)> run;
   // Returns why the operator cannot run now; "" or no function: it can run.
   std::function<std::string(const Editor&)> disabled_reason;
-  std::function<bool(const Editor&)> checked;  // true if the operator is a switch that is on now
+  // Returns true if the operator is a switch and is on now; empty: it is no switch.
+  std::function<bool(const Editor&)> checked;
 };
 
 // Returns all operators, in the order of the menus.
 std::vector<Operator> gather_operators();
 
-const Operator* find_operator(const Editor& editor, std::string_view id);  // nullptr if there is no such operator
+// Returns the operator with this id; nullptr if there is none.
+const Operator* find_operator(const Editor& editor, std::string_view id);
 // Returns why the operator cannot run now; "" if it can.
 std::string disabled_reason(const Editor& editor, const Operator& op);
 // Runs the operator. If it cannot run now, shows a message with the reason instead.
@@ -35,9 +37,9 @@ void run(Editor& editor, const Operator& op);
 void run(Editor& editor, std::string_view id);
 // Returns true if the operator needs the pointer: it is bound to mouse buttons or the wheel, and to no key.
 bool needs_pointer(const Editor& editor, const Operator& op);
-// Calls `act`. If `act` throws an exception, shows it as an error message. All operators are run by this function, and
-// so is their later work, such as the answer to a question, a selected file or a task's end.
-bool attempt(Editor& editor, const std::string& label,
-             const std::function<void(Editor&)>& act);  // returns true when nothing was thrown
+// Calls `act` and returns true. If `act` throws an exception, shows it as an error message and returns false. All
+// operators are run by this function, and so is their later work, such as the answer to a question, a selected file or
+// a task's end.
+bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act);
 
 }  // namespace limber::editor

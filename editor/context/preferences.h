@@ -35,11 +35,12 @@ struct Preferences {
   double worker_minutes = 0;  // time that a resampling may take, minutes; 0: no limit
 
   // Folders
-  std::string scratch_folder;  // for the temporary files of a resampling; "": the system's
+  std::string scratch_folder;  // folder for temporary files of a resampling; "": the system's folder
 
-  Arrangements arrangements = default_arrangements();  // arrangements of the last use; a project stores its own
-  std::string keymap = "blender";                      // preset of the key map: "blender" or "maya"
-  KeyChanges keys;                                     // the user's changes of the key map preset
+  // The window's regions at the last use; each project stores its own arrangements.
+  Arrangements arrangements = default_arrangements();
+  std::string keymap = "blender";  // preset of the key map: "blender" or "maya"
+  KeyChanges keys;                 // the user's changes of the key map preset
   bool advanced_steps = false;
   std::vector<std::string> recent_commands;  // ids of operators, latest first, at most kMostRecent
   std::map<std::string, int> command_counts;

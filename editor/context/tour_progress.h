@@ -16,9 +16,9 @@ struct TourStart {
   glm::dquat turn{1, 0, 0, 0};  // orientation of the 3D view's camera (world_from_view)
   glm::dvec3 cross_hair{0};
   std::int64_t position = 0;  // index of the history's current step
-  int hidden = 0;             // number of hidden tissues
+  int hidden = 0;             // number of tissues that were hidden
   std::size_t results = 0;
-  int statistics = 0;  // number of times that the command Statistics has been run
+  int statistics = 0;  // number of times that the command Statistics had been run
 };
 
 struct Tour {

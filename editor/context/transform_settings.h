@@ -37,10 +37,13 @@ struct TransformSettings {
     glm::dvec3 place{0};
   } shown_pole;
 
-  std::shared_ptr<ProposedJoint> proposed_joint;       // declared in joint_axis_fit.h; null: no joint is proposed
-  std::shared_ptr<KnownRigCheck> rig_check;            // declared in rig_check.h; null: not checked yet
-  std::shared_ptr<const KnownBodyFrames> body_frames;  // declared in clinical_angle_edits.h; null: not found yet
-  bool rig_check_marks = true;                         // true: the views mark the problems that rig_check found
+  // Joint axis that the user may accept (joint_axis_fit.h); null: none is proposed.
+  std::shared_ptr<ProposedJoint> proposed_joint;
+  // Result of the last rig check (rig_check.h); null: not checked yet.
+  std::shared_ptr<KnownRigCheck> rig_check;
+  // Frames of the body's joints (clinical_angle_edits.h); null: not found yet.
+  std::shared_ptr<const KnownBodyFrames> body_frames;
+  bool rig_check_marks = true;  // true: the views mark the problems that rig_check found
 
   struct {             // the bone whose row in the outliner is being dragged
     std::string bone;  // name of the bone; "" if no row is dragged

@@ -15,9 +15,9 @@ struct Editor;
 struct ViewProjection {
   ViewProjection(const Editor& editor, const ViewPlace& place);
 
-  std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // no value: the point is behind the eye
+  std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // returns no value for a point behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
-  glm::dvec3 direction_to_eye(const glm::dvec3& point) const;  // unit vector
+  glm::dvec3 direction_to_eye(const glm::dvec3& point) const;  // returns a unit vector
   // Size of a pixel at the point, across the line of sight.
   double millimetres_per_pixel(const glm::dvec3& point) const;
 

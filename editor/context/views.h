@@ -53,7 +53,7 @@ struct Selection {
 
 // A bone or a tissue under the pointer, which a click can select.
 struct Pickable {
-  std::optional<int> bone;  // no value: this is the tissue with the label `tissue`
+  std::optional<int> bone;  // index of the bone; no value: this is the tissue with the label `tissue`
   Label tissue = 0;
 
   bool operator==(const Pickable&) const = default;
@@ -78,9 +78,9 @@ class ScratchFolder;
 
 // The grey image that was posed together with a result.
 struct PosedImage {
-  std::weak_ptr<const LabelVolume> result;  // the result's volume
+  std::weak_ptr<const LabelVolume> result;  // the volume of the result together with which the image was posed
   std::shared_ptr<const GreyLevels> levels;
-  std::shared_ptr<const ScratchFolder> folder;  // holds `file` until the last result that needs it is gone
+  std::shared_ptr<const ScratchFolder> folder;  // folder of `file`; deleted when no result needs the file any more
   Path file;                                    // the posed image with the image's own values
 };
 
@@ -91,8 +91,8 @@ struct Views {
   render::Renderer renderer;
   std::shared_ptr<ArrivingBodies> arriving = std::make_shared<ArrivingBodies>();
   BodyView body;
-  std::array<SliceState, 3> slices;  // indexed by render::SliceAxis
-  glm::dvec3 cross_hair{0};          // world, mm
+  std::array<SliceState, 3> slices;  // the three slices, indexed by render::SliceAxis
+  glm::dvec3 cross_hair{0};          // the point at which the three slices meet, world, mm
   bool show_cross_hair = true;
   render::Display display = render::Display::Solid;
   render::SliceDisplay slice_display = render::SliceDisplay::Labels;
@@ -101,7 +101,7 @@ struct Views {
   bool bone_names = false, bone_axes = false, bones_in_front = false;
   std::optional<render::ShownGrey> image;  // the grey image shown with the labels (editor/volume/shown_image.h)
   Path image_path;                         // the file or the DICOM folder from which `image` was read
-  std::vector<PosedImage> posed_images;    // made together with the results while an image was shown
+  std::vector<PosedImage> posed_images;    // grey images that were posed together with results
   ViewId active = ViewId::Body;
   Hover hover;
 

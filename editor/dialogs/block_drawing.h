@@ -13,7 +13,7 @@ namespace limber::editor {
 // A picture of a document as an OpenGL texture. The texture is 0 if the picture cannot be shown.
 struct DocumentPicture {
   unsigned texture = 0;
-  glm::vec2 size{0};  // pixels
+  glm::vec2 size{0};  // width and height, pixels
 };
 
 struct BlockPlace {

@@ -14,14 +14,14 @@ namespace limber::editor {
 struct Answer {
   std::string label;
   std::function<void(Editor&)> act;  // called when the user selects the answer; empty: nothing happens
-  bool primary = false;              // Return selects this answer
+  bool primary = false;              // true: the key Return selects this answer
 };
 
 struct Question {
   std::string title;
   std::vector<std::string> lines;
   const char* icon = "";
-  std::vector<Answer> answers;  // from left to right; Escape closes the dialog without an answer
+  std::vector<Answer> answers;  // the buttons from left to right; Escape closes the dialog without an answer
 };
 
 void ask(Editor& editor, Question question);

@@ -19,9 +19,10 @@ struct FormField {
   double value = 0, low = 0, high = 1;  // of a Number field: its value and its range [low, high]
   const char* format = "%.0f";
   const char* unit = "";
-  std::vector<std::string> choices;  // for a Choice: up to four are shown as buttons in a row, more as a list
+  // Choices of a Choice field: up to four are shown as buttons in a row, more as a list.
+  std::vector<std::string> choices;
   int chosen = 0;
-  std::string text;  // for a Text (the user edits it) or a Fact (only shown)
+  std::string text;  // text of a Text field (the user edits it) or of a Fact field (only shown)
 };
 FormField number_of(std::string label, std::string description, double value, double low, double high,
                     const char* format, const char* unit = "");

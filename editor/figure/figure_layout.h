@@ -26,15 +26,15 @@ struct FigureOptions {
 inline constexpr double kSmallestFigure = 20, kLargestFigure = 1000;
 inline constexpr double kLowestResolution = 30, kHighestResolution = 2400;
 inline constexpr int kMostFigurePixels = 8192;  // a figure with more pixels along a side is an error
-inline constexpr double kLargestFigureArea =
-    32e6;  // a figure with more pixels is an error, because drawing its 3D picture would need gigabytes of memory
+// A figure with more pixels is an error, because drawing its 3D picture would need gigabytes of memory.
+inline constexpr double kLargestFigureArea = 32e6;
 
 // Returns the figure's size in pixels. Throws Error when it is too large or too small.
 glm::ivec2 figure_pixels(const FigureOptions& options);
 
 struct LegendEntry {
   std::string name;
-  glm::vec3 colour{0};  // sRGB
+  glm::vec3 colour{0};  // colour of the tissue, sRGB
 
   bool operator==(const LegendEntry&) const = default;
 };
@@ -48,7 +48,7 @@ struct FigureText {
 };
 struct FigureBox {
   glm::dvec2 low{0}, high{0};
-  glm::vec3 colour{0};  // sRGB
+  glm::vec3 colour{0};  // colour that fills the box, sRGB
 };
 
 struct FigureLayout {

@@ -21,7 +21,7 @@ namespace limber::editor {
 struct DirectoryEntry {
   std::string name;
   bool folder = false;
-  std::uint64_t size = 0;  // bytes
+  std::uint64_t size = 0;  // size of the file, bytes
   std::int64_t time = 0;   // time of the last change, s since 1970
 
   bool operator==(const DirectoryEntry&) const = default;

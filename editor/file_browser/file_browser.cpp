@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kFirstWait = 0.08;  // longest wait for a folder's entries, s; most folders are read by then
-constexpr int kPage = 12;            // rows that PageUp and PageDown move by
+constexpr int kPage = 12;            // number of rows by which PageUp and PageDown move
 
 bool pressed(Key key, bool repeat = false) { return ImGui::IsKeyPressed(static_cast<int>(key), repeat); }
 bool pressed_return() { return pressed(Key::Return) || pressed(Key::NumEnter); }

@@ -20,7 +20,7 @@ void export_posed_image(Editor& editor, const std::shared_ptr<const Result>& res
 // `.json`: the result's report as stored. Any other ending: the result's report as readable text.
 void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path);
 
-// Writes a picture of the active view without the window around it, in the quality that a view reaches at rest.
+// Writes a picture of the active view, without the window around it, in full quality.
 void export_picture(Editor& editor, const Path& path);
 // Writes the pictures NAME-0000.png, NAME-0001.png and so on, in which the camera turns once around the body, or a
 // video when the name ends in .mp4 or .webm. Throws Error when a video needs ffmpeg and that is not installed.

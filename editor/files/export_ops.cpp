@@ -36,7 +36,7 @@ struct ExportFacts {
   const char *id, *label, *description;
   ExportKind kind;
   std::vector<FileFilter> filters;  // file formats; the proposed file name has the first ending of the first format
-  const char* suffix;               // appended to the proposed file name
+  const char* suffix;               // text that is appended to the proposed file name, before the ending
 };
 
 // Returns the dialog title for an operator's label: "glTF..." -> "Export glTF", "Motion..." -> "Export motion".

@@ -196,8 +196,8 @@ using Change = std::function<void(Document&)>;
 struct Import {
   Change change;
   std::vector<std::string> warnings;
-  double inside = 1;     // rigs only: fraction of the total bone length that is inside tissue
-  ReadVolume read = {};  // volumes only: the file's content
+  double inside = 1;     // for a rig: fraction of the total bone length that is inside tissue
+  ReadVolume read = {};  // for a volume: the file's content
   std::vector<NamedFile> inputs = {};
 };
 

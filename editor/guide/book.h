@@ -15,7 +15,7 @@ namespace limber::editor {
 struct Page {
   std::string name;  // the file's name without folder and extension; the cover's name is "guide"
   std::string title;
-  std::vector<Block> blocks;  // in the order of the file; the first block is the title
+  std::vector<Block> blocks;  // the page's text in the order of the file; the first block is the title
 };
 
 struct Chapter {

@@ -20,7 +20,7 @@
 namespace limber::editor {
 
 struct PointerMoved {
-  glm::vec2 position;  // pixels of the window
+  glm::vec2 position;  // position of the pointer, pixels of the window
 };
 struct ButtonChanged {
   MouseButton button;
@@ -63,7 +63,7 @@ class EventQueue {
 
 // The state of the keys, the mouse buttons and the pointer after all events that were passed to apply().
 struct InputState {
-  glm::vec2 pointer{-1e6f};  // pixels of the window; at first outside the window
+  glm::vec2 pointer{-1e6f};  // position of the pointer, pixels; at first outside the window
   bool buttons[3] = {};
   bool keys[static_cast<std::size_t>(Key::Count)] = {};
   float wheel = 0, wheel_sideways = 0;  // steps of the mouse wheel in this frame

@@ -35,12 +35,12 @@ struct LabelBrush {
     std::unique_ptr<LabelStroke> stroke;
     ViewPlace view;
     glm::vec2 pixel{0};        // position of the pointer up to which the stroke has painted
-    std::string label;         // name of the edit
+    std::string label;         // name of the edit that the stroke will become
     limber::VoxelBox unshown;  // box of the voxels that have changed since the views were last updated; size 0: none
   };
   std::shared_ptr<Running> running;  // null: no stroke is being painted
 
-  std::weak_ptr<const LabelVolume> last;  // the document's volume in the last frame
+  std::weak_ptr<const LabelVolume> last;  // the document's volume in the last frame, to notice when the volume changes
 
   // A copy of the document's volume for the next stroke. It is made in another thread while the brush is on, so that a
   // stroke on a large body begins at once.

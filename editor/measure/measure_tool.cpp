@@ -24,7 +24,7 @@ namespace {
 struct PointOnBody {
   ViewPlace place;
   glm::dvec3 at_rest, shown;  // positions of the point in the rest pose and in the shown pose, world, mm
-  glm::ivec3 voxel;           // voxel of the volume at rest
+  glm::ivec3 voxel;           // voxel of the volume at rest that contains the point
 };
 
 // Returns the point of the body under the pointer, in any view; nothing if there is none. In a slice, the point may

@@ -24,7 +24,7 @@ struct MeasureView {
     // Points of all measurements: in the rest pose, and in the result; world, mm.
     std::vector<glm::dvec3> at_rest, posed;
   };
-  std::vector<Placed> placed;  // cache for the last few results, the newest last
+  std::vector<Placed> placed;  // cached positions for the last few results, the newest last
 };
 
 // Returns, for each measurement of the document, its points on the body that a scene shows, world, mm.

@@ -24,7 +24,7 @@ constexpr int kLongestChain = 64;
 
 // A number field of the panel that shows and changes one number of a constraint.
 struct Number {
-  std::string name;  // unique among the number fields of the window
+  std::string name;  // name of the field, different from that of every other number field of the window
   double shown = 0, low = 0, high = 1;
   const char *format = "%.1f", *unit = "";
   bool filled = false;

@@ -71,7 +71,7 @@ struct Graph {
   double low = -10, high = 10;  // the values at the plot's lower and upper edge
   // Text that identifies the clip and tracks to which `low` and `high` were fitted.
   std::string fitted;
-  std::optional<Keys> preview;            // the keys while they are dragged
+  std::optional<Keys> preview;            // while keys are dragged, the keys as they would become; empty: no drag
   std::shared_ptr<const Clip> previewed;  // the clip whose keys `preview` replaces
   // chosen_of_clips: the keys that were selected in each clip before and after an edit, so that undo and redo can
   // select them again. met_clip: the clip whose selection `chosen` holds.
@@ -84,10 +84,11 @@ struct Graph {
   GraphCurves curves;
 };
 
-Graph& graph_of(Editor& editor);               // creates the state if there is none
-const Keys& graph_keys(const Editor& editor);  // the clip's keys, or their preview during a drag; needs a shown clip
+Graph& graph_of(Editor& editor);  // creates the state if there is none
+// Returns the clip's keys, or their preview during a drag; needs a shown clip.
+const Keys& graph_keys(const Editor& editor);
 bool graph_is_shown(const Editor& editor);
-std::shared_ptr<const Clip> graph_clip(const Editor& editor);  // the shown clip; null: none
+std::shared_ptr<const Clip> graph_clip(const Editor& editor);  // returns the shown clip; null: none
 // Stores which keys are selected in a clip, for undo.
 void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, const std::set<GraphKey>& chosen);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators that clean the shown clip: filter out jitter, keep feet in place while they stand, hold a hand or foot at
-// a position, and replace bad frames. The result is a recorded motion of the playing range, which includes the clip's
-// keys.
+// Operators that clean the shown clip: filter out jitter, keep feet in place while they stand, hold a hand or foot at a
+// position, and replace bad frames. The result is a recorded motion of the playing range; the clip's keys are part of
+// this motion.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -39,7 +39,7 @@ struct Cleaning {
   struct Gap {
     int first = 0, last = 0;
   };
-  std::optional<Gap> gap;  // frames that are replaced
+  std::optional<Gap> gap;  // frames that are replaced by new ones; empty: none
   Becomes becomes = Becomes::NewClip;
 };
 

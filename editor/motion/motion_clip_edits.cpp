@@ -20,7 +20,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};  // mm per length unit of the BVH file; 0: fit to the rig
+// Length units that a BVH file may have, in mm; 0: the unit is found by fitting the motion to the rig.
+constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};
 
 // A motion that was read from a file, before the user confirms its import.
 struct Incoming {

@@ -12,8 +12,8 @@ namespace limber::editor {
 
 // The number of bones of the rig that a clip moves, and how certain their matches are.
 struct Matching {
-  int bones = 0, joints = 0;  // bones that the clip moves; joints of the motion that move them
-  int sure = 0;               // bones that match a joint's name with certainty
+  int bones = 0, joints = 0;  // number of bones that the clip moves, and of the motion's joints that move them
+  int sure = 0;               // number of bones that match a joint's name with certainty
 };
 Matching matching_of(const ClipOnRig& clip);
 int moved_bones(const ClipOnRig& clip);

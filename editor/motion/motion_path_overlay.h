@@ -19,7 +19,8 @@ struct MotionPaths {
   std::vector<int> bones;
   int first = 0, last = -1;
 
-  std::vector<std::vector<glm::dvec3>> tips;  // tips of the bones, by frame from `first` on; world, mm
+  // For each bone, the positions of its tip by frame, beginning with the frame `first`; world, mm.
+  std::vector<std::vector<glm::dvec3>> tips;
 };
 
 // Computes more points of the selected bones' paths, for a few milliseconds at most. Returns null if the paths are

@@ -39,8 +39,8 @@ void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& arma
 
 // ---- Outlines of the body
 
-constexpr std::int64_t kMostVertices =
-    20'000;                 // the surface from which outlines are made is simplified to at most this many vertices
+// The surface from which outlines are made is simplified to at most this many vertices.
+constexpr std::int64_t kMostVertices = 20'000;
 constexpr float kCell = 2;  // edge of the grid cells from which silhouette() finds outlines, pixels at scale 1
 // Time limit per drawn frame for new outlines. At least one missing outline is computed in each drawn frame.
 constexpr std::chrono::milliseconds kTime{8};

@@ -18,7 +18,7 @@ namespace limber::editor {
 struct OnionOutlines {
   std::shared_ptr<const LabelVolume> volume;  // the label volume from which `surface` is computed
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const SkinnedSurface> surface;  // null until the surface is computed
+  std::shared_ptr<const SkinnedSurface> surface;  // coarse surface of the body; null until it is computed
 
   // The inputs of the cached outlines. When one of these inputs changes, the outlines are discarded.
   struct Seen {

@@ -49,7 +49,7 @@ struct Timeline {
 
   bool auto_key = false;
   std::string constraint;  // name of the constraint that is unfolded in the panel, and that operators change
-  std::shared_ptr<HandPoses> by_hand;  // declared in constrained_pose.h; null: none
+  std::shared_ptr<HandPoses> by_hand;  // the free poses of poses made by hand (constrained_pose.h); null: none
   struct {  // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
     bool on = false;
     int count = 3, step = 10;
@@ -66,7 +66,8 @@ struct Timeline {
   struct {                    // the curve of the active bone's angle over the shown frames
     const Clip* clip = nullptr;
     int bone = -1, first = 0, step = 1;  // active bone; frame of the first sample; frames between samples
-    std::vector<glm::vec2> angles;  // one per sample: angle from rest of the bone (x) and of its parent (y), degrees
+    // For each sample, the angle from rest of the bone (x) and of its parent (y), degrees.
+    std::vector<glm::vec2> angles;
   } curve;
 
   bool shows_graph = false;      // true: the graph editor is shown in place of the markers, the clip and the keys
@@ -81,13 +82,13 @@ struct Timeline {
   // Rows: ruler, markers, clip, keys, and the area of all rows; pixels, empty: not shown.
   Rect ruler, marks, lane, keys, area;
 
-  std::int64_t revision = -1;  // history revision made by the last frame change; -1: none
+  std::int64_t revision = -1;  // revision of the undo history after the last frame change; -1: none
   std::unique_ptr<ClipOnRig> prepared;
   std::unique_ptr<FrameLog> frame_log;  // measured drawing times; null: not measured
 };
 
 // ---- The shown clip and frame
-const Clip* shown_clip(const Editor& editor);  // nullptr: none
+const Clip* shown_clip(const Editor& editor);  // returns nullptr if no clip is shown
 int shown_frame(const Editor& editor);
 struct FrameRange {
   int low, high;

@@ -321,8 +321,8 @@ void draw_curve(Editor& editor, const Rect& bar) {
   const auto& angles = timeline.curve.angles;
   float most = 1;
   for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
-  const float low = bar.high.y - editor.look.px(5),
-              height = bar.height() - editor.look.px(32);  // leaves room for the clip's name above the curve
+  // The curve is lower than the bar, so that there is room for the clip's name above the curve.
+  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(32);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::PushClipRect(im(bar.low), im(bar.high), true);
   const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};

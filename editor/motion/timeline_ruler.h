@@ -9,7 +9,7 @@
 namespace limber::editor {
 
 constexpr float kRulerHeight = 22;
-constexpr float kRulerEnds = 12;  // room at the right end of the rows, pixels at scale 1
+constexpr float kRulerEnds = 12;  // free width at the right end of the rows, pixels at scale 1
 
 // Returns the smallest of the numbers 1, 2 and 5 times a power of ten that is at least `least`.
 double round_step(double least);

@@ -31,12 +31,12 @@ std::string degrees_text(double degrees) { return std::to_string(std::lround(deg
 
 // An angle of a joint that the panel shows and lets the user change.
 struct ShownAngle {
-  std::string name;   // unique in the panel: "Left hip flexion"
+  std::string name;   // full name, different for each angle of the panel: "Left hip flexion"
   std::string label;  // the name without side and joint: "Flexion"
   std::string help;
   double degrees = 0;
   AngleRange range;
-  std::function<Pose(double degrees)> pose_at;  // the pose with this angle changed
+  std::function<Pose(double degrees)> pose_at;  // returns the pose with this angle changed
 };
 
 // Shows the pose with the changed angle while the user drags or types, and commits one edit at the end.

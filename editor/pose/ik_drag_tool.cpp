@@ -142,7 +142,7 @@ class Dragging final : public TransformTool {
   bool is_root_ = false, reached_ = true;
   glm::dvec3 from_{0}, target_{0};
   std::vector<ReachGoal> pins_;
-  std::vector<int> mirrored_;  // the bones that X-mirror turns in addition
+  std::vector<int> mirrored_;  // the bones on the other side of the body that X-mirror turns too
   std::optional<glm::dvec3> pole_;
   double short_of_ = 0;
 };

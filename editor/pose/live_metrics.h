@@ -28,10 +28,10 @@ struct DenseWish {
   std::shared_ptr<const SkinWeights> weights;
   Pose pose;
   Blend blend = Blend::DualQuaternion;
-  std::shared_ptr<const Seams> seams =
-      nullptr;  // surfaces where limbs touch at rest, edited by the user; null: found automatically
-  std::shared_ptr<const BoneMap> bone_map =
-      nullptr;  // user's choice of the rig bone that each bone label follows; null: none
+  // Surfaces where limbs touch at rest, edited by the user; null: they are found automatically.
+  std::shared_ptr<const Seams> seams = nullptr;
+  // The user's choice of the rig bone that each bone label follows; null: none.
+  std::shared_ptr<const BoneMap> bone_map = nullptr;
 
   bool operator==(const DenseWish&) const = default;
 };
@@ -41,9 +41,9 @@ struct PoseMetrics {
     std::string name;
     glm::vec3 colour{0};
     double mm3_before = 0, mm3_after = 0;
-    std::optional<double> change_percent() const;  // volume change; nothing if mm3_before is 0
+    std::optional<double> change_percent() const;  // volume change, percent; no value if mm3_before is 0
   };
-  std::vector<Row> tissues;  // by volume, the largest first; all bone tissues share one row
+  std::vector<Row> tissues;  // the tissues by volume, the largest first; all bone tissues share one row
   Row total;
   std::int64_t overlap_voxels = 0;
 };

@@ -33,8 +33,8 @@ struct PosedBody {
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const SkinWeights> weights;
   std::shared_ptr<const Armature> armature;  // rig from whose bone names the limbs are found; null: none
-  std::shared_ptr<const Seams>
-      seams;  // surfaces where limbs touch at rest, edited by the user; null: found automatically
+  // Surfaces where limbs touch at rest, edited by the user; null: they are found automatically.
+  std::shared_ptr<const Seams> seams;
   std::shared_ptr<const BoneMap> bone_map;  // user's choice of the rig bone that each bone label follows; null: none
 
   bool operator==(const PosedBody&) const = default;
@@ -60,7 +60,7 @@ class MapMaker {
   struct Made {
     PoseWish wish;
     std::shared_ptr<const PreviewMap> map;
-    std::string trouble;  // why no map could be computed; "": `map` is set
+    std::string trouble;  // why no map could be computed; "": a map was computed
   };
 
   // Starts a thread that computes preview maps.
@@ -123,7 +123,7 @@ class LivePose {
   MapMaker swift_;
   std::shared_ptr<MapMaker> thorough_;
   bool was_lent_ = false;
-  MapMaker::Made coarse_, fine_;  // newest map of swift_ (coarse, fast) and of thorough_ (fine, slow)
+  MapMaker::Made coarse_, fine_;  // newest coarse map, from swift_, and newest fine map, from thorough_
   PoseWish wish_;
   double since_ = 0;  // Editor::now when wish_ changed last, s
   std::shared_ptr<const PreviewMap> shown_;

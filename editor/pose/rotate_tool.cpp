@@ -255,15 +255,15 @@ class Turning final : public TransformTool {
 
   std::shared_ptr<const Armature> armature_;
   const Pose before_;
-  std::vector<int> bones_, mirrored_;  // bones that the user turns; bones that X-mirror turns in addition
+  std::vector<int> bones_, mirrored_;  // bones that the user turns; bones on the other side that X-mirror turns too
   int active_ = 0;
   bool trackball_;
   bool by_ring_, on_hinge_ = false;  // true if a ring is dragged; true if the ring's axis is the hinge's
   glm::dmat3 ring_axes_{1};
   float scale_;
   AngleDrag drag_;
-  const glm::dvec3 at_rest_;       // active joint's rotation from the anatomical position to rest, axis * radians
-  std::optional<int> held_;        // the bone that a joint limit stops; the active bone if several
+  const glm::dvec3 at_rest_;       // rotation vector of the active joint from the anatomical position to rest, radians
+  std::optional<int> held_;        // the bone that a joint limit stops (the active bone if several); none: no bone
   glm::dquat above_{1, 0, 0, 0};   // rotation of the active bone's parent from rest
   glm::dvec2 rolled_{0};           // trackball: turns about the view's up and right axes, radians
   double shown_ = 0, turned_ = 0;  // angle about the axis; total angle of the trackball, degrees

@@ -21,7 +21,7 @@ struct ComparedSide {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueVoxels> tissue;
   DifferingSide differing;
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: colour of each voxel, sRGB
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // for each tissue voxel, its colour, sRGB
 };
 struct ComparedVolumes {
   ComparedSide a, b;

@@ -21,7 +21,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kRemembered = 4;  // cached meshes at most: two sides of a comparison times two measures
+// Number of meshes that stay cached: two sides of a comparison times two measures.
+constexpr std::size_t kRemembered = 4;
 
 // Colours of the volume ratio: blue is compressed, red is swollen. Darker colours mean a stronger change.
 constexpr std::array<glm::vec3, 5> kChange = {render::srgb(0x15294F), render::srgb(0x2C5CA6), render::srgb(0xC9CDD4),

@@ -26,16 +26,18 @@ struct FemScale {
   std::vector<double> ticks;
 };
 const FemScale& scale_of(FemMeasure measure);
-double place_on(const FemScale& scale, double value);   // position of the value on the scale: 0 at low, 1 at high
+// Returns the position of the value on the scale: 0 at low, 1 at high.
+double place_on(const FemScale& scale, double value);
 glm::vec3 colour_at(FemMeasure measure, double place);  // returns the colour at a position of the scale, sRGB
-glm::vec3 colour_of(FemMeasure measure, float value);   // sRGB; grey for tets of joints and for a gap with no skin near
-std::string text_of(FemMeasure measure, float value);   // the value as text: "0.93", "joint"
+// Returns the colour of a value of a measure, sRGB; grey for tets of joints, and for a gap if no skin is near.
+glm::vec3 colour_of(FemMeasure measure, float value);
+std::string text_of(FemMeasure measure, float value);  // returns the value as text: "0.93", "joint"
 
 // A tet mesh, and the label volume whose voxels are coloured by the tets that they lie in.
 struct ShownMesh {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const FemMesh> rest;
-  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V node positions, world, mm
+  std::shared_ptr<const Eigen::MatrixX3d> posed;  // #V by 3: positions of the nodes in the pose, world, mm
   bool settling = false;  // true: a solve is running; `volume` is at rest and is drawn deformed by the mesh
 
   bool operator==(const ShownMesh&) const = default;
@@ -47,16 +49,18 @@ struct MeasuredMesh {
   std::optional<FemMeasure> measure;
   std::shared_ptr<const Eigen::MatrixX3i> faces;
   std::shared_ptr<const TissueVoxels> tissue;
-  std::shared_ptr<const std::vector<std::int32_t>> tets;  // #tissue voxels: index of the tet at the voxel; -1: none
-  std::vector<float> values;                              // #T: the measure of each tet; empty: no measure
+  // For each tissue voxel, the index of the tet at the voxel; -1: none.
+  std::shared_ptr<const std::vector<std::int32_t>> tets;
+  std::vector<float> values;                              // the measure of each tet; empty: no measure is shown
   float least = 0, most = 0;                              // least and largest of `values` in soft tissue
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: colour of each voxel, sRGB
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // for each tissue voxel, its colour, sRGB
 };
 
-std::string range_text(const MeasuredMesh& shown);  // range of the values as text: "0.17 \u2013 3.30", "up to 12"
+// Returns the range of the values as text: "0.17 \u2013 3.30", "up to 12".
+std::string range_text(const MeasuredMesh& shown);
 
 struct FemOverlay {
-  std::optional<FemMeasure> measure;  // none: voxels have the colours of their tissues
+  std::optional<FemMeasure> measure;  // the measure that colours show; none: voxels have the colours of their tissues
   bool tets = false;
   std::vector<std::shared_ptr<const MeasuredMesh>> made;  // cache of meshes with their colours, newest last
   std::optional<int> task;

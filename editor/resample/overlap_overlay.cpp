@@ -15,7 +15,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::size_t kRemembered = 4;  // cached results at most: the two sides of this and of the last comparison
+// Number of results that stay cached: the two sides of this and of the last comparison.
+constexpr std::size_t kRemembered = 4;
 
 std::shared_ptr<const MarkedOverlap> marked(const Result& result, const std::shared_ptr<const TissueTable>& tissues) {
   auto made = std::make_shared<MarkedOverlap>(MarkedOverlap{

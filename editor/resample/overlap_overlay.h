@@ -18,7 +18,7 @@ struct MarkedOverlap {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;  // tissue colours, drawn dimmed at voxels without overlap
   std::shared_ptr<const TissueVoxels> tissue;
-  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // #tissue voxels: colour of each voxel, sRGB
+  std::shared_ptr<const std::vector<glm::u8vec3>> field;  // for each tissue voxel, its colour, sRGB
 };
 
 struct OverlapView {

@@ -28,7 +28,7 @@ struct Request {
   std::string method;
   double spacing = 0;  // voxel spacing of the posed volume, mm; 0: same as the volume at rest
   bool bones_apart = false, mass_exact = false, contact = false;
-  std::string quality;  // FEM only: "draft", "normal" or "fine"
+  std::string quality;  // quality of the FEM mesh: "draft", "normal" or "fine"; unused by other methods
   Path image;           // the shown grey image, to pose with the volume; empty: none
   std::string scratch;
   WorkerSettings worker;

@@ -32,13 +32,13 @@ struct ResultFacts {
   std::vector<QualityGate> gates;
   // One line of the result's provenance (method, settings, inputs, times): a name and a value.
   struct Line {
-    std::string name, value, whole;  // `whole`: the full value if `value` is shortened
+    std::string name, value, whole;  // name, value as shown, and the full value if `value` is shortened
   };
   std::vector<Line> settings, inputs, stages;
   std::string version;
   std::optional<double> peak_memory_mb;
 };
-ResultFacts facts_of_report(const std::string& json);  // a figure that the report lacks stays empty
+ResultFacts facts_of_report(const std::string& json);  // reads a report; a figure that the report lacks stays empty
 
 std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
 // Returns the report as readable text, 100 columns wide: gates, tissues, provenance.
@@ -58,7 +58,7 @@ std::string unique_name(const std::vector<std::shared_ptr<const Result>>& result
 // Shows the newest result of the current pose that is not stale, if the views show a result of another pose, or the
 // volume at rest without the user having selected it. Otherwise changes nothing.
 void show_result_of_pose(Editor& editor);
-void show_result(Editor& editor, const std::string& name);  // "" shows the volume at rest
+void show_result(Editor& editor, const std::string& name);  // shows a result by its name; "": the volume at rest
 // Makes the views show the volume at rest, and marks it as selected by the user: show_result_of_pose() then keeps it.
 void show_rest(Comparison& comparison);
 // Renames a result as one edit; makes the name unique among the results.

@@ -15,8 +15,8 @@ namespace limber::editor {
 namespace {
 
 constexpr float kHead = 26, kAxis = 20, kPad = 12, kName = 112, kFigure = 58;
-constexpr double kLeastSpan =
-    2;  // smallest range of the axis, percent; with a smaller range, small changes would look large
+// Smallest range of the chart's axis, percent. With a smaller range, small changes would look large.
+constexpr double kLeastSpan = 2;
 
 struct Series {
   std::string letter, method;

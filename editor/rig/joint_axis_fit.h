@@ -14,14 +14,14 @@
 namespace limber::editor {
 
 struct ProposedJoint {
-  std::shared_ptr<const LabelVolume>
-      volume;  // volume in which the axis was fitted; the proposal ends when the volume changes
+  // The volume in which the axis was fitted. The proposal ends when the volume changes.
+  std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const Armature> from, fitted;
   std::string bone;
   FittedJoint fit;
   std::shared_ptr<const TissueVoxels> tissue;
-  std::array<std::shared_ptr<const std::vector<glm::u8vec3>>, 2>
-      colours;  // colour of each tissue voxel, sRGB, with colliding bones marked: before, after the fit
+  // The colours of the tissue voxels, sRGB, with colliding bone voxels marked: before the fit, and after it.
+  std::array<std::shared_ptr<const std::vector<glm::u8vec3>>, 2> colours;
   bool shows_after = false;
 };
 

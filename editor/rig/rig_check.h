@@ -19,8 +19,9 @@ struct LeavingBone {
   int bone = 0;
   double share = 1;                 // fraction of the bone's length that lies in tissue, [0, 1]
   bool head = false, tail = false;  // true if the bone's head, or its tail, is outside the tissue
-  glm::dvec3 place{
-      0};  // position of an end outside the tissue; if both ends are inside: middle of the longest stretch outside, mm
+  // Position that the views centre on, world, mm: an end outside the tissue or, if both ends are inside, the middle of
+  // the longest stretch outside.
+  glm::dvec3 place{0};
 };
 
 struct KnownRigCheck {

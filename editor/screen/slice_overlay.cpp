@@ -73,8 +73,8 @@ void draw_slice_bar(Editor& editor, const Grid& grid, int axis, const Rect& rect
   const AffineTransform world = world_from_voxel(grid);
   glm::dvec3 voxel = voxel_from_world(grid) * editor.views->cross_hair;
   const double last = std::max(grid.size[axis] - 1, 1);
-  const bool upward = glm::dot(glm::dvec3(grid.direction[axis]), glm::dvec3(1)) >
-                      0;  // true: the grid axis points to the body's left, back or head
+  // True if the grid axis points to the body's left, back or head.
+  const bool upward = glm::dot(glm::dvec3(grid.direction[axis]), glm::dvec3(1)) > 0;
   if (pressed.held) {
     const double share =
         glm::clamp(static_cast<double>((editor.input.pointer.y - track.low.y) / track.height()), 0.0, 1.0);

@@ -176,8 +176,8 @@ float draw_saved(Editor& editor, const Rect& bar, float right) {
   if (!editor.document().volume) return right;
   const Look& look = editor.look;
   const SavedState state = saved_state(editor);
-  const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y},
-                  {right, bar.high.y}};  // the width of the widest text, so that the slot keeps its width
+  // The slot has the width of the widest text, so that its width never changes.
+  const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y}, {right, bar.high.y}};
   if (*state.icon)
     put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
   put_text(editor, look.fonts.small, look.theme.text2,

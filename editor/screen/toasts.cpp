@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMost = 3;
 constexpr float kWidth = 332, kLeast = 52, kGap = 8, kLeastPlace = 240;
 constexpr int kLines = 2, kDetailLines = 3;
-constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // duration of the fades, s
+constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // durations in which a toast fades in and out, s
 
 double life_of(Severity severity) {
   return severity == Severity::Error ? 1e300 : severity == Severity::Warning ? 8 : 4;

@@ -59,8 +59,8 @@ class Header {
   // Draws a button that shows the active one of several operators, and opens a list of all of them. The button is as
   // wide as the longest label.
   void choice(const char* name, std::initializer_list<const char*> ids) {
-    const Operator* chosen =
-        find_operator(editor_, *ids.begin());  // the first operator is shown if none of this list is active
+    // The first operator is shown if none of the list is active.
+    const Operator* chosen = find_operator(editor_, *ids.begin());
     float width = 0;
     for (const char* id : ids) {
       const Operator* op = find_operator(editor_, id);

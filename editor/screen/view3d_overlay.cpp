@@ -33,7 +33,7 @@ constexpr float kBall = 34, kEnd = 9;
 struct AxisEnd {
   const char* letter;
   const char* operator_id;
-  glm::dvec3 direction;  // unit vector, world
+  glm::dvec3 direction;  // direction from the ball's centre to the axis end, unit vector in the world
   int axis;
   bool positive;
 };

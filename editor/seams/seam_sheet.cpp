@@ -14,7 +14,7 @@ namespace {
 // corners: voxel v reaches from corner v to corner v + 1. plane: the plane's coordinate along `axis`.
 struct Rectangle {
   int axis, plane;
-  glm::ivec2 low, high;  // x: along axis (axis + 1) % 3; y: along axis (axis + 2) % 3
+  glm::ivec2 low, high;  // corners of the rectangle; x: along axis (axis + 1) % 3; y: along axis (axis + 2) % 3
 };
 
 glm::ivec3 corner_of(const Rectangle& r, bool second, bool third) {

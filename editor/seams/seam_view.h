@@ -41,8 +41,9 @@ struct SeamView {
     SeamStroke stroke = SeamStroke::Cut;
     ViewPlace view;
     glm::vec2 pixel{0};
-    std::optional<Blade> blade;  // line segment that cuts, at the pointer's last position on tissue; nothing: none
-    std::int64_t faces = 0;      // number of voxel faces that the stroke has changed
+    // Line segment that cuts tissue, at the pointer's last position on tissue; none: the pointer is beside the tissue.
+    std::optional<Blade> blade;
+    std::int64_t faces = 0;  // number of voxel faces that the stroke has changed
   };
   std::shared_ptr<Running> running;  // null: no stroke in progress
 

@@ -25,9 +25,9 @@ struct GizmoPart {
 };
 
 struct Gizmo {
-  Tool tool = Tool::Rotate;  // Rotate, Move or Scale
-  glm::dvec3 centre{0};      // position in the world, mm
-  glm::dmat3 axes{1};        // unit axes as columns
+  Tool tool = Tool::Rotate;  // the tool that the gizmo is for: Rotate, Move or Scale
+  glm::dvec3 centre{0};      // position of the gizmo in the world, mm
+  glm::dmat3 axes{1};        // the gizmo's axes as columns, unit vectors
 };
 
 // Returns the gizmo that the selected tool shows in a view; nothing when it shows none.

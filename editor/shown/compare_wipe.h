@@ -7,7 +7,7 @@
 
 namespace limber::editor {
 
-float wipe_line(const Editor& editor, const Rect& rect);  // x coordinate of the line between A and B, window pixels
+float wipe_line(const Editor& editor, const Rect& rect);  // returns the x of the line between A and B, window pixels
 bool over_side_a(const Editor& editor, const ViewPlace& place);
 // Returns the scene that a view shows. If a line divides the view between results A and B, returns the scene of B.
 const render::Scene& scene_of(const Editor& editor, const ViewPlace& place);

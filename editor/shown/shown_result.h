@@ -14,7 +14,8 @@ namespace limber::editor {
 // The colours that mark results A and B of a comparison. The letter A or B is always drawn beside the colour.
 // In RGB: B07AD9 (A), 3FB6A8 (B); the constants are ABGR.
 inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;
-std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);  // null for none
+// Returns the result with this name; null if there is none.
+std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);
 // Returns why no two results can be compared now, as a hint for the user; "" when they can.
 std::string why_no_comparison(const Editor& editor);
 // How the views compare two results, which they do only in the Resample workspace. wiping(): true if a line divides

@@ -12,7 +12,8 @@ namespace limber::editor {
 
 // The settings of the test pose, in which the Skin workspace shows the body.
 struct TestPose {
-  static constexpr double kMost = 150, kStep = 5;  // largest test angle, and its step for keys and wheel, degrees
+  // Largest angle of the test pose; step by which keys and the wheel change it; degrees.
+  static constexpr double kMost = 150, kStep = 5;
 
   bool posed = false;  // true: the joint is bent in the document's pose; false: in the rest pose
   std::string bone;    // the bone that is bent at its head; "" or a name not in the rig: none

@@ -19,7 +19,7 @@ namespace limber::editor {
 namespace {
 
 constexpr char kList[] = "bones";
-constexpr int kMostRows = 8;  // rows visible without scrolling
+constexpr int kMostRows = 8;  // number of rows of the list that are visible without scrolling
 // Widths of the parts of a row, pixels at scale 1. kShareBar is the bar that shows the bone's share of the total
 // weight. In a narrow sidebar, this bar shrinks to kShortestBar before the name becomes narrower than kName.
 constexpr float kShareBar = 64, kShortestBar = 24, kName = 112;

@@ -13,7 +13,7 @@
 namespace limber::editor {
 
 struct BrushPreset {
-  std::string name;  // unique among the presets
+  std::string name;  // name of the preset, different from that of every other preset
   BrushKind kind = {};
   double radius = 20, strength = 0.75, value = 1;  // radius in mm; strength and value in [0, 1]
   double blend = 40;  // Painting::blend_mm of the joint capsule brush, mm; always 40 for other brushes
@@ -24,7 +24,7 @@ struct BrushPreset {
 };
 
 struct BrushPresets {
-  std::vector<BrushPreset> list;  // in the order in which they were saved
+  std::vector<BrushPreset> list;  // the presets in the order in which they were saved
 };
 
 constexpr std::size_t kMostBrushPresets = 200;

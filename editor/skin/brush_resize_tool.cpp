@@ -15,7 +15,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kWhole = 120;  // pointer's distance from the ring's centre for strength or value 1, px at scale 1
-constexpr float kSlow = 0.1f;   // factor of the pointer's movement while Shift is held
+constexpr float kSlow = 0.1f;   // the pointer's movement counts only this fraction while Shift is held
 
 class BrushNumberTool final : public Modal {
  public:

@@ -39,7 +39,7 @@ struct Part {
   LayerToEdit edited;
   std::vector<int> bones;
   EditScope scope{.rigid_bone_tissue = false};
-  std::vector<std::uint8_t> labels;  // [label]: nonzero if voxels with this label change; empty: all change
+  std::vector<std::uint8_t> labels;  // for each label, nonzero if voxels with this label change; empty: all change
   // Indices of bones. A voxel changes only if one of these bones has the largest weight there; empty: all voxels
   // change.
   std::vector<int> regions;

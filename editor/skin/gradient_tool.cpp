@@ -67,7 +67,8 @@ class GradientTool final : public Modal {
       }
     painter.line(from_, to_, dark, 4);
     painter.line(from_, to_, 0xFFFFFFFF, 2);
-    painter.dot(from_, 0xFFD9F4FF, dark, 5);  // the line's ends have the colours of weight 1 and 0
+    // This end of the line has the colour of weight 1, the other end that of weight 0.
+    painter.dot(from_, 0xFFD9F4FF, dark, 5);
     painter.dot((from_ + to_) / 2.0, 0xFFFFFFFF, dark, 2.5f);
     painter.dot(to_, 0xFF69625E, 0xFFFFFFFF, 5);
   }

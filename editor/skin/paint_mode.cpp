@@ -215,7 +215,8 @@ void follow_brush(Editor& editor) {
   Painting& painting = *editor.skin->painting;
   editor.skin->ring = 0;
   LabelBrush& labels = *painting.labels;
-  if (editor.seams->brush) labels.on = false;  // the seam brush was selected after the label brush
+  // Switches the label brush off, because the user selected the seam brush after it.
+  if (editor.seams->brush) labels.on = false;
   if (!painting.running && !labels.running) {
     painting.place.reset();
     const ViewPlace* view = hovered_view(editor);

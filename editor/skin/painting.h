@@ -32,8 +32,9 @@ enum class PaintedTissue { All, Soft, Chosen, Visible };
 // The position of a brush: on the body's surface in the 3D view, or in the plane of a slice.
 struct BrushPlace {
   ViewId view = ViewId::Body;
-  glm::dvec3 seen{0}, normal{0};  // seen: position in the displayed pose, world, mm; normal: unit vector
-  glm::dvec3 rest{0};             // position of this point in the rest pose, in which brushes paint, world, mm
+  // Position in the displayed pose, world, mm; unit normal of the surface or of the slice.
+  glm::dvec3 seen{0}, normal{0};
+  glm::dvec3 rest{0};  // position in the rest pose, in which brushes paint, world, mm
 };
 
 struct Painting {

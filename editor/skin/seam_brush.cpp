@@ -13,7 +13,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kPixelStep = 4;  // pixels at scale 1 between samples of a stroke
+constexpr double kPixelStep = 4;  // a stroke is sampled each time the pointer has moved this far, pixels at scale 1
 
 // Returns the line segment that cuts seams at the brush. In 3D it runs along the line of sight into the body; in a
 // slice it is perpendicular to the slice and extends to both sides of it.

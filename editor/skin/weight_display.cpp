@@ -207,7 +207,7 @@ bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolum
 double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
   const Grid& grid = volume.grid;
   const glm::dvec3 s = grid.spacing;
-  double nearest = 1e300;  // squared distance, mm2
+  double nearest = 1e300;  // squared distance to the nearest air voxel found so far, mm2
   // Search for air around `voxel` with growing distance along each axis. Skip voxels that are farther away than the
   // nearest air voxel found so far.
   const auto within = [&](int off, int axis) { return (off * s[axis]) * (off * s[axis]) < nearest; };

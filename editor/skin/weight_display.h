@@ -41,7 +41,8 @@ struct SkinDisplay {
   SkinDisplay();
   ~SkinDisplay();
 
-  std::optional<render::WeightDisplay> display = render::WeightDisplay::Active;  // none: shows the tissues
+  // What the colours show; none: the tissues.
+  std::optional<render::WeightDisplay> display = render::WeightDisplay::Active;
   bool contours = true;
   std::set<std::string> hidden;  // bones whose regions are hidden
   float ring = 0;                // radius of the brush's ring, pixels; the weights readout stays outside it

@@ -40,7 +40,7 @@ TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operati
 
 struct Done {
   EditedWeights edited;
-  std::optional<EditedLayers> made;  // none: nothing changed
+  std::optional<EditedLayers> made;  // the layers with the edit; none: nothing changed
 };
 
 Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress& progress) {

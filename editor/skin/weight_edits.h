@@ -43,7 +43,7 @@ struct WeightOperation {
   std::string label;  // name of the edit, such as "Flood Forearm"
   EditReach reach = EditReach::AsBrush;
   bool edits_bone_tissue = false;  // false: the weights of voxels labelled as bone do not change
-  bool reads_file = false;         // true: runs in a job even on a small body
+  bool reads_file = false;         // true: the operation reads a file, so it runs in a job even on a small body
   // Returns the voxels that the operation edits; null: it edits all voxels that `reach` allows.
   std::function<TissueRegion(const WeightsToEdit&)> where = {};
   std::function<EditedWeights(const WeightsToEdit&, const EditScope&)> work;

@@ -18,8 +18,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kWidth = 322, kNarrow = 210, kHeight = 56, kMargin = 8,
-                kNeeded = 460;  // lengths in px at scale 1; kNeeded: smallest width of a view that shows a legend
+// Sizes of the legend, px at scale 1. A view that is narrower than kNeeded shows no legend.
+constexpr float kWidth = 322, kNarrow = 210, kHeight = 56, kMargin = 8, kNeeded = 460;
 
 Colour colour_of(const glm::vec3& srgb) { return rgb(srgb.r, srgb.g, srgb.b); }
 

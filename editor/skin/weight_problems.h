@@ -36,6 +36,6 @@ void go_to_problem(Editor& editor, int problem);
 // Repairs the problem in a job, as one edit. If locked bones prevent the repair, tells the user so.
 void repair_problem(Editor& editor, int problem);
 
-const char* name_of(WeightProblem::Kind kind);  // heading of the problems of this kind, such as "Islands"
+const char* name_of(WeightProblem::Kind kind);  // returns the heading of the problems of this kind, such as "Islands"
 
 }  // namespace limber::editor

@@ -17,7 +17,7 @@ namespace limber::editor {
 namespace {
 
 constexpr char kList[] = "problems";
-constexpr int kMostRows = 8;  // rows visible without scrolling
+constexpr int kMostRows = 8;  // number of rows of the list that are visible without scrolling
 constexpr float kRow = 24, kButton = 62, kCount = 36;
 
 void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::size_t count) {

@@ -58,7 +58,8 @@ Fonts build_fonts(double scale) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   atlas.Clear();
   atlas.FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
-  atlas.TexDesiredWidth = scale > 1.3 ? 4096 : 2048;  // pixels; OpenGL 3.3 guarantees 1024, current drivers allow 8192
+  // Width of the texture with all characters, pixels. OpenGL 3.3 guarantees only 1024, but current drivers allow 8192.
+  atlas.TexDesiredWidth = scale > 1.3 ? 4096 : 2048;
   atlas.Flags |= ImFontAtlasFlags_NoPowerOfTwoHeight;
 
   Builder build(scale, font_file(FontFile::FontAwesome));

@@ -8,8 +8,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr int kTextStart = 24, kWordStart = 12, kInARow = 10,
-              kSkippedWord = 2;  // scores of a matched letter, by its position; only their order matters
+// Scores of a matched letter at the text's beginning, at a word's beginning and after another matched letter, and the
+// cost of a skipped word. Only the order of these numbers matters.
+constexpr int kTextStart = 24, kWordStart = 12, kInARow = 10, kSkippedWord = 2;
 constexpr int kNone = -1'000'000;
 
 char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }

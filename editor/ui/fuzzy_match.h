@@ -13,7 +13,8 @@
 namespace limber::editor {
 
 struct FuzzyMatch {
-  int score = 0;                     // higher is better; if scores are equal, prefer the shorter text
+  // How well the query matches; higher is better. If scores are equal, prefer the shorter text.
+  int score = 0;
   std::vector<std::size_t> letters;  // byte positions of the matched letters in the text, ascending
 };
 

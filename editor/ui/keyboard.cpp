@@ -10,8 +10,8 @@ namespace limber::editor {
 namespace {
 
 constexpr int kTurnsToAppear = 2;  // number of frames for which pressed keys wait for a requested text field to appear
-constexpr int kTurnsToFocus =
-    4;  // number of frames for which pressed keys wait until ImGui gives the field the keyboard
+// Number of frames for which pressed keys wait until ImGui gives the requested field the keyboard.
+constexpr int kTurnsToFocus = 4;
 
 bool active_item_is_text() {
   const ImGuiContext& imgui = *ImGui::GetCurrentContext();

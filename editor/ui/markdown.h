@@ -14,7 +14,7 @@ namespace limber::editor {
 struct Run {
   enum class Style { Plain, Strong, Name, Code, Key, Link } style = Style::Plain;
   std::string text;
-  std::string target = {};  // of a link: its target, as written in the file
+  std::string target = {};  // target of a link, as written in the file; unused in other runs
 
   bool operator==(const Run&) const = default;
 };
@@ -22,8 +22,8 @@ struct Run {
 struct Block {
   enum class Kind { Title, Heading, Paragraph, Point, Step, Picture } kind = Kind::Paragraph;
   std::vector<Run> runs;     // the block's text; of a picture: its caption
-  int number = 0;            // of a numbered step: its number
-  std::string picture = {};  // of a picture: its file, as written in the text
+  int number = 0;            // number of a numbered step; unused in other blocks
+  std::string picture = {};  // file of a picture, as written in the text; unused in other blocks
 
   bool operator==(const Block&) const = default;
 };

@@ -57,7 +57,7 @@ class Messages {
 
   std::deque<Toast> toasts;
   std::vector<LogLine> log;
-  std::vector<ErrorMessage> errors;  // the first error is shown, the others wait
+  std::vector<ErrorMessage> errors;  // error messages: the first one is shown, the others wait
   std::string last_failure;          // text of the Error of the job that failed last
 
  private:

@@ -22,16 +22,16 @@ struct Theme {
   Colour select = 0, select_light = 0, on_select = 0;
   Colour ok = 0, warn = 0, error = 0;
   Colour axis[3] = {};
-  Colour view_top = 0, view_bottom = 0, view_text = 0, view_text2 = 0,
-         view_plate = 0;  // colours in the views, which are dark in every theme
+  // Colours in the views, which are dark in every theme.
+  Colour view_top = 0, view_bottom = 0, view_text = 0, view_text2 = 0, view_plate = 0;
 };
 
 // Reads a theme. Throws Error if the file is no theme, or if a colour is missing or unreadable; the Error names this
 // colour.
 Theme read_theme(const Path& path);
 
-Colour with_alpha(Colour colour, float alpha);   // alpha in [0, 1]
-Colour rgb(float red, float green, float blue);  // each in [0, 1]
+Colour with_alpha(Colour colour, float alpha);   // returns the colour with an opacity in [0, 1]
+Colour rgb(float red, float green, float blue);  // returns an opaque colour; each argument is in [0, 1]
 // Returns the contrast ratio of WCAG 2, (lighter + 0.05) / (darker + 0.05), in [1, 21].
 double contrast(Colour a, Colour b);
 

@@ -26,7 +26,7 @@ struct Keyboard {
 
 // The list that has the keyboard, and its focused row (list_navigation.h).
 struct ListFocus {
-  std::string list;  // empty: no list has the keyboard
+  std::string list;  // name of the list; empty: no list has the keyboard
   int row = 0;
   bool reveal = false;  // true: scrolls the row into sight in the next frame
 };

@@ -17,7 +17,7 @@ enum class Region { TopBar, ToolHeader, ToolStrip, Views, Sidebar, Bottom, Statu
 struct Widget {
   std::string name;
   Region region = Region::Views;
-  Rect rect;  // the visible part, pixels of the window
+  Rect rect;  // the visible part of the widget, pixels of the window
   bool enabled = true;
 };
 

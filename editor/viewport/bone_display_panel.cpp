@@ -11,8 +11,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::array<const char*, 3> kShapes = {"view.bones_octahedron", "view.bones_stick",
-                                                "view.bones_cylinder"};  // in the order of BoneShape
+// The operators that select a bone shape, in the order of BoneShape.
+constexpr std::array<const char*, 3> kShapes = {"view.bones_octahedron", "view.bones_stick", "view.bones_cylinder"};
 
 }  // namespace
 

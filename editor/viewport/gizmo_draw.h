@@ -16,7 +16,7 @@ namespace limber::editor {
 // A circle in the world. Angles on it are in radians, from the direction `from`, right-handed about `axis`.
 struct Ring {
   glm::dvec3 centre{0}, axis{0, 0, 1}, from{1, 0, 0};  // centre: mm; axis, from: unit vectors at a right angle
-  double radius = 0;                                   // mm
+  double radius = 0;                                   // radius of the circle, mm
 
   glm::dvec3 at(double angle) const {
     return centre + radius * (std::cos(angle) * from + std::sin(angle) * glm::cross(axis, from));
@@ -47,12 +47,13 @@ class GizmoPainter {
   void line(const glm::dvec3& from, const glm::dvec3& to, Colour colour, float width, bool dashed = false) const;
   void dot(const glm::dvec3& at, Colour fill, Colour edge, float radius) const;
   void circle(const glm::dvec3& at, Colour colour, float radius, float width) const;
-  void square(const glm::dvec3& middle, const glm::dvec3& half_a, const glm::dvec3& half_b,
-              Colour colour) const;  // half_a, half_b: vectors from the middle to the middles of two sides, mm
+  // Draws a filled square. half_a, half_b: vectors from the middle to the middles of two sides, mm.
+  void square(const glm::dvec3& middle, const glm::dvec3& half_a, const glm::dvec3& half_b, Colour colour) const;
   void diamond(const glm::dvec3& at, Colour colour, float size) const;
   void arrow(const glm::dvec3& from, const glm::dvec3& direction, Colour colour, float begin, float end, float width,
              bool box) const;
-  void word(const glm::dvec3& at, const std::string& text, Colour colour) const;  // centred on the point `at`
+  // Draws a text that is centred on the point `at`.
+  void word(const glm::dvec3& at, const std::string& text, Colour colour) const;
   // Draws a read-out of two lines of text: a bright number with the name of its axis, and the text `below`.
   void read_out(const glm::dvec3& at, const std::string& number, const std::string& axis, const std::string& below,
                 Colour below_colour) const;
@@ -68,6 +69,6 @@ constexpr Colour kGizmoActive = 0xFF8AE0FF;  // RRGGBB: FFE08A; colour of the pa
 // Bright variants of the theme's colours, for drawing over views. Views have a dark background in every theme. As
 // RRGGBB the next three are 5AD19A, F4BC52 and FF7A80; a Colour stores the bytes as AABBGGRR.
 constexpr Colour kViewOk = 0xFF9AD15A, kViewWarn = 0xFF52BCF4, kViewError = 0xFF807AFF;
-constexpr Colour kViewAccent = 0xFFFFBE8F;  // RRGGBB: 8FBEFF
+constexpr Colour kViewAccent = 0xFFFFBE8F;  // colour of accents over a view; RRGGBB: 8FBEFF
 
 }  // namespace limber::editor

@@ -18,7 +18,7 @@ namespace limber::editor {
 // The axis of a coordinate space to which a transform tool is locked. The tool moves or scales along this axis, or
 // turns about it. If `plane`, the tool moves or scales in the plane perpendicular to the axis.
 struct AxisLock {
-  int axis = -1;  // 0 to 2: x, y, z; -1: no lock
+  int axis = -1;  // index of the axis: 0 x, 1 y, 2 z; -1: no lock
   Space space = Space::Global;
   bool plane = false;
 };
@@ -62,7 +62,7 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   double snapped(const Editor& editor, double value, double step, double fine) const;
   // Returns the axis that the tool is locked to, as a unit vector in the world; the zero vector without a lock.
   glm::dvec3 lock_axis() const;
-  std::string lock_text(const char* word) const;  // the lock in words: " about local X"
+  std::string lock_text(const char* word) const;  // returns `word` and the locked axis as text: " about local X"
   std::vector<KeyHint> shared_hints() const;
   // Returns the position to which the pointer has dragged a point that was at `from`, along the locked axis or plane if
   // there is one. If snapping is on, the distance snaps to multiples of `step`, or of `fine` while Shift is held, mm;
@@ -80,7 +80,8 @@ class TransformTool : public Modal, public std::enable_shared_from_this<Transfor
   AxisLock lock_;
   std::optional<MouseButton> held_;
   TypedNumber number_;
-  glm::dvec2 pointer_, start_;     // positions in the window, pixels; motions with Shift count a tenth
+  // Positions of the pointer now and at the start, pixels; motions with Shift count a tenth.
+  glm::dvec2 pointer_, start_;
   double travelled_ = 0;           // largest distance of the pointer from start_, pixels
   std::optional<glm::dvec3> way_;  // translation typed in the form, replaces the pointer's; world, mm
 };

@@ -25,8 +25,8 @@ class Walk final : public Modal {
       : before_(editor.views->body.camera),
         speed_(std::clamp(kSpeed * before_.distance, kSlowest, kFastest)) {
     editor.views->body.move.reset();
-    editor.views->body.camera.projection =
-        render::Projection::Perspective;  // moving forward changes nothing in a parallel projection
+    // Walking needs perspective, because moving forward changes nothing in a parallel projection.
+    editor.views->body.camera.projection = render::Projection::Perspective;
     editor.views->body.name.clear();
   }
 
@@ -91,7 +91,8 @@ class Walk final : public Modal {
  private:
   struct Way {
     Key key;
-    glm::dvec3 direction;  // x: right in the view, y: up in the world, z: backward in the view
+    // Direction in which the key moves the eye: x right in the view, y up in the world, z backward in the view.
+    glm::dvec3 direction;
   };
 
   static const Way* way_of(Key key) {

@@ -19,7 +19,8 @@ struct SeamSource {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const Armature> armature;
-  std::shared_ptr<const Seams> kept;        // seams stored in the document; null: none, seams must be found
+  // Seams stored in the document; null: none are stored, so seams must be found.
+  std::shared_ptr<const Seams> kept;
   std::shared_ptr<const BoneMap> bone_map;  // user's choice of the rig bone that each bone label follows; null: none
 
   bool operator==(const SeamSource&) const = default;

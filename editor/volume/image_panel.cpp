@@ -15,8 +15,9 @@ namespace limber::editor {
 
 namespace {
 
+// The operators that select how the 3D view renders the image, in the order of GreyRendering.
 constexpr std::array kRenderings = {"image.render_bone", "image.render_muscle", "image.render_skin",
-                                    "image.render_window", "image.render_maximum"};  // in the order of GreyRendering
+                                    "image.render_window", "image.render_maximum"};
 
 // Draws a number field that changes its value during a drag, not only at the end of the drag.
 void draw_number(Editor& editor, Column& column, const char* label, double low, double high, const char* unit,

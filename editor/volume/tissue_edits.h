@@ -10,7 +10,7 @@ namespace limber::editor {
 
 // Returns a tissue's name as lists show it: with a capital letter and without "_", or "Label 17" if it has no name.
 std::string shown_name(const Tissue& tissue);
-std::string capitalized(std::string name);  // makes the first letter a capital: "fat" -> "Fat"
+std::string capitalized(std::string name);  // returns the name with a capital first letter: "fat" -> "Fat"
 
 TissueLook look_of(const Document& document, Label label);
 void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look);

@@ -15,7 +15,8 @@ bool any_hidden(const Editor& editor) {
   return false;
 }
 
-// Returns the tissues that an operator works on: the selected ones, else the one under the pointer.
+// Returns the tissues that an operator works on: the selected tissues or, if none is selected, the tissue under the
+// pointer.
 std::set<Label> chosen(const Editor& editor) {
   if (!editor.selection.tissues.empty()) return editor.selection.tissues;
   if (editor.views->hover.inside) return {editor.views->hover.label};

@@ -38,7 +38,7 @@ struct Corner {
 };
 
 struct Projected {
-  std::vector<Corner> corners;  // head, tail, then the other points of the solid that shows the bone
+  std::vector<Corner> corners;  // corners of the bone's solid: head and tail of the bone, then the other points
   BoneLook look;
   double depth = 0;  // mean depth of the bone's head and tail, mm
 

@@ -18,8 +18,9 @@ struct BoneSolid {
     std::array<int, 2> faces;
     bool smooth;  // true: an edge of the cylinder's round side, drawn only where it is part of the outline
   };
-  std::vector<glm::dvec3> points;       // the first two are the bone's head and tail
-  std::vector<std::vector<int>> faces;  // indices into `points`; planar, convex, counter-clockwise from outside
+  std::vector<glm::dvec3> points;  // corners of the solid; the first two are the bone's head and tail
+  // For each face, indices of its corners; faces are planar, convex, counter-clockwise from outside.
+  std::vector<std::vector<int>> faces;
   std::vector<Edge> edges;
 };
 

@@ -24,7 +24,7 @@ class LinePass {
   LinePass();
 
   struct Ink {
-    glm::vec3 colour;    // sRGB
+    glm::vec3 colour;    // colour of the lines, sRGB
     float alpha, width;  // opacity [0, 1], and line width in pixels
   };
   // Draws the lines into the bound framebuffer of `size` pixels. A pixel of a line is drawn only where its depth

@@ -66,9 +66,11 @@ struct PassResources {
   enum class Surface { AtOnce, Waits };
   void relabel(const std::shared_ptr<const LabelVolume>& before, const std::shared_ptr<const LabelVolume>& now,
                const VoxelBox& box, Surface surface);
-  int revision_of(const std::shared_ptr<const LabelVolume>& volume) const;  // returns 0 for a volume without textures
-  int uploads() const { return uploads_; }                                  // number of volumes uploaded so far
-  std::size_t body_count() const { return bodies_.size(); }                 // number of volumes on the graphics card
+  // Returns a number that changes whenever the volume's labels change on the graphics card; 0 for a volume without
+  // textures.
+  int revision_of(const std::shared_ptr<const LabelVolume>& volume) const;
+  int uploads() const { return uploads_; }                   // number of volumes uploaded so far
+  std::size_t body_count() const { return bodies_.size(); }  // number of volumes on the graphics card
   // Uploads as much of a prepared body as the frame's time limit allows. Returns true once the whole body is uploaded.
   // Until then, later calls must pass the same body. Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);

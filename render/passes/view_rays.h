@@ -19,7 +19,8 @@ struct ViewRays {
   glm::dmat4 clip_from_padded;
   glm::dmat3 view_from_gradient;  // converts a gradient in padded coordinates to a vector in view axes (not normalized)
   glm::dvec4 depth_of_padded;     // the point `padded` has the depth dot(xyz, padded) + w, mm
-  glm::dvec3 eye;                 // position in padded coordinates; for an orthographic camera, the viewing direction
+  // Position of the eye in padded coordinates; for an orthographic camera, the viewing direction.
+  glm::dvec3 eye;
   // Converts a clip plane to padded coordinates: points p with dot(xyz, p) <= w stay visible.
   glm::dvec4 padded_from_clip_plane(const glm::dvec3& point, const glm::dvec3& normal) const;
   glm::dmat4 padded_from_world;

@@ -12,9 +12,9 @@ enum class Projection { Perspective, Orthographic };
 
 struct Camera {
   glm::dvec3 centre{0};                    // the point about which the camera orbits
-  double distance = 1000;                  // from the eye to the centre, mm
-  glm::dquat world_from_view{1, 0, 0, 0};  // view axes: x right, y up, z towards the eye
-  double field_of_view = 0.6911;           // vertical, radians (50 mm lens, picture 36 mm high)
+  double distance = 1000;                  // distance from the eye to the centre, mm
+  glm::dquat world_from_view{1, 0, 0, 0};  // orientation of the camera; view axes: x right, y up, z towards the eye
+  double field_of_view = 0.6911;           // vertical angle of view, radians (50 mm lens, picture 36 mm high)
   Projection projection = Projection::Perspective;
 
   bool operator==(const Camera&) const = default;
@@ -37,7 +37,7 @@ glm::dmat4 clip_from_view(const Camera& camera, double aspect, const glm::dvec3&
 
 // The ray in the world through a point of the picture (pixels, y down, from the top left corner).
 struct Ray {
-  glm::dvec3 origin, direction;  // world, mm; the direction has unit length
+  glm::dvec3 origin, direction;  // start of the ray, world, mm; direction, unit vector
 };
 Ray ray_through(const Camera& camera, const glm::dvec2& pixel, const glm::ivec2& size);
 // Computes the pixel at which a world point appears (y down); returns false when the point lies behind the eye.
@@ -48,8 +48,9 @@ bool project(const Camera& camera, const glm::dvec3& point, const glm::ivec2& si
 // about the view's x axis.
 Camera orbited(const Camera& camera, const glm::dvec2& pixels);
 Camera panned(const Camera& camera, const glm::dvec2& pixels, const glm::ivec2& size);
-Camera zoomed(const Camera& camera, double factor);  // multiplies the distance, which stays within [1e-2, 1e6] mm
-// Zooms about a pixel. The point at the depth of the camera's centre that this pixel shows stays at the pixel.
+// Returns the camera with its distance to the centre multiplied by `factor`, and clamped to [1e-2, 1e6] mm.
+Camera zoomed(const Camera& camera, double factor);
+// Zooms about a pixel: the point that this pixel shows at the depth of the camera's centre stays at the pixel.
 Camera zoomed(const Camera& camera, double factor, const glm::dvec2& pixel, const glm::ivec2& size);
 // Turns the view about the eye, by the same angles as orbited(). The eye does not move, and the centre moves around
 // it.

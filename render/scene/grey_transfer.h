@@ -13,7 +13,7 @@ namespace limber::render {
 
 struct GreyTransfer {
   static constexpr int kSamples = 256;
-  double low = 0, high = 1;  // the values of the first and the last sample
+  double low = 0, high = 1;  // the image values of the first and the last sample
   // Colour (sRGB, not premultiplied) and opacity of a layer one millimetre thick, at evenly spaced values. Values
   // below `low` are transparent; values above `high` have the colour and opacity of `high`.
   std::array<glm::vec4, kSamples> samples;

@@ -51,7 +51,7 @@ struct ShownGrey {
 
 // The appearance of a label.
 struct LabelLook {
-  glm::vec3 colour{0.7f};  // sRGB
+  glm::vec3 colour{0.7f};  // colour of the label, sRGB
   float opacity = 1;
   bool visible = true;
   bool bone = false;  // true: the label stays solid in X-ray
@@ -75,7 +75,8 @@ struct BoneHit {
 
 // A box and a plane that cut the volume open. The cut faces show the tissues without shading.
 struct Clip {
-  std::optional<std::array<glm::dvec3, 2>> box;  // low and high corner in the volume's voxel coordinates
+  // Low and high corner of the clip box in the volume's voxel coordinates.
+  std::optional<std::array<glm::dvec3, 2>> box;
   // A point and the unit normal of the plane, world, mm. The side to which the normal points is hidden.
   std::optional<std::array<glm::dvec3, 2>> plane;
 };
@@ -89,7 +90,7 @@ enum class WeightDisplay {
   Field,     // a given colour for each voxel (ShownWeights::field) instead of weights, for any measured quantity
 };
 struct ShownWeights {
-  std::shared_ptr<const SkinWeights> weights;  // null for WeightDisplay::Field
+  std::shared_ptr<const SkinWeights> weights;  // the weights to show; null for WeightDisplay::Field
   std::shared_ptr<const TissueVoxels> tissue;  // the tissue voxels of the volume
   WeightDisplay display = WeightDisplay::Active;
   int bone = -1;                                           // the active bone, an index in the weights' bones; -1: none
@@ -120,14 +121,14 @@ struct Scene {
   std::shared_ptr<const LabelLooks> looks;
   Display display = Display::Solid;
   Clip clip;
-  std::optional<ShownWeights> weights;  // empty: tissue colours are shown
+  std::optional<ShownWeights> weights;  // how weights are shown; empty: tissue colours are shown
   std::optional<Label> outlined;        // the tissue that has a selection outline
   std::optional<CutMesh> mesh;
-  std::optional<ShownGrey> grey;  // shown only together with a volume, which may be all air
+  std::optional<ShownGrey> grey;  // the grey image; shown only together with a volume, which may be all air
 
   std::shared_ptr<const Armature> armature;
-  std::vector<RigidTransform> posed_from_rest;  // one for each bone; empty: the rig is at rest
-  std::vector<BoneLook> bones;                  // one for each bone; empty: no bone is selected
+  std::vector<RigidTransform> posed_from_rest;  // rest-to-posed transform of each bone; empty: the rig is at rest
+  std::vector<BoneLook> bones;                  // appearance of each bone; empty: no bone is selected
   BoneShape bone_shape = BoneShape::Octahedron;
   bool bones_in_front = false;  // true: bones are drawn over the body
   float line_scale = 1;         // factor on line widths and joint radii, for pictures of high resolution

@@ -29,7 +29,8 @@ std::vector<int> last_layers(const LabelLooks& looks, Display display, const std
     for (size_t label = 1; label < count; ++label) layer[label] = looks[label].bone;
   if (display != Display::Tissue) return layer;
 
-  std::vector<size_t> clear;  // transparent labels, sorted from transparent to opaque, and outer before inner ones
+  // Transparent labels by opacity, the most transparent first; at equal opacity, outer labels first.
+  std::vector<size_t> clear;
   bool any_opaque = false;
   for (size_t label = 1; label < count; ++label) {
     if (!is_seen(looks[label], display)) continue;

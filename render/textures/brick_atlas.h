@@ -52,7 +52,7 @@ struct BlockLayout {
   }
   int slots_per_atlas() const { return slots.x * slots.y * slots.z; }
   int atlas_of(int slot) const { return slot / slots_per_atlas(); }
-  glm::ivec3 place_of(int slot) const;  // position of a slot in its atlas, counted in slots
+  glm::ivec3 place_of(int slot) const;  // returns the position of a slot in its atlas, counted in slots
 };
 
 // Returns the blocks and slots of a volume: each block that has tissue within kBrick voxels gets a slot.

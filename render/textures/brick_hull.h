@@ -15,7 +15,7 @@ namespace limber::render {
 class Hull {
  public:
   struct Faces {
-    std::vector<glm::u16vec4> corners;   // whole numbers of bricks or cubes; the last component is 1
+    std::vector<glm::u16vec4> corners;   // corners of the faces, in whole bricks or cubes; the last component is 1
     std::vector<std::uint32_t> indices;  // two triangles per face, counter-clockwise when seen from outside
   };
 

@@ -98,13 +98,14 @@ class WeightTexture {
   void upload(const VolumeTexture& volume, const std::vector<Part>& parts);
 
   std::vector<gl::Texture> atlases_;
-  gl::Texture index_;                  // format of VolumeTexture::index; it lists only the slots marked in present_
+  // Index texture as VolumeTexture::index, but only with the slots marked in present_.
+  gl::Texture index_;
   std::optional<ShownWeights> shown_;  // weights that are uploaded, or will be when all waiting slots are
   int edits_ = 0;                      // number of times that shown_ has changed
 
   // These vectors have one entry for each slot.
   std::vector<TexelBox> waiting_;      // texels of the slot that wait for their upload; empty: none
-  std::vector<int> edited_;            // number of the last edit that changed the slot
+  std::vector<int> edited_;            // value of edits_ at the last edit that changed the slot
   std::vector<std::uint8_t> present_;  // 1 if the slot's texels were computed for the current display
   int waiting_count_ = 0;
   std::array<std::optional<float>, 3> cuts_;
