@@ -225,8 +225,8 @@ void Editor::take_input() {
   dispatch(*this, events, before);
 }
 
-// Draws the panels once for each typed key that does more than insert a character, without drawing the views again. The
-// input after the last of these keys is left to the frame that is shown.
+// Draws the panels again after each typed key that does more than insert a character, without drawing the views again.
+// The frame that is then shown reads the remaining input.
 void Editor::read_typed_text() {
   for (int turn = 0; turn < kMostTurns && (keyboard.typed || keyboard.waits()) && !host.events.empty(); ++turn) {
     layout = layout_of(*this, host.size());

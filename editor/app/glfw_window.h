@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Opens the editor's window on the desktop, through GLFW. GLFW needs the libraries of X11, which a machine without a
-// display may lack. So it lies in a module of its own, limber_window.so, which only open_window() loads.
+// display may lack. So the window's code is in a module of its own, limber_window.so, which only open_window() loads.
 #pragma once
 
 #include <memory>

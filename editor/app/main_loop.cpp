@@ -34,8 +34,8 @@ void play(const StartOptions& options) {
   Player player(editor, *host);
   player.step();
   player.play({{0, {"wait-job"}}});
-  // Discards the journal of the script's edits when the script ends. Edits to recover are then left only by a script
-  // that was killed.
+  // Discards the journal of the script's edits when the script ends, so that only a script that was killed leaves edits
+  // to recover.
   struct Ending {
     Editor& editor;
     ~Ending() {

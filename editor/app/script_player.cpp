@@ -19,8 +19,7 @@ constexpr double kLongestJob = 300;  // a job that takes longer stops the script
 // A script that needs more frames until the editor is idle stops with an error.
 constexpr int kLongestSettling = 20'000;
 
-// Upper limits for the numbers in a script. A larger number is reported as an error.
-// A drag that is longer, or a position beyond this, is an error in the script, pixels.
+// A drag in a script that is longer than this, or a position beyond this, is an error, pixels.
 constexpr double kFarthestMove = 20'000;
 constexpr double kLargestWindow = 16'384;  // a larger width or height of the window is an error in the script, pixels
 constexpr double kMostSteps = 1000;        // more steps of the wheel in one command are an error in the script

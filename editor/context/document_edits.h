@@ -11,7 +11,7 @@ void commit(Editor& editor, const std::string& label, Document next);
 // Returns the scale of the interface: the user's scale times the monitor's. In a small window the scale is smaller,
 // since the window's regions need 800 x 520 pixels at scale 1.
 float scale_for(const Preferences& preferences, const Host& host);
-// Applies the theme and the scale if one of them has changed. Returns true if so.
+// Applies the theme and the scale if one of them has changed. Returns true if it has applied them.
 bool apply_look_if_changed(Editor& editor);
 
 }  // namespace limber::editor

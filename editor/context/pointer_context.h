@@ -9,8 +9,8 @@
 
 namespace limber::editor {
 
-// Returns the names of the key map's contexts that apply at the pointer's position. A key means what the first context
-// that binds it says.
+// Returns the names of the key map's contexts that apply at the pointer's position. If several of these contexts bind a
+// key, the first one decides what the key does.
 std::vector<std::string> contexts(const Editor& editor);
 // Returns the view under the pointer; nullptr if the pointer is outside the views, or a menu or dialog covers them.
 const ViewPlace* hovered_view(const Editor& editor);

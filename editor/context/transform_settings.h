@@ -41,7 +41,7 @@ struct TransformSettings {
   std::shared_ptr<ProposedJoint> proposed_joint;
   // Result of the last rig check (rig_check.h); null: not checked yet.
   std::shared_ptr<KnownRigCheck> rig_check;
-  // Frames of the body's joints (clinical_angle_edits.h); null: not found yet.
+  // Coordinate frames of the rig's joints (clinical_angle_edits.h); null: not found yet.
   std::shared_ptr<const KnownBodyFrames> body_frames;
   bool rig_check_marks = true;  // true: the views mark the problems that rig_check found
 
@@ -51,7 +51,7 @@ struct TransformSettings {
     bool moved = false;
   } row_drag;
 
-  // Name of the selected pose of the library; of a body pose, its library_name() (body_pose_cards.h).
+  // Name of the selected pose of the library. For a built-in body pose, this is its library_name() (body_pose_cards.h).
   std::string library_pose;
   struct {  // the program's own body poses, made for the current rig
     std::shared_ptr<const Armature> armature;

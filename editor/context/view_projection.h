@@ -18,7 +18,7 @@ struct ViewProjection {
   std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // returns no value for a point behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
   glm::dvec3 direction_to_eye(const glm::dvec3& point) const;  // returns a unit vector
-  // Size of a pixel at the point, across the line of sight.
+  // Returns the size of a pixel at the depth of the point, measured across the line of sight.
   double millimetres_per_pixel(const glm::dvec3& point) const;
 
   // Returns true if the view shows the point: always in the 3D view, and in a slice if the point lies within 20 mm of

@@ -68,8 +68,8 @@ std::string name_of(ViewId id) {
 }
 
 namespace {
-// Returns the low and high corner of the clip box in voxels. A face at the volume's border is moved far away: there it
-// cuts nothing, and a posed body may reach beyond the volume.
+// Returns the low and high corner of the clip box in voxels. A face at the volume's border is moved far away, because
+// it must not cut a posed body that reaches beyond the volume.
 std::array<glm::dvec3, 2> cut_of(const ClipBox& box, const Grid& grid) {
   constexpr double kFar = 1e6;  // position of a face that cuts nothing, voxels
   std::array<glm::dvec3, 2> cut{box.low, box.high};

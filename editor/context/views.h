@@ -85,7 +85,8 @@ struct PosedImage {
 };
 
 struct Views {
-  // Needs a current OpenGL context. Throws Error when its version is older than 3.3.
+  // Creates the renderer and the pictures of the views. Needs a current OpenGL context. Throws Error when the context
+  // is older than OpenGL 3.3.
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;

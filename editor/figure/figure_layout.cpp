@@ -20,7 +20,7 @@ constexpr double kMargin = 1.5, kGap = 1.5, kColumnGap = 3;
 constexpr double kSwatch = 0.8 * kTextSize, kSwatchGap = 1;
 constexpr double kBarHeight = 0.5, kTickHeight = 1.4;
 constexpr double kLongestBar = 0.3;  // the scale bar is at most this long, as a fraction of the picture's width
-// A figure whose picture would be lower is an error; fraction of the figure's height.
+// A figure is an error if its picture would be lower than this fraction of the figure's height.
 constexpr double kSmallestPicture = 0.35;
 // A figure is laid out at most this many times, even if each new legend changes which tissues the picture shows.
 constexpr int kMostRounds = 4;

@@ -22,14 +22,14 @@ struct FigureOptions {
   enum class Paper { White, Black, Transparent } paper = Paper::White;
   bool scale_bar = true, legend = true;
 };
-// A figure with a shorter or longer side is an error, mm.
+// The sides of a figure must have lengths between these, mm; otherwise the figure is an error.
 inline constexpr double kSmallestFigure = 20, kLargestFigure = 1000;
 inline constexpr double kLowestResolution = 30, kHighestResolution = 2400;
 inline constexpr int kMostFigurePixels = 8192;  // a figure with more pixels along a side is an error
-// A figure with more pixels is an error, because drawing its 3D picture would need gigabytes of memory.
+// A figure with more pixels in total is an error, because drawing its 3D picture would need gigabytes of memory.
 inline constexpr double kLargestFigureArea = 32e6;
 
-// Returns the figure's size in pixels. Throws Error when it is too large or too small.
+// Returns the figure's size in pixels. Throws Error when the figure is too large or too small.
 glm::ivec2 figure_pixels(const FigureOptions& options);
 
 struct LegendEntry {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes a temporary folder, which the destructor deletes with its content. If the program crashes before that, its next
-// start deletes the folder.
+// Makes a temporary folder, which the destructor deletes with its content. If the program crashes first, the next start
+// of the program deletes the folder.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Opens, saves and recovers the project. Tracks its file, which edits are saved, and the journal, which stores every
-// edit between saves (core/project/session.h). Tasks read and write files while the editor stays responsive.
+// Opens, saves and recovers the project. Tracks the project's file, the edits that this file contains, and the journal,
+// which stores every edit between saves (core/project/session.h). Tasks read and write files while the editor stays
+// responsive.
 #pragma once
 
 #include <cstdint>

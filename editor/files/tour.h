@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A short tour of the editor on the sample arm. A bubble points at the widget of each step, and the step ends when the
-// user has done what it says. The current step is stored, so that the tour can resume there later.
+// user has done what the bubble says. The current step is stored, so that the tour can resume at this step later.
 #pragma once
 
 #include <string>

@@ -13,7 +13,7 @@
 
 namespace limber::editor {
 
-// Key: context and operator id. Value: the chords that replace the original chords.
+// The user's changes, by context and operator id: the chords that replace the operator's original chords.
 using KeyChanges = std::map<std::pair<std::string, std::string>, std::vector<std::string>>;
 
 // Returns the key map after the changes. Keys that cannot be read are left out.

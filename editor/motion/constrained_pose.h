@@ -49,8 +49,8 @@ void remember_free_pose(Editor& editor, const Document& document, const Pose& sh
 // Returns the stored free pose of the document's pose if the user made that pose by hand. Returns nothing if the pose
 // comes from the clip.
 std::optional<Pose> free_pose_by_hand(const Editor& editor);
-// Changes the shown clip as one edit. The free pose does not change, so the user's changes are kept. The constraints
-// of the changed clip are applied to it.
+// Changes the shown clip as one edit. The free pose does not change, so the user's changes are kept. The document's
+// pose becomes the free pose with the constraints of the changed clip applied.
 void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change);
 
 }  // namespace limber::editor

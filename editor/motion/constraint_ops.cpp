@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators of the constraints: one that adds each kind, and those that change the active bone's constraint.
+// Operators of constraints: one for each kind that adds a constraint, and those that change the active bone's
+// constraint.
 #include "editor/context/operator_polls.h"
 #include "editor/motion/constraint_edits.h"
 #include "editor/ui/icons.h"

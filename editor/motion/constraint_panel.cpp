@@ -67,7 +67,7 @@ void change(Editor& editor, const Constraint& constraint, const std::string& lab
   attempt(editor, label, [&](Editor& e) { change_constraint(e, name, label, set); });
 }
 
-// Draws a list field whose choices are the values of an enum. Returns true when the user selected another one.
+// Draws a list field whose choices are the values of an enum. Returns true when the user selected another choice.
 bool choose(Editor& editor, Column& column, const std::string& title, const std::vector<std::string>& words,
             int& chosen) {
   const PathScope path(editor, title);

@@ -199,7 +199,7 @@ class ChangingGraphKeys final : public Modal {
   bool scales_;
   int pivot_frame_;
   double pivot_value_ = 0;
-  // Pixels: from the pivot to the pointer when the drag began; the pointer's motion since then.
+  // Vector from the pivot to the pointer when the drag began, and the pointer's motion since then, pixels.
   glm::vec2 reach_{0}, way_{0};
   Lock lock_ = Lock::None;
   GraphMap time_, value_;

@@ -11,8 +11,8 @@ namespace limber::editor {
 
 namespace {
 
-// Colours of the path before and after the shown frame, the same as those of the onion skin's ghosts, and of the keys'
-// diamonds, the same as in the timeline. ABGR (RGB: 4B8EF5, 5AD19A, F5A623).
+// Colours of the path before and after the shown frame (as the ghosts of the onion skin have), and of the keys'
+// diamonds (as in the timeline). ABGR (RGB: 4B8EF5, 5AD19A, F5A623).
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A, kKey = 0xFF23A6F5;
 // Longest path, in frames; a longer playing range shows only its first frames.
 constexpr int kMostFrames = 100'000;

@@ -28,10 +28,10 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next);
 // is off.
 Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones);
 
-// Shows the changed pose without an edit. The clip's constraints are applied, as in commit_pose().
+// Shows the changed pose without an edit, with the clip's constraints applied.
 //   set  bones whose rotations the user has set to a value, for example by typing an angle. All other changed bones
-//   were turned relative to their old rotation. Constraints treat both cases differently
-//   (editor/motion/constrained_pose.h).
+//        were turned relative to their old rotation. Constraints treat these two cases differently
+//        (editor/motion/constrained_pose.h).
 void preview_pose(Editor& editor, const Pose& pose, const std::vector<int>& set = {});
 // Commits the pose as one edit; does nothing when the document does not change.
 void commit_pose(Editor& editor, const std::string& label, Pose pose, const std::vector<int>& set = {});

@@ -16,8 +16,9 @@ const NamedPose* chosen_pose(const Editor& editor);  // the selected pose of the
 // Returns the document's pose with the selected bones blended towards the named pose.
 //   share  blend factor, [0, 1]; 1: the named pose
 Pose on_the_way_to(const Editor& editor, const NamedPose& named, double share);
-// Returns the bones whose rotations on_the_way_to() sets to a value, as the argument `set` of preview_pose(): the
-// selected bones if `share` is 1. For a smaller share, no bones: they are only turned towards the named pose.
+// Returns the bones whose rotations on_the_way_to() sets to a value, for the argument `set` of preview_pose(). If
+// `share` is 1, these are the selected bones. If it is smaller, there are none, because the bones are only turned
+// towards the named pose.
 std::vector<int> set_on_the_way(const Editor& editor, double share);
 void apply_pose(Editor& editor, const NamedPose& named, double share);
 

@@ -12,7 +12,7 @@
 
 namespace limber::editor {
 
-// A result's overlapping voxels, with the colours of all tissue voxels that mark the overlap.
+// A result's overlapping voxels, and a colour for each tissue voxel of the result, which shows where tissue overlaps.
 struct MarkedOverlap {
   std::shared_ptr<const Overlap> overlap;
   std::shared_ptr<const LabelVolume> volume;

@@ -76,7 +76,7 @@ void choose_side(Editor& editor, const std::string& name) {
   }
 }
 
-// Draws the name as a text field. Enter or a click elsewhere accepts the new name, Escape cancels.
+// Draws the result's name as a text field. Enter or a click elsewhere accepts the new name, Escape cancels.
 void draw_renaming(Editor& editor, const Rect& row, const std::shared_ptr<const Result>& result) {
   const Look& look = editor.look;
   auto& renaming = editor.renaming_result;

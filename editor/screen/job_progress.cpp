@@ -30,8 +30,8 @@ float row_height(const Editor& editor, const JobStatus& job) {
   return editor.fem->solves.contains(job.id) ? kSolveRowHeight : kRowHeight;
 }
 
-// Returns the time left of a job, s. A FEM solve estimates this time itself; for other jobs, and for a solve without an
-// estimate yet, the job's own estimate is returned.
+// Returns the time left of a job, s. A FEM solve makes an estimate of its own. For other jobs, and until the solve has
+// an estimate, returns the estimate from the job's progress.
 std::optional<double> seconds_left(const Editor& editor, const JobStatus& job) {
   const auto solve = editor.fem->solves.find(job.id);
   if (solve != editor.fem->solves.end())

@@ -86,8 +86,8 @@ std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor);
 const std::vector<SeamPair>* counted_pairs(Editor& editor);
 
 std::string why_no_seams(const Editor& editor);  // returns why a search for seams is impossible now; "": it is possible
-// Starts a background task that searches for seams again. At its end, one edit discards seams that were changed by
-// hand.
+// Starts a background task that searches for seams again. When it ends, one edit removes seams that were changed by
+// hand, so that the found seams are used.
 void find_seams_again(Editor& editor);
 void clear_seams(Editor& editor);
 

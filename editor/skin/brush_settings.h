@@ -11,7 +11,7 @@
 
 namespace limber::editor {
 
-// Returns the position where a brush at this pixel of the view would paint; none if the pixel shows no tissue.
+// Returns the position where a brush at this pixel of the view would paint; no value if the pixel shows no tissue.
 std::optional<BrushPlace> brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel);
 
 // Returns why painting is impossible now ("There are no weights"); "" when it is possible.

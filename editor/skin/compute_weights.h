@@ -19,7 +19,7 @@ struct Computation {
   BindingMethod method = BindingMethod::Heat;
   Bones bones = Bones::All;
   Where where = Where::Everywhere;
-  BlendStiffness stiffness;  // how stiffly each tissue follows the bones; unused by rigid weights
+  BlendStiffness stiffness;  // stiffness of each tissue where bones blend; unused by rigid weights
 
   // Returns true if only some of the weights are computed. Such a partial computation edits the active weight layer. A
   // full computation replaces the base weights, which lie below all layers.

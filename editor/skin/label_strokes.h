@@ -20,8 +20,9 @@ std::string why_not_paint_labels(const Editor& editor);
 std::optional<BrushPlace> label_brush_place(Editor& editor, const ViewPlace& view, const glm::vec2& pixel);
 // Begins a stroke at the pointer. The stroke ends when the button is released.
 void begin_label_stroke(Editor& editor, bool erases);
-// Call this function when the user limits strokes to a range of image values. If the image is not a CT and the range
-// still has its default values (bone in a CT), the range becomes the range of all values of the image.
+// Sets the range of image values when the user begins to limit strokes to a range. If the image is not a CT and the
+// range still has its default values (bone in a CT), the range becomes that of all values of the image. Otherwise the
+// range does not change.
 void begin_range(Editor& editor);
 void draw_label_brush_section(Editor& editor, Column& column);  // draws nothing while the brush is off
 

@@ -36,7 +36,7 @@ void toggle_range(Editor& editor) {
   if (brush.in_range) begin_range(editor);
 }
 
-// Switches the brush on or off. From another workspace, it always switches the brush on.
+// Switches the label brush on or off. If a workspace other than Skin is shown, always switches the brush on.
 void toggle_brush(Editor& editor) {
   LabelBrush& brush = brush_of(editor);
   const bool leads_here = editor.workspace != Workspace::Skin;

@@ -88,7 +88,7 @@ void drop_stroke(Editor& editor) {
   editor.touch();
 }
 
-// Paints along a straight line from the pointer's position in the last call to this pixel.
+// Paints along a straight line from the pixel of the last call to this pixel.
 void paint_to(Editor& editor, const glm::vec2& pixel) {
   Painting& painting = *editor.skin->painting;
   Painting::Running& running = *painting.running;

@@ -229,7 +229,7 @@ double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
     }
     if (!any) break;
   }
-  // `nearest` is measured between voxel centres, so half of the air voxel is subtracted.
+  // `nearest` is measured to the centre of the air voxel, so half of this voxel's edge is subtracted.
   return std::max(0.0, std::sqrt(nearest) - std::min({s.x, s.y, s.z}) / 2);
 }
 

@@ -57,7 +57,8 @@ Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress&
   return result;
 }
 
-// Commits the result of the operation, or tells the user why there is nothing to commit. Returns true if it committed.
+// Commits the result of the operation, or tells the user why there is nothing to commit. Returns true if the result was
+// committed.
 bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
   EditedWeights& outcome = result.edited;
   const WeightEdit& edit = outcome.edit;

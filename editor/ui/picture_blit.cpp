@@ -12,8 +12,8 @@ namespace limber::editor {
 
 namespace {
 
-// The corners of a rectangle in one pointer's bits. ImGui keeps that pointer for the callback, so nothing else has to
-// live until the frame is drawn.
+// Packs the corners of a rectangle into the bits of one pointer. ImGui keeps that pointer for the callback, so nothing
+// else has to live until the frame is drawn.
 void* packed(const Rect& rect) {
   std::uint64_t bits = 0;
   for (const float edge : {rect.low.x, rect.low.y, rect.high.x, rect.high.y})
@@ -37,7 +37,7 @@ void blit(const ImDrawList*, const ImDrawCmd* command) {
   glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture, 0);
   const ImVec4& clip = command->ClipRect;
   glScissor(int(clip.x), int(float(view[3]) - clip.w), int(clip.z - clip.x), int(clip.w - clip.y));
-  // OpenGL counts rows from the bottom of the window.
+  // OpenGL counts rows from the bottom of the window, so the y coordinates are flipped.
   glBlitFramebuffer(0, 0, size[0], size[1], edge(0), view[3] - edge(3), edge(2), view[3] - edge(1), GL_COLOR_BUFFER_BIT,
                     GL_NEAREST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, static_cast<GLuint>(window));

@@ -18,7 +18,7 @@ class ArmaturePass {
  public:
   ArmaturePass();
 
-  // Draws into the bound framebuffer of `size` pixels.
+  // Draws the bones into the bound framebuffer of `size` pixels.
   //   body_depth  depth of the body in mm from the eye along the viewing direction, at any resolution; nullptr: the
   //               body hides no bones
   void draw(const Scene& scene, const Camera& camera, const glm::ivec2& size, const gl::Texture* body_depth);

@@ -61,8 +61,8 @@ struct PassResources {
   // volumes differ (size 0: nowhere). `before` and `now` may be the same volume, whose voxels were changed in place.
   // Does nothing if `before` has no textures. If the change does not fit into the textures, deletes them, and body()
   // uploads `now` as a whole.
-  //   surface  AtOnce: labels and 3D surfaces change now. Waits: only the labels change now, and the surfaces with the
-  //   next call with AtOnce, because they take much longer to compute.
+  //   surface  AtOnce: labels and 3D surfaces change now. Waits: only the labels change now, and the surfaces change at
+  //            the next call with AtOnce, because they take much longer to compute.
   enum class Surface { AtOnce, Waits };
   void relabel(const std::shared_ptr<const LabelVolume>& before, const std::shared_ptr<const LabelVolume>& now,
                const VoxelBox& box, Surface surface);
@@ -77,15 +77,17 @@ struct PassResources {
   const LooksTexture& looks(const Body& body, const std::shared_ptr<const LabelLooks>& looks, Display display);
   // Returns the field of a layer, and first computes it if it is missing or out of date.
   const VisibleField& layer(Body& body, const LooksTexture& looks, size_t layer);
-  // Uploads the inverse map of the posed body if needed; returns null if `map` is null.
+  // Returns the texture of the inverse map `map` of the posed body, and uploads the map first if needed. Returns null
+  // if `map` is null.
   const PosedTexture* pose(Body& body, const std::shared_ptr<const PreviewMap>& map);
-  // Uploads the shown weights: all of them (Whole), or as many as the frame's time limit allows (InTime). Returns null
-  // if no weights are shown.
+  // Returns the texture of the shown weights, and uploads the weights first: all of them (Whole), or as many as the
+  // frame's time limit allows (InTime). Returns null if no weights are shown.
   enum class Extent { Whole, InTime };
   WeightTexture* weights(Body& body, const std::optional<ShownWeights>& shown, Extent extent);
   // Returns the hull of a layer of the posed body, at which rays start. Returns null if `map` is null.
   const PosedHull* posed_hull(Body& body, size_t layer, const std::shared_ptr<const PreviewMap>& map);
-  // Uploads the shown grey image, whole or as much as the frame's time limit allows. Returns null if none is shown.
+  // Returns the texture of the shown grey image, and uploads the image first, whole or as much as the frame's time
+  // limit allows. Returns null if no image is shown.
   GreyTexture* grey(const std::optional<ShownGrey>& shown, Extent extent);
   VolumePass& volume_pass(const VolumeTexture& volume, VolumePass::Space space);
 

@@ -23,7 +23,7 @@ class SlicePass {
  public:
   SlicePass();
 
-  // Draws into the bound framebuffer. Pixels of air or of hidden tissue keep the background.
+  // Draws the slice into the bound framebuffer. Pixels of air or of hidden tissue keep the background.
   //   posed    the inverse map of the posed body; null: the body is at rest
   //   weights  weights to show instead of tissue colours; null: tissue colours
   //   grey     the texture of shown_grey's image, to show below the tissues; null: no image is shown

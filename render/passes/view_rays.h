@@ -30,7 +30,7 @@ struct ViewRays {
   // offset, so that the average blends the borders between labels.
   glm::vec3 label_shift{0};
   // True: the gradient is computed from the four corners of the mirrored tetrahedron. Averaged pictures alternate
-  // between both tetrahedra.
+  // between the mirrored and the unmirrored tetrahedron.
   bool mirrored_taps = false;
   bool smooth_cuts = false;  // true: borders between labels on cut faces are smooth
 };

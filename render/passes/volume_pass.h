@@ -40,6 +40,7 @@ PixelRect intersection(const PixelRect& a, const PixelRect& b);
 // The buffers that store what the rays of a picture hit.
 class GBuffer {
  public:
+  // Gives the buffers the size of the picture, pixels.
   //   places  true: adds the buffers for the rest position and the weight colour of each pixel
   void resize(const glm::ivec2& size, bool places = false);
   const glm::ivec2& size() const { return size_; }
@@ -90,7 +91,8 @@ class VolumePass {
   gl::VertexArray nothing_;
 };
 
-// Returns the definitions, and sets the uniforms of the box and the clip, that shaders/trace.glsl needs.
+// march_defines() returns the preprocessor definitions that shaders/trace.glsl needs. set_clip() sets the uniforms of
+// the box and the clip that it needs.
 std::string march_defines(int atlases, VolumePass::Space space);
 void set_clip(gl::Program& program, const Hull& hull, const VolumeTexture& volume, const Clip& clip,
               const ViewRays& rays);

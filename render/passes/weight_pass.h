@@ -17,7 +17,8 @@ class WeightPass {
  public:
   WeightPass();
 
-  // Draws into GBuffer::weight inside `rect`. The buffer must have been resized with places = true.
+  // Draws the colours of the weights into GBuffer::weight inside `rect`. The buffer must have been resized with places
+  // = true.
   void draw(const VolumeTexture& volume, const WeightTexture& weights, const ViewRays& rays, const GBuffer& buffer,
             const PixelRect& rect);
 

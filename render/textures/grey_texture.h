@@ -19,7 +19,7 @@ class GreyTexture {
   // has no memory for it, its resolution is halved until it fits. Throws Error when even an eighth does not fit.
   GreyTexture(const std::shared_ptr<const GreyLevels>& image, int largest_texture);
 
-  // The document owns the image; this object does not keep it alive.
+  // Returns the original image. The document owns this image, and GreyTexture does not keep it alive.
   const std::weak_ptr<const GreyLevels>& original() const { return original_; }
   const Grid& grid() const { return grid_; }  // grid of the drawn image: the original, or a coarser one
   int halvings() const { return halvings_; }

@@ -35,8 +35,9 @@ class SurfaceField {
 
   // Changes the set of labels. Computes the field again only in blocks that contain, or are near, an added or removed
   // label. Returns the texels of the computed slots.
-  //   drawn, layout  the same in every call, except for the slots in `changed` and for slots appended to the layout
-  //   changed        one byte per slot (missing bytes are 0); nonzero: the labels of the slot's voxels may have
+  //   drawn, layout  must be the same in every call, except for the slots in `changed` and for slots that were appended
+  //                  to the layout
+  //   changed        one byte per slot (missing bytes are 0); nonzero if the labels of the slot's voxels may have
   //   changed
   Texels update(const LabelVolume& drawn, const BlockLayout& layout, const LabelSet& set,
                 const std::vector<std::uint8_t>& changed = {});

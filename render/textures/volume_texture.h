@@ -18,7 +18,7 @@ namespace limber::render {
 
 // A label volume at the resolution at which it is drawn, before it is uploaded. Computing it needs no OpenGL.
 struct DrawnVolume {
-  // The document owns the original volume; this object does not keep it alive.
+  // The original volume. The document owns this volume, and DrawnVolume does not keep it alive.
   std::weak_ptr<const LabelVolume> original;
   std::shared_ptr<LabelVolume> coarse;  // the volume at the resolution at which it is drawn; null: the original
   Grid grid;                            // grid of the volume that is drawn
@@ -62,7 +62,7 @@ class VolumeTexture {
   int halvings() const { return volume_.halvings; }
   const BlockLayout& layout() const { return volume_.layout; }
   int largest_texture() const { return volume_.largest_texture; }
-  // For each label, the fraction of its voxels that have air beside them along x.
+  // Returns, for each label, the fraction of its voxels that have air beside them along x.
   const std::vector<float>& exposure() const { return volume_.exposure; }
   const std::string& note() const { return note_; }  // a note for the user, or empty
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The shown skin weights on the graphics card: four bytes per voxel in atlases with the same layout as the volume's
-// labels (brick_atlas.h). Positions are therefore found in the same way, and filtered reads are smooth from voxel to
-// voxel.
+// labels (brick_atlas.h). One computation therefore finds a position in both, and filtered reads are smooth from voxel
+// to voxel.
 //
 // A texel has the values that the display needs, computed here from the exact weights. For the active bone these are
 // its weight in 8 bits, whether it is exactly 0, and whether it is exactly 1. For other displays they are a colour. The
