@@ -22,7 +22,7 @@ class Video {
   // Starts ffmpeg. The video is written to a temporary folder below `scratch` ("": the system's folder for temporary
   // files), and finish() moves it to `path`. Throws Error if ffmpeg is not installed or fails.
   Video(const Path& path, const glm::ivec2& size, const std::string& scratch, Progress& progress);
-  ~Video();  // ends ffmpeg; without finish(), no file is left
+  ~Video();  // ends ffmpeg; if finish() was not called, no file is left
   Video(const Video&) = delete;
   Video& operator=(const Video&) = delete;
 

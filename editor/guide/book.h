@@ -20,7 +20,7 @@ struct Page {
 
 struct Chapter {
   std::string title;
-  std::vector<int> pages;  // indices into Book::pages
+  std::vector<int> pages;  // the chapter's pages, as indices into Book::pages
 };
 
 struct Book {

@@ -54,7 +54,7 @@ void aim_at_cross_hair(Editor& editor, const std::string& name);
 
 // ---- Weights
 bool has_weight_key(const Editor& editor, const Constraint& constraint, int frame);
-// Returns the weight at the shown frame.
+// Returns the constraint's weight at the shown frame.
 double shown_weight(const Editor& editor, const Constraint& constraint);
 // Sets a constraint's weight. If the weight has keys, sets a key at the shown frame.
 void set_weight(Editor& editor, const std::string& name, double weight);

@@ -37,7 +37,8 @@ Keys with_handles(const GraphCurves& curves, const Keys& keys, const std::set<Gr
 //   speed  slope, degrees or mm per frame
 Keys with_slope(const GraphCurves& curves, const Keys& keys, const GraphKey& key, KeySide side, double speed);
 
-// Eases the spans that begin at the keys. In: slow at first, as half of a quadratic curve. Out: slow at the end.
+// Eases the spans that begin at the keys. In: slow at first, as half of a quadratic curve. Out: slow at the end. InOut:
+// slow at both ends.
 enum class Easing { In, Out, InOut };
 Keys with_easing(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed, Easing easing);
 

@@ -41,7 +41,7 @@ struct SkinDisplay {
   SkinDisplay();
   ~SkinDisplay();
 
-  // What the colours show; none: the tissues.
+  // What the colours of the body show; no value: its tissues.
   std::optional<render::WeightDisplay> display = render::WeightDisplay::Active;
   bool contours = true;
   std::set<std::string> hidden;  // bones whose regions are hidden
