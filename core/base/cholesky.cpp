@@ -53,7 +53,7 @@ void require_blas_memory() {
     // Free address space that is required, bytes. OpenBLAS takes 128 MB.
     constexpr std::size_t kMost = std::size_t{160} << 20;
     if (!can_map(kMost))
-      throw Error("not enough memory to solve with", "factorization", "use a coarser mesh, or more memory");
+      throw Error("not enough memory for the solver", "factorization", "use a coarser mesh, or more memory");
     using Factorize = void (*)(const char* half, const int* n, double* A, const int* lda, int* info);
     if (const auto factorize = reinterpret_cast<Factorize>(symbol_of_program("dpotrf_"))) {
       constexpr int kSize = 1;

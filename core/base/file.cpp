@@ -49,8 +49,7 @@ void check_place(const Path& path) {
   const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
   if (!fs::is_directory(folder, error))
     throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
-  if (fs::is_directory(path, error))
-    throw Error("a folder stands where the file should go", path.string(), "choose another name");
+  if (fs::is_directory(path, error)) throw Error("a folder has the file's name", path.string(), "choose another name");
 }
 
 namespace {

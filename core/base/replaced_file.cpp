@@ -17,7 +17,7 @@ Path target_of(const Path& path) {
     target = next.is_absolute() ? next : target.parent_path() / next;
   }
   if (fs::exists(target, error) && !fs::is_regular_file(target, error) && !fs::is_directory(target, error))
-    throw Error("what is there is no regular file", path.string(), "name a file on disk");
+    throw Error("this is not a regular file", path.string(), "name a file on disk");
   return target;
 }
 

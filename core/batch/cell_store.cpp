@@ -313,8 +313,8 @@ struct CellStore::Parts {
       if (run == 1) first = hashes;
       if (const std::string other = other_file(hashes, first); !other.empty())
         throw Error("repeat " + std::to_string(run) + " gave another " + other + " than the first", request.name,
-                    "trust neither: results must not differ from run to run, so this is a fault of Limber or of the "
-                    "machine");
+                    "use neither result: results must not differ from run to run, so this is an error of Limber or of "
+                    "the machine");
     }
     if (finish) finish(into);
     Json facts{{"schema", "limber-cell/1"}, {"key", key}};

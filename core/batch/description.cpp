@@ -95,7 +95,7 @@ std::string Description::text(const std::string& key, const std::string& otherwi
   if (!has(key)) return otherwise;
   const std::string word = at(key).as_text();
   if (!words.empty() && !words.contains(word))
-    refuse("\"" + word + "\" is none of its words", key, "use one of: " + joined(words));
+    refuse("\"" + word + "\" is not an allowed value", key, "use one of: " + joined(words));
   return word;
 }
 
@@ -125,7 +125,7 @@ std::vector<Description> Description::list(const std::string& key) const {
   if (!has(key)) return {};
   const Json& value = json_of(at(key).value_);
   if (!value.is_array() || value.empty())
-    refuse("this should be a list with something in it", key, "write \"" + key + "\": [...]");
+    refuse("this should be a list with at least one entry", key, "write \"" + key + "\": [...]");
   std::vector<Description> values;
   for (const Json& one : value)
     values.push_back(
@@ -240,7 +240,7 @@ bool read_nearest(const Description& description, const std::vector<Technique>& 
   const bool nearest = description.flag("nearest");
   if (nearest && std::any_of(techniques.begin(), techniques.end(),
                              [](const Technique& technique) { return technique.mass_exact; }))
-    description.refuse("masses are made exact by what a voxel is nearly, which \"nearest\" does not ask", "nearest",
+    description.refuse("mass-exact techniques need interpolated labels, which \"nearest\" does not compute", "nearest",
                        "leave one of the two out");
   return nearest;
 }
@@ -248,7 +248,7 @@ bool read_nearest(const Description& description, const std::vector<Technique>& 
 void check_distinct(const Description& description, const std::string& key, std::vector<std::string> values) {
   std::sort(values.begin(), values.end());
   if (std::adjacent_find(values.begin(), values.end()) != values.end())
-    description.refuse("something stands there twice", key, "name each once");
+    description.refuse("a value occurs twice", key, "name each once");
 }
 
 }  // namespace limber

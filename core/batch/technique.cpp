@@ -44,7 +44,7 @@ std::vector<Technique> techniques_of(const std::vector<std::string>& words, cons
       throw Error("there is no such method: " + word, where,
                   "use " + technique_words() + ", or one of them with " + kExactWord + " behind it");
     if (std::count(techniques.begin(), techniques.end(), *found))
-      throw Error("something stands there twice", where, "name each once");
+      throw Error("a value occurs twice", where, "name each once");
     techniques.push_back(*found);
   }
   return techniques;

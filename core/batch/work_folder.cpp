@@ -104,7 +104,7 @@ void WorkFolder::commit() {
   std::error_code error;
   fs::rename(working_, place_, error);
   if (error && !fs::exists(place_))
-    throw Error("the folder cannot be put in its place", place_.string(), error.message());
+    throw Error("the folder cannot be renamed to its final name", place_.string(), error.message());
   made_ = true;
   std::error_code ignored;
   fs::remove_all(working_, ignored);

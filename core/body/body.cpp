@@ -18,11 +18,11 @@ void guess_bones(Body& body, const std::string& volume) {
   const double value = body.tissues.find(guess->label)->file_value;
   body.tissues = with_bones(std::move(body.tissues), {value});
   char text[200];
-  std::snprintf(
-      text, sizeof text,
-      ": label %.0f, which lies along %.0f %% of the long bones, is taken for it; say others with --bones or --tissues",
-      value, 100 * guess->share_of_rig);
-  body.warnings.push_back("no table says what is bone: " + volume + text);
+  std::snprintf(text, sizeof text,
+                ": label %.0f is used as bone, because it lies along %.0f %% of the long bones; name others with "
+                "--bones or --tissues",
+                value, 100 * guess->share_of_rig);
+  body.warnings.push_back("no tissue table marks bone: " + volume + text);
 }
 
 void take_skin(Body& body, const std::string& volume) {
@@ -32,9 +32,10 @@ void take_skin(Body& body, const std::string& volume) {
   body.tissues = with_skin(std::move(body.tissues), guess->label);
   char text[200];
   std::snprintf(text, sizeof text,
-                ": label %.0f, a thin sheet over %.0f %% of the surface, is taken for it; say another with --tissues",
+                ": label %.0f is used as skin, because it is a thin sheet over %.0f %% of the surface; name another "
+                "with --tissues",
                 value, 100 * guess->share_of_surface);
-  body.warnings.push_back("no table says what is skin: " + volume + text);
+  body.warnings.push_back("no tissue table marks skin: " + volume + text);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::optional<GlideSettings> glide_settings(const std::string& word, double voxe
   double most = 0;
   const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), most);
   if (error != std::errc() || stop != word.data() + word.size() || !(most > 0 && most <= kLongest))
-    throw Error("joints do not glide that way", where,
+    throw Error("this is not a value of --glide", where,
                 "write off, voxel, joint, or a length of at most 50 mm, as in 20");
   settings.most_mm = most;
   return settings;
@@ -57,7 +57,7 @@ std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joint
     stuck += (stuck.empty() ? "" : ", ") + joint.bone + " still overlaps " + joint.against + how;
   }
   if (stuck.empty() && claimed_twice == 0) return "";
-  const std::string claimed = std::to_string(claimed_twice) + " voxels are claimed by two bones: ";
+  const std::string claimed = std::to_string(claimed_twice) + " voxels are covered by two bones: ";
   if (joints && stuck.empty()) return claimed + "no joint overlaps by more than half a voxel, other bones may meet";
   return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints do not glide") +
          "; limber fit-joint, a command of its own, moves the axis of a joint";

@@ -39,11 +39,11 @@ void note_shape(const Warnings& warnings, const DeformReport& deform, const Pose
         {std::to_string(*deform.mesh->self_intersections) + " pairs of triangles of the skin cross each other"});
   if (!deform.solve || deform.solve->converged) return;
   if (deform.solve->reached == 1)
-    return warnings.note({"the pose is reached, but its shape has not settled: " + deform.solve->blocked_by});
+    return warnings.note({"the pose is reached, but the solve has not converged: " + deform.solve->blocked_by});
   char share[64];
   std::snprintf(share, sizeof share, "%.0f %% (%.1f of %.1f degrees)", 100 * deform.solve->reached,
                 deform.solve->reached * largest_angle_degrees(pose), largest_angle_degrees(pose));
-  warnings.note({"the pose could not be reached: the result is the way to it up to " + std::string(share) +
+  warnings.note({"the pose could not be reached: the result is the last pose on the way to it, " + std::string(share) +
                  (deform.solve->blocked_by.empty() ? "" : ": what stands in the way: " + deform.solve->blocked_by)});
 }
 

@@ -24,7 +24,7 @@ struct Options {
 std::vector<int> numbers_of(const std::string& text, int cell_count) {
   std::vector<bool> is_named(std::size_t(cell_count) + 1, false);
   const auto refuse = [&] {
-    throw Error("these are no cells", "--cells " + text,
+    throw Error("these are not numbers of cells", "--cells " + text,
                 "write numbers from 1 to " + std::to_string(cell_count) + ", as in 1,5,7-9");
   };
   for (std::size_t at = 0; at <= text.size();) {
@@ -72,7 +72,7 @@ void run(const Options& options) {
     const bool was_there = outcome.stored.state == CellState::WasThere;
     tell(std::to_string(done) + " of " + std::to_string(of) + "  " + text_of(batch, outcome.cell) + ": " +
          (!failure.empty() ? "FAILED: " + failure
-          : was_there      ? "there already"
+          : was_there      ? "already computed"
                            : "done"));
   };
   const std::vector<BatchOutcome> outcomes = run_batch(batch, run, progress);
@@ -90,24 +90,27 @@ void run(const Options& options) {
 }  // namespace
 
 void add_batch(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "batch",
-      "bodies x poses or frames x methods x exports; what is done is kept, and many machines may share a folder");
+  auto* command = app.add_subcommand("batch",
+                                     "computes all combinations (cells) of bodies, poses or frames, methods and "
+                                     "exports; finished cells are kept, and several machines may share a folder");
   auto options = std::make_shared<Options>();
   command->add_option("BATCH", options->batch, "description (JSON): bodies, poses, methods, exports")->required();
-  writes(
-      command->add_option("-o,--output", options->out,
-                          "folder for the cells, and for cells.csv and times.csv when all are there; made if absent"),
-      [](const std::string& folder) {
-        return OptionFiles{{}, {Path(folder) / "cells.csv", Path(folder) / "times.csv"}};
-      })
+  writes(command->add_option(
+             "-o,--output", options->out,
+             "folder for the cells, and for cells.csv and times.csv when all are computed; created if missing"),
+         [](const std::string& folder) {
+           return OptionFiles{{}, {Path(folder) / "cells.csv", Path(folder) / "times.csv"}};
+         })
       ->required();
   command->add_flag(
       "--plan", options->plan,
-      "lists the cells instead, one a line: number, state, body, pose, method and folder, with tabs between");
-  auto* cells = command->add_option("--cells", options->cells, "computes these cells only, by the numbers of --plan")
-                    ->type_name("N,N-M");
-  command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")
+      "only lists the cells, one per line: number, state, body, pose, method and folder, separated by tabs");
+  auto* cells =
+      command->add_option("--cells", options->cells, "computes only the cells with these numbers, which --plan lists")
+          ->type_name("N,N-M");
+  command
+      ->add_option("--shard", options->shard,
+                   "computes only every n-th cell, starting with the i-th, to share the work among n machines")
       ->type_name("i/n")
       ->excludes(cells);
   add_run_options(*command, options->run);

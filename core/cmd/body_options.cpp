@@ -17,7 +17,7 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
       ->type_name("L,L");
   command
       .add_option("--bone-map", options.bone_map,
-                  "JSON that says which rig bone a label follows: {\"label or label@left\": \"rig bone\"}")
+                  "JSON file with the rig bone that each label follows: {\"label or label@left\": \"rig bone\"}")
       ->type_name("FILE");
 }
 

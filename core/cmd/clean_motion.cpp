@@ -39,7 +39,7 @@ struct Options {
 };
 
 constexpr const char* kHoldForm =
-    "write it as \"left hand=X,Y,Z@FIRST-LAST\", or \"left hand@FIRST-LAST\" to hold it where it is at FIRST";
+    "write it as \"left hand=X,Y,Z@FIRST-LAST\", or \"left hand@FIRST-LAST\" to hold it at its position in frame FIRST";
 
 std::vector<double> numbers_in(std::string_view text, char between, const std::string& where) {
   std::vector<double> numbers;
@@ -87,7 +87,8 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
   constexpr double kFarthest = 1e6;  // larger coordinates are refused, mm
   for (const double one : place)
     if (std::abs(one) > kFarthest)
-      throw Error("the place is more than a kilometre away", where, "write it in millimetres of the rig's world");
+      throw Error("the position is more than 1 km from the origin", where,
+                  "write it in millimetres of the rig's world");
   return hold;
 }
 
@@ -110,7 +111,7 @@ void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, 
   for (const Plant& plant : plants)
     if (const PlantError error = error_of(plant, rig, limbs, poses); error.from_place > kOff)
       warn(limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last) +
-           ": the limb stays " + std::to_string(std::lround(error.from_place)) + " mm off its place");
+           ": the limb misses its position by " + std::to_string(std::lround(error.from_place)) + " mm");
 }
 
 // Mirrors the poses, changes their speed and repeats them, as the options say.
@@ -124,9 +125,9 @@ std::vector<Pose> changed(const Options& options, const Armature& rig, double ra
                             {.repeats = options.repeats,
                              .blend = options.seam >= 0 ? options.seam : static_cast<int>(usual),
                              .stays = options.on_the_spot});
-  print("The seam closes a gap of up to %.1f degrees%s%s; bones turn up to %.2f times as fast there.\n",
+  print("The seam blends over a difference of up to %.1f degrees%s%s; bones turn up to %.2f times as fast there.\n",
         loop.gap_degrees, loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str(), loop.haste);
-  if (loop.haste > 1.5) warn("the seam is hasty: use a take of a whole cycle, or a longer --seam");
+  if (loop.haste > 1.5) warn("bones turn too fast at the seam: use a motion of a whole cycle, or a longer --seam");
   return std::move(loop.poses);
 }
 
@@ -144,14 +145,15 @@ void clean(const Options& options) {
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
   if (limbs.empty() && !options.holds.empty())
-    throw Error("no arm or leg of the rig is known by its name", options.rig, "name its bones as in \"LeftForearm\"");
+    throw Error("no arm or leg is recognised in the rig's bone names", options.rig,
+                "name its bones as in \"LeftForearm\"");
   if (options.plant_feet && !has_legs)
-    throw Error("no leg of the rig is known by its name", options.rig, "name its bones as in \"LeftThigh\"");
+    throw Error("no leg is recognised in the rig's bone names", options.rig, "name its bones as in \"LeftThigh\"");
   std::vector<Plant> holds;
   for (const std::string& value : options.holds) holds.push_back(hold_of(value, limbs, rig, smooth));
   const auto [cleaned, plants] = clean_motion(rig, limbs, smooth, rate, options.plant_feet, holds, options.ease);
   if (options.plant_feet && plants.size() == holds.size())
-    warn("no foot was found to stand: none is low and slow for a tenth of a second");
+    warn("no standing foot was found: no foot stays low and slow for 0.1 s");
   const std::vector<Pose> written = changed(options, rig, rate, cleaned);
   write_bvh(motion_of_poses(rig, static_cast<int>(written.size()), rate, [&](int frame) { return written[frame]; }),
             options.output);
@@ -164,40 +166,42 @@ void clean(const Options& options) {
 
 void add_clean_motion(CLI::App& app) {
   auto* command =
-      app.add_subcommand("clean-motion", "a motion on a rig without tremble, with feet and hands that stay in place");
+      app.add_subcommand("clean-motion", "removes jitter from a motion on a rig, and keeps feet and hands in place");
   auto options = std::make_shared<Options>();
   options->motion.root_motion = true;
   command->add_option("RIG", options->rig, "the rig that the motion moves")->required();
-  auto* motion = command->add_option("--motion", options->motion.motion, "the take (BVH)")->required();
+  auto* motion = command->add_option("--motion", options->motion.motion, "the motion (BVH)")->required();
   add_up_option(*command, options->motion.up, motion);
-  command->add_option("--map", options->motion.map, "which joint moves which bone (default: by names)")
+  command->add_option("--map", options->motion.map, "retarget map: which joint moves which bone (default: by names)")
       ->type_name("M.json");
   add_rest_options(*command, options->motion.rests, motion, motion->get_group());
-  command->add_option("--smooth", options->smooth, "filter out movement faster than this, in Hz; 6 suits walking")
+  command->add_option("--smooth", options->smooth, "remove movement above this frequency, Hz; 6 suits walking")
       ->check(CLI::PositiveNumber);
   command->add_flag("--plant-feet", options->plant_feet, "keep each foot in place while it stands");
   command
       ->add_option("--hold", options->holds,
-                   "LIMB=X,Y,Z@FIRST-LAST: keeps the tip of left hand, right hand, left foot or right foot at a place "
-                   "(world, mm) in these frames; LIMB@FIRST-LAST: where it is at FIRST (repeatable)")
+                   "LIMB=X,Y,Z@FIRST-LAST: keeps the tip of left hand, right hand, left foot or right foot at a "
+                   "position (world, mm) in these frames; LIMB@FIRST-LAST: at its position in frame FIRST (repeatable)")
       ->type_name("HOLD")
       ->expected(1)
       ->take_all();
-  command->add_option("--ease", options->ease, "seconds over which a limb comes to its place and leaves it")
+  command->add_option("--ease", options->ease, "seconds over which a limb blends into a held position and out of it")
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
-  command->add_flag("--mirror", options->mirror, "swap left and right, and mirror the travel");
+  command->add_flag("--mirror", options->mirror, "swap left and right, and mirror the body's path");
   command->add_option("--speed", options->speed, "play this many times as fast at the same rate")
       ->check(CLI::Range(kSlowest, kFastest))
       ->capture_default_str();
   auto* loop = command
                    ->add_option("--loop", options->repeats,
-                                "play this often in all; travel and heading go on from repeat to repeat")
+                                "number of times that the motion plays in all; each repeat continues from the body's "
+                                "position and heading")
                    ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--seam", options->seam, "frames over which a seam is blended (default: those of 0.3 seconds)")
+  command->add_option("--seam", options->seam, "frames over which each seam is blended (default: 0.3 seconds)")
       ->check(CLI::Range(0, 1'000'000))
       ->needs(loop);
-  command->add_flag("--on-the-spot", options->on_the_spot, "repeat without travel and change of heading")->needs(loop);
+  command->add_flag("--on-the-spot", options->on_the_spot, "repeat in place, without travel and change of heading")
+      ->needs(loop);
   writes(command->add_option("-o,--output", options->output, "the cleaned motion, a BVH of the rig"))->required();
   command->callback([options] { clean(*options); });
 }

@@ -69,8 +69,8 @@ void check_numbers(CLI::App& command) {
   for (CLI::Option* option : command.get_options())
     for (const std::string& word : option->results())
       if (is_no_finite_number(word) && option->get_type_name() != "TEXT" && !std::filesystem::exists(word, error))
-        throw UsageError("this is no finite number", option->get_name() + " " + word,
-                         "write a number that can be reckoned with");
+        throw UsageError("this is not a finite number", option->get_name() + " " + word,
+                         "write a finite number, such as 2.5");
 }
 }  // namespace
 

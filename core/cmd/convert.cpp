@@ -54,7 +54,7 @@ void convert_volume(const Options& options) {
   CommandProgress progress(options.run.progress);
   const VolumeSummary summary = summarize_volume(options.in);
   if (!summary.is_label) {
-    if (exporter) throw Error("this is no label volume", options.in, "give one whose voxels are labels");
+    if (exporter) throw Error("this is not a label volume", options.in, "give one whose voxels are labels");
     const GreyVolume grey = read_grey_volume(options.in, progress);
     warn(grey.warnings);
     write_grey_volume(grey, options.out);
@@ -92,8 +92,8 @@ void convert(const Options& options) {
 
 void add_convert(CLI::App& app) {
   auto* command = app.add_subcommand("convert",
-                                     "a volume, rig or label table in another format, or a volume as surfaces or as "
-                                     "what a simulation takes, by file name");
+                                     "converts a volume, rig or label table to another format, or a volume to surfaces "
+                                     "or to the input of a simulation; OUT's extension selects the format");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
   writes(

@@ -36,7 +36,7 @@ std::string joined(const std::vector<std::string>& words) {
 
 void tell_cell(const Study& study, const CellOutcome& outcome, int done, int of, bool was_there, double seconds_left) {
   std::string line = std::to_string(done) + " of " + std::to_string(of) + "  " + text_of(study, outcome.cell) + ": ";
-  line += outcome.failure.empty() ? was_there ? "there already" : "done" : "FAILED: " + outcome.failure;
+  line += outcome.failure.empty() ? was_there ? "already computed" : "done" : "FAILED: " + outcome.failure;
   if (done < of && seconds_left > 0) line += ", " + minutes_text(seconds_left) + " left";
   tell(line);
 }
@@ -101,30 +101,36 @@ OptionFiles files_of_folder(const std::string& folder) {
 }  // namespace
 
 void add_experiment(CLI::App& app, const std::string& commit, const StartPictures& pictures) {
-  auto* command = app.add_subcommand(
-      "experiment",
-      "a study: poses x techniques x spacings, with tables and a report; what is done is kept, run it again to go on");
+  auto* command = app.add_subcommand("experiment",
+                                     "computes a study of poses, techniques and spacings, with tables and a report; "
+                                     "finished cells are kept, run it again to continue");
   auto options = std::make_shared<Options>();
   command
-      ->add_option("STUDY", options->study, "description (JSON), or arm: the elbow at 2, 3, 4 mm, by every technique")
+      ->add_option(
+          "STUDY", options->study,
+          "description (JSON), or the word arm: a built-in study of the elbow at 2, 3 and 4 mm, by every technique")
       ->required();
   command->add_option("DIR", options->folder,
                       "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
-  writes(command->add_option("-o,--output", options->out,
-                             "folder for cells.csv, cells.json, report.html and all that was computed; made if absent"),
+  writes(command->add_option(
+             "-o,--output", options->out,
+             "folder for cells.csv, cells.json, report.html and all that was computed; created if missing"),
          files_of_folder)
       ->required();
   command
       ->add_option("--methods", options->methods,
                    technique_words() +
-                       ", and each with -mass-exact behind it (default: as the description says; else lbs, dqs, fem "
+                       "; each also with the suffix -mass-exact (default: those of the description, or lbs, dqs, fem "
                        "and fem-contact)")
       ->delimiter(',')
       ->type_name("M,M");
-  command->add_option("--shard", options->shard, "computes every n-th cell only, from the i-th on")->type_name("i/n");
-  command->add_flag("--rating-form", options->rating_form,
-                    "also writes rating.html, on which raters score the pictures without knowing the techniques, and "
-                    "its key rating_key.csv");
+  command
+      ->add_option("--shard", options->shard,
+                   "computes only every n-th cell, starting with the i-th, to share the work among n machines")
+      ->type_name("i/n");
+  command->add_flag(
+      "--rating-form", options->rating_form,
+      "also writes rating.html, a blind rating form for the pictures, and rating_key.csv, which names the techniques");
   command
       ->add_option("--scores", options->scores,
                    "files that raters saved from rating.html: their scores and agreement are added to the report")
@@ -132,8 +138,10 @@ void add_experiment(CLI::App& app, const std::string& commit, const StartPicture
       ->type_name("FILE,FILE");
   auto* bundle = writes(command->add_option(
       "--bundle", options->bundle,
-      "new folder for the description, all inputs and the results, to compute again elsewhere and compare"));
-  command->add_flag("--without-volumes", options->without_volumes, "the bundle names volumes by their hash alone")
+      "new folder with the description, all inputs and the results, so that the study can be reproduced elsewhere"));
+  command
+      ->add_flag("--without-volumes", options->without_volumes,
+                 "do not copy volumes into the bundle, store only their hashes")
       ->needs(bundle);
   command->add_option("--expect", options->expect,
                       "expected.json of a bundle: fails unless every voxel and every figure is the same");

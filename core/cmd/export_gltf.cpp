@@ -28,7 +28,7 @@ struct Options {
 std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::string& file, const Armature& rig,
                                          const std::vector<std::shared_ptr<const Clip>>& before) {
   auto motion = std::make_shared<const Motion>(read_motion(file, options.up));
-  if (motion->frame_count == 0) throw Error("this motion has no frames", file, "choose another file");
+  if (motion->frame_count == 0) throw Error("this motion has no frames", file, "use another file");
   Clip clip = clip_of(motion, unique_clip_name(before, std::filesystem::path(file).stem().string()));
   clip.map = options.map.empty() ? match_by_names(*motion, rig) : read_retarget_map(options.map, *motion, rig);
   take_over(options.rests, clip.map);
@@ -51,7 +51,7 @@ void export_gltf(const Options& options) {
 
 void add_export_gltf(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "export-gltf", "the body's surface, skeleton and weights, and motions as animations, in one .glb");
+      "export-gltf", "exports the body's surface, skeleton and weights, and motions as animations, to one .glb file");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "W.nrrd, or a folder with Bender's weights")->required();
@@ -68,11 +68,11 @@ void add_export_gltf(CLI::App& app) {
   command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
   command
       ->add_option("--step", options->settings.step,
-                   "mm between the surface's points (default: 1/400 of the longest side)")
+                   "distance of the surface's vertices, mm (default: 1/400 of the volume's longest side)")
       ->type_name("MM")
       ->check(CLI::PositiveNumber);
   writes(command->add_option("-o,--output", options->output, "OUT.glb"))->required();
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { export_gltf(*options); });
 }

@@ -118,8 +118,8 @@ FemObject object_of(const std::string& request) {
     } else {
       const auto place = list_of(part, {3, 12});
       if (place && place->size() == 12 && std::abs(glm::determinant(linear_of(*place))) < 1e-9)
-        refuse("the matrix presses the object flat", where);
-      if (!place) refuse("\"" + part + "\" is no place: it needs 3 or 12 numbers", where);
+        refuse("the matrix is singular: it flattens the object", where);
+      if (!place) refuse("\"" + part + "\" is not a position: write 3 or 12 numbers", where);
       put_at(*place, object.surface);
     }
   }
@@ -132,27 +132,26 @@ FemObject object_of(const std::string& request) {
 void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& options) {
   command.add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
   command
-      .add_option(
-          "--quality", options->quality,
-          "fem: 8 tets across the thinnest limb that bends (draft), 12 (normal), or 24 around joints (fine); in an "
-          "adult's elbow 12, 8 and 4 mm")
+      .add_option("--quality", options->quality,
+                  "fem: resolution of the mesh: 8 tets across the thinnest bent limb (draft), 12 (normal), or 24 "
+                  "around joints (fine); tets of 12, 8 and 4 mm in an adult's elbow")
       ->check(CLI::IsMember({"draft", "normal", "fine"}));
   command.add_flag("--error-estimate", options->error_estimate,
-                   "fem: solve again with tets of 1.5 times the edge, and say how far flesh is from where ever smaller "
-                   "tets would have it; takes some 40 % longer");
+                   "fem: solve again with tets of 1.5 times the edge, and estimate the error of positions due to the "
+                   "size of the tets; takes about 40 % longer");
   command
       .add_option("--mesher", options->mesher,
-                  "fem: who fills the body's surface with tets: lattice (default) or tetgen")
+                  "fem: method that fills the body's surface with tets: lattice (default) or tetgen")
       ->check(CLI::IsMember({"lattice", "tetgen"}));
   command
       .add_option("--obstacle", options->obstacles,
-                  "fem, repeatable: a rigid object that comes to the posed body and presses its skin in. SHAPE is a "
-                  "surface (STL, OBJ, PLY, glTF), or in mm box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH or "
-                  "plane:X,Y, round the origin. @X,Y,Z moves it there, @ and 12 numbers is a matrix row by row; "
-                  "@from=X,Y,Z is the side from which it comes (else the shortest way), @from=around tightens a cuff; "
-                  "@force=NEWTON or @force=weight moves it on until it presses so")
+                  "fem, repeatable: a rigid object that is pressed against the posed body. SHAPE is a surface (STL, "
+                  "OBJ, PLY, glTF), or in mm box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH or plane:X,Y, round "
+                  "the origin. @X,Y,Z moves it there, @ and 12 numbers is a matrix row by row; @from=X,Y,Z is the "
+                  "direction from which it comes (default: the shortest way), @from=around tightens a cuff; "
+                  "@force=NEWTON or @force=weight moves it until it presses with this force")
       ->type_name("SHAPE[@PLACE][@from=..][@force=..]");
-  command.add_option("--gravity", options->gravity, "fem: the direction down; flesh sags by its weight")
+  command.add_option("--gravity", options->gravity, "fem: direction of gravity; soft tissue sags under its weight")
       ->type_name("X,Y,Z");
   writes(command.add_option("--pressure", options->pressure,
                             "fem: the pressure of obstacles on each node of the skin, as a table"))

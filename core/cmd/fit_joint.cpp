@@ -42,7 +42,7 @@ void run(const Options& options) {
 
   print("%s from %g to %g degrees: axis moved by %.1f mm, turned by %.1f degrees\n", options.bone.c_str(),
         settings.minimum_degrees, settings.maximum_degrees, fitted.moved_mm, fitted.turned_degrees);
-  print("bone in bone at the worst angle: %lld voxels before, %lld after\n",
+  print("overlap of bones at the worst angle: %lld voxels before, %lld after\n",
         static_cast<long long>(fitted.overlap_before), static_cast<long long>(fitted.overlap_after));
   if (fitted.overlap_after)
     warn("joint " + options.bone + ": " + std::to_string(fitted.overlap_after) +
@@ -55,8 +55,10 @@ void add_fit_joint(CLI::App& app) {
       app.add_subcommand("fit-joint", "moves a joint's axis so that bones do not collide, and stores it as a hinge");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--bone", options->bone, "the bone below the joint")->required();
-  command->add_option("--range", options->range, "angles in degrees that must be free, e.g. 0,90")
+  command->add_option("--bone", options->bone, "the bone whose head is the joint")->required();
+  command
+      ->add_option("--range", options->range,
+                   "range of angles, degrees, over which bones must not collide, such as 0,90")
       ->delimiter(',')
       ->expected(2);
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)"))->required();

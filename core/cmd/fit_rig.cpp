@@ -69,7 +69,7 @@ void print_fit(const AutoFit& fitted) {
     print("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", one_line(fitted.armature.bones[b].name).c_str(),
           std::string(to_string(fitted.joints[b].how)).c_str(), 100 * fitted.joints[b].confidence,
           fitted.joints[b].error, 100 * fitted.check.share[b]);
-  if (fitted.misfit_mm > 0) print("skin %.1f mm off the fitted body's, ", fitted.misfit_mm);
+  if (fitted.misfit_mm > 0) print("skin %.1f mm from the fitted body's skin, ", fitted.misfit_mm);
   print("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
 }
 
@@ -99,7 +99,8 @@ void run(const Options& options) {
 
 void add_fit_rig(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "fit-rig", "lays a rig into a volume by itself, joints found from named bones, bone, or the body's shape");
+      "fit-rig",
+      "fits a rig to a volume automatically; finds joints from named bones, bone tissue, or the body's shape");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command

@@ -83,7 +83,7 @@ void print_table(const Json& joints) {
 BodyFrames frames_for_angles(const Armature& armature, const std::string& file) {
   BodyFrames frames = body_frames(armature);
   if (joints_known_by_name(frames).empty())
-    throw Error("no bone of the rig is known by its name, so it has no joints with clinical angles", file,
+    throw Error("no bone name of the rig is recognised, so no joint has clinical angles", file,
                 "name its bones as in \"LeftThigh\", or leave --angles out");
   return frames;
 }
@@ -112,7 +112,7 @@ void print_angles(const Armature& armature, const BodyFrames& frames, const Join
     }
     if (!at_gimbal_lock(joint.joint, motions)) continue;
     const bool is_first = joint.joint == BodyJoint::Wrist || joint.joint == BodyJoint::Girdle;
-    print("%-22s at 90 degrees of %s, %s are the same rotation\n", "",
+    print("%-22s gimbal lock: at 90 degrees of %s, %s turn about the same axis\n", "",
           std::string(motion_name(joint.joint, is_first ? 0 : 1)).c_str(),
           joint.joint == BodyJoint::Wrist ? "its other motion and the forearm's pronation" : "its other motions");
   }
@@ -166,7 +166,8 @@ void run_fk(const FkOptions& options) {
 }  // namespace
 
 void add_fk(CLI::App& app) {
-  auto* command = app.add_subcommand("fk", "world positions and rotations of every joint of a rig or a motion");
+  auto* command = app.add_subcommand(
+      "fk", "prints the world positions and rotations of every joint of a rig or a motion (forward kinematics)");
   auto options = std::make_shared<FkOptions>();
   command
       ->add_option("FILE", options->file,

@@ -6,9 +6,8 @@ namespace limber::cmd {
 void add_glide_option(CLI::App& command, std::string& glide) {
   command
       .add_option("--glide", glide,
-                  "how far joints are shifted whose bones would enter each other: joint (5 percent of the shorter "
-                  "bone), voxel (no bone further than a voxel), mm, or off "
-                  "(default: joint; with --pose or --motion: voxel)")
+                  "largest shift of joints whose bones would overlap: joint (5 percent of the shorter bone), voxel (no "
+                  "bone further than a voxel), mm, or off (default: joint; with --pose or --motion: voxel)")
       ->type_name("off|voxel|joint|MM");
 }
 

@@ -96,7 +96,7 @@ void add_info(CLI::App& app) {
     std::string file;
     bool json = false;
   };
-  auto* command = app.add_subcommand("info", "what a file is: header, labels, bones, joints");
+  auto* command = app.add_subcommand("info", "prints what a file contains: header, labels, bones, joints");
   auto options = std::make_shared<Options>();
   command
       ->add_option("FILE", options->file,

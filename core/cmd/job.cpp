@@ -43,7 +43,7 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
   if (value.is_string()) {
     const std::string text = value.get<std::string>();
     if (text.find('\0') != std::string::npos)
-      throw Error("a setting holds a zero byte", job.string() + ", " + key, "take it out");
+      throw Error("a setting contains a zero byte", job.string() + ", " + key, "take it out");
     return text;
   }
   if (value.is_number()) return value.dump();
@@ -130,18 +130,17 @@ void run(const Options& options) {
 }  // namespace
 
 void add_job(CLI::App& app) {
-  auto* command = app.add_subcommand("job", "a resampling, or what one needs, described in a file");
+  auto* command = app.add_subcommand("job", "runs a command that a file describes, such as resample");
   auto options = std::make_shared<Options>();
   command
       ->add_option("JOB", options->file,
                    "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")
       ->required();
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
-  command->add_option("--memory-limit", options->memory_limit, "MB of memory it may take")
-      ->check(CLI::Range(1, 1 << 30));
-  command->add_flag("--yield", options->yields, "takes of the machine what all others leave");
-  command->add_option("--parent", options->parent, "the process that it must not outlive");
+  command->add_option("--memory-limit", options->memory_limit, "memory limit, MB")->check(CLI::Range(1, 1 << 30));
+  command->add_flag("--yield", options->yields, "run at the lowest priority");
+  command->add_option("--parent", options->parent, "process ID of the parent; the job ends with it");
   command->callback([options] { run(*options); });
 }
 

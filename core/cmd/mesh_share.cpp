@@ -15,8 +15,8 @@ std::string share_of_body(const TissueModel& model, const LabelVolume& body) {
     if (label != 0) all_mm3 += body.grid.voxel_volume(), in_body.insert(label);
   char text[240];
   std::snprintf(text, sizeof text,
-                "the mesh holds %.1f %% of the body's volume and %zu of its %zu tissues: it is what bends, not a whole "
-                "phantom; what is rigid or does not bend is not in it, and each tet has one tissue",
+                "the mesh contains only the soft tissue that bends: %.1f %% of the body's volume and %zu of its %zu "
+                "tissues; rigid and unbent parts are missing, and each tet has one tissue",
                 100 * mm3 / all_mm3, in_mesh.size(), in_body.size());
   return text;
 }

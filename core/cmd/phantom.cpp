@@ -52,7 +52,7 @@ void add_phantom(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command->add_option("SUBJECT", options->subject, "arm or body")->required()->check(CLI::IsMember({"arm", "body"}));
   command->add_option("--spacing", options->spacing, "size of a voxel in mm, 0.5 to 10 (default: arm 2, body 4)");
-  writes(command->add_option("-o,--output", options->folder, "folder for the four files; made if absent"),
+  writes(command->add_option("-o,--output", options->folder, "folder for the four files; created if missing"),
          files_of_folder)
       ->required();
   add_run_options(*command, options->run);

@@ -39,7 +39,9 @@ std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& ar
 }  // namespace
 
 void add_up_option(CLI::App& command, std::string& up, CLI::Option* motion) {
-  command.add_option("--up", up, "the axis that points up in the motion's file; auto: by how its body stands")
+  command
+      .add_option("--up", up,
+                  "the axis that points up in the motion's file; auto: guessed from the posture of its body")
       ->type_name("y|z|auto")
       ->check(CLI::IsMember({"y", "z", "auto"}))
       ->needs(motion)
@@ -51,17 +53,18 @@ Motion read_motion(const std::string& file, const std::string& up) {
   warn(motion.warnings);
   const UpGuess guess = up_axis_of(motion);
   const bool stands_along_z = guess.axis == UpAxis::Z;
-  if (stands_along_z && up == "y") warn(file + " is read with y up, but " + reason_of(guess) + ": add --up z");
+  if (stands_along_z && up == "y")
+    warn(file + " is read with y as the up axis, but " + reason_of(guess) + ": add --up z");
   return up == "z" || (up == "auto" && stands_along_z) ? y_up_from_z_up(motion) : motion;
 }
 
 void add_rest_options(CLI::App& command, RestWords& words, CLI::Option* needed, const std::string& group) {
-  const std::string which = ": T, A, anatomical, or file for as it lies (default: the map's)";
-  command.add_option("--motion-rest", words.motion, "what the motion's rest pose stands for" + which)
+  const std::string which = ": T, A, anatomical, or file: as stored (default: the retarget map's)";
+  command.add_option("--motion-rest", words.motion, "pose that the motion's rest pose is taken for" + which)
       ->type_name("POSE")
       ->needs(needed)
       ->group(group);
-  command.add_option("--rig-rest", words.rig, "what the rig's rest pose stands for" + which)
+  command.add_option("--rig-rest", words.rig, "pose that the rig's rest pose is taken for" + which)
       ->type_name("POSE")
       ->needs(needed)
       ->group(group);
@@ -84,8 +87,8 @@ CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI:
       [](const std::string& given) { return given.empty() ? std::string("write a pose's name") : std::string(); }, "");
   command
       .add_option("--joint", request.joints,
-                  "angle of a joint from the anatomical position, over the pose (repeatable): "
-                  "\"left hip flexion=90\", \"knees flexion=60\"")
+                  "angle of a joint from the anatomical position; replaces the pose's angle (repeatable): \"left hip "
+                  "flexion=90\", \"knees flexion=60\"")
       ->type_name("\"JOINT MOTION=DEG\"")
       ->expected(1)
       ->take_all()
@@ -108,12 +111,12 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
                      ->excludes(pose)
                      ->excludes(name)
                      ->group(group);
-  command.add_option("--frame", options.frame, "its frame, from 0")
+  command.add_option("--frame", options.frame, "frame of the motion, counted from 0")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber)
       ->group(group);
   add_up_option(command, options.up, motion);
-  command.add_option("--map", options.map, "which joint moves which bone (default: by names)")
+  command.add_option("--map", options.map, "retarget map: which joint moves which bone (default: by names)")
       ->type_name("M.json")
       ->needs(motion)
       ->group(group);
@@ -129,8 +132,7 @@ bool wants_pose(const PoseOptions& options) {
 
 Pose read_pose_options(const PoseOptions& options, const Armature& armature) {
   if (options.frame && options.motion.empty())
-    throw Error("--frame says which frame, but of no motion", "--frame " + std::to_string(*options.frame),
-                "add --motion F.bvh");
+    throw Error("--frame needs a motion", "--frame " + std::to_string(*options.frame), "add --motion F.bvh");
   Pose pose = rest_pose(armature);
   if (!options.pose.empty()) pose = read_pose(options.pose, armature);
   if (!options.motion.empty()) pose = poses_of_motion(options, armature, options.frame.value_or(0)).front();

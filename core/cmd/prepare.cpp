@@ -66,7 +66,7 @@ const Tissue& tissue_of(const TissueTable& tissues, const std::string& text, con
 void merge(LabelVolume& volume, TissueTable& tissues, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    throw Error("this is no pair of labels", "--merge " + text, "write A=B: every A becomes B");
+    throw Error("this is not a pair of labels", "--merge " + text, "write A=B: every A becomes B");
   const Label from = tissue_of(tissues, text.substr(0, equals), text).label;
   const std::string into = text.substr(equals + 1);
   const Label target = into == "0" || into == "air" ? Label{0} : tissue_of(tissues, into, text).label;
@@ -113,7 +113,7 @@ void warn_of_cuts(const ClosedSkin& closed) {
     if (closed.cut[side] > 0)
       warn({"skin: the body is cut by the volume's border at the " + std::string(kSides[side]) + " (" +
             std::to_string(closed.cut[side]) +
-            " voxels that are not skin) and stays open there; if it ends there, put air around it with --pad 1"});
+            " voxels that are not skin) and stays open there; if the body ends there, add air with --pad 1"});
 }
 
 LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, const Options& options) {
@@ -130,11 +130,11 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   }
   print("\n");
   if (closed.bare_bone_voxels > 0)
-    print("skin: %lld voxels of bone lie at the air and stay bone; --close-skin outward covers them\n",
+    print("skin: %lld voxels of bone touch the air and stay bone; --close-skin outward covers them\n",
           static_cast<long long>(closed.bare_bone_voxels));
   if (closed.is_padded) print("skin: the volume was grown by one voxel on every side to hold it\n");
   if (closed.enclosed_voxels > 0)
-    print("skin: %lld voxels of air are shut in by it\n", static_cast<long long>(closed.enclosed_voxels));
+    print("skin: it encloses %lld voxels of air\n", static_cast<long long>(closed.enclosed_voxels));
   return std::move(closed.volume);
 }
 
@@ -206,18 +206,17 @@ void prepare(const Options& options) {
 }  // namespace
 
 void add_prepare(CLI::App& app) {
-  auto* command = app.add_subcommand("prepare",
-                                     "makes a label volume ready; whatever is asked is done in this order: --from-ct, "
-                                     "--orient, --flip, --merge, --spacing, "
-                                     "--drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
+  auto* command =
+      app.add_subcommand("prepare",
+                         "prepares a label volume; the options are applied in this order: --from-ct, --orient, --flip, "
+                         "--merge, --spacing, --drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "label volume; with --from-ct a CT")->required();
   writes(command->add_option("-o,--output", options->out, "label volume to write; its format by extension"))
       ->required();
-  auto* from_ct = command->add_flag(
-      "--from-ct", options->from_ct,
-      "IN is a CT: labels for skin, fat, soft tissue, lung, gas and bone are made from its densities; the table and "
-      "other thin things around the body are left out");
+  auto* from_ct = command->add_flag("--from-ct", options->from_ct,
+                                    "IN is a CT: makes labels for skin, fat, soft tissue, lung, gas and bone by "
+                                    "thresholds; leaves out the table and other thin things around the body");
   command
       ->add_option("--thresholds", options->thresholds,
                    "from-ct: the Hounsfield units from which voxels belong to the body, are fat, soft tissue, bone "
@@ -227,35 +226,37 @@ void add_prepare(CLI::App& app) {
       ->type_name("BODY,FAT,SOFT,BONE")
       ->needs(from_ct);
   command->add_option("--tissues", options->tissues, "label table with names and densities");
-  command->add_option("--orient", options->orientation, "turn voxel axes to these directions exactly: LPS, RAS ...");
+  command->add_option("--orient", options->orientation, "reorient the voxel axes, without resampling: LPS, RAS ...");
   command->add_option("--flip", options->flip, "mirror the body along a world axis")
       ->check(CLI::IsMember({"x", "y", "z"}));
   command
       ->add_option("--merge", options->merges,
                    "A=B: every A becomes B; values in the file, or names; 0 is air (repeatable)")
       ->allow_extra_args(false);
-  command->add_option("--spacing", options->spacing,
-                      "new size of a voxel in mm, by largest volume share; thin layers stay closed");
-  command->add_option("--drop-specks", options->specks, "pieces of fewer voxels than this take the label around them")
+  command->add_option(
+      "--spacing", options->spacing,
+      "resample to this voxel size, mm: the label with the largest share wins; thin layers stay closed");
+  command
+      ->add_option("--drop-specks", options->specks,
+                   "replace pieces with fewer voxels than this by the label around them")
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--crop", options->crop, "take away air around the tissue");
-  command->add_option("--pad", options->pad, "voxels of air to put on every side")->check(CLI::NonNegativeNumber);
-  auto* close =
-      command
-          ->add_option("--close-skin", options->close_skin,
-                       "gives the body a closed skin of one voxel where flesh lies at the outside air: inward makes "
-                       "skin of the outermost flesh, outward of the air beside it; "
-                       "bones and air inside the body stay, and where the volume's border cuts the body it stays open")
-          ->check(CLI::IsMember({"inward", "outward"}));
+  command->add_flag("--crop", options->crop, "remove the air around the tissue");
+  command->add_option("--pad", options->pad, "voxels of air to add on every side")->check(CLI::NonNegativeNumber);
+  auto* close = command
+                    ->add_option("--close-skin", options->close_skin,
+                                 "adds a closed skin of one voxel where soft tissue touches the outside air: inward "
+                                 "turns the outermost tissue into skin, outward the air next to it; bone and enclosed "
+                                 "air do not change, and the skin stays open where the volume's border cuts the body")
+                    ->check(CLI::IsMember({"inward", "outward"}));
   command
       ->add_option("--skin-label", options->skin_label,
                    "the value or name that new skin gets (default: the nearest tissue that is skin)")
       ->needs(close);
   auto* seams = writes(
       command->add_option("--seams", options->seams,
-                          "finds where limbs touch without being one (hand on hip, thigh on thigh) and writes the "
-                          "faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed"));
-  auto* rig = command->add_option("--rig", options->rig, "seams: the rig that says what the limbs are");
+                          "finds where limbs touch without being connected (hand on hip, thigh on thigh) and writes "
+                          "the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed"));
+  auto* rig = command->add_option("--rig", options->rig, "seams: the rig whose bones define the limbs");
   seams->needs(rig);
   rig->needs(seams);
   writes(command->add_option("--statistics", options->statistics,

@@ -82,7 +82,8 @@ void CommandProgress::on_update(std::string_view stage, double fraction) {
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--threads", options.threads, "threads to use (default: every core)")->check(CLI::Range(1, 1024));
-  command.add_option("--progress", options.progress, "json: one line a step on stderr")->check(CLI::IsMember({"json"}));
+  command.add_option("--progress", options.progress, "json: print progress to stderr, one JSON line per step")
+      ->check(CLI::IsMember({"json"}));
 }
 
 }  // namespace limber::cmd

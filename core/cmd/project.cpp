@@ -60,7 +60,7 @@ void require_new(const Path& path, bool replace) {
   check_place(path);
   std::error_code unreadable;
   require(replace || !std::filesystem::exists(path, unreadable), "a file of that name is there already", path.string(),
-          "choose another name, or say --replace");
+          "use another name, or add --replace");
 }
 
 // ---- limber project NAME.limber create
@@ -79,11 +79,11 @@ void read_body_parts(const Options& options, Document& document, Progress& progr
 Document read_parts(const Options& options, Progress& progress) {
   Document document;
   require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true,
-          "tissues and weights belong to a volume", options.file, "name it behind create");
+          "tissues and weights belong to a volume", options.file, "write it after create");
   require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true,
           "weights and poses belong to a rig", options.file, "name it with --rig");
   require(options.part.empty() ? options.seams.empty() && options.bone_map.empty() : true,
-          "seams and bone maps belong to a volume", options.file, "name it behind create");
+          "seams and bone maps belong to a volume", options.file, "write it after create");
   require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map belongs to a rig", options.file,
           "name it with --rig");
   if (!options.part.empty()) read_body_parts(options, document, progress);
@@ -130,8 +130,9 @@ void verify(const Options& options) {
   const auto wrong = verify_project(options.file, progress);
   for (const std::string& line : wrong) warn(line);
   require(wrong.empty(), "the project is damaged", options.file,
-          "open an earlier copy, or keep what is whole: limber project " + options.file + " recover -o OUT.limber");
-  print("%s is whole\n", options.file.c_str());
+          "open an earlier copy, or recover the undamaged parts: limber project " + options.file +
+              " recover -o OUT.limber");
+  print("%s is undamaged\n", options.file.c_str());
 }
 
 // The chunks (stored pieces) of a document, held in memory.
@@ -184,7 +185,7 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   warn(failure);
   add_help(*chunks, options, progress);
   Project project = put_together(*chunks, options.file, progress);
-  print("%zu chunks of the damaged project are whole; what they hold is kept\n", chunks->latest_first().size());
+  print("%zu chunks of the damaged project are undamaged; their contents are kept\n", chunks->latest_first().size());
   return project;
 }
 
@@ -217,7 +218,7 @@ void recover(const Options& options) {
 template <class T>
 const T& there(const std::shared_ptr<const T>& part, const Options& options) {
   require(part != nullptr, "the project has no such part", options.file + ", " + options.part,
-          "see what it has: limber project " + options.file);
+          "list its contents: limber project " + options.file);
   return *part;
 }
 
@@ -288,17 +289,17 @@ void run(const Options& options) {
 
 void add_project(CLI::App& app) {
   auto* command =
-      app.add_subcommand("project", "creates, inspects, verifies, recovers and takes parts out of a project file");
+      app.add_subcommand("project", "creates, inspects, verifies or recovers a project file, or exports its parts");
   auto options = std::make_shared<Options>();
   writes(command->add_option("NAME", options->file, "NAME.limber"), [options](const std::string& name) {
     return options->action == "create" ? OptionFiles{{}, {name}} : OptionFiles{{name}, {}};
   })->required();
-  command->add_option("ACTION", options->action, "inspect (as without), create, verify, recover or export")
+  command->add_option("ACTION", options->action, "inspect (default), create, verify, recover or export")
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
   command->add_option("PART", options->part,
-                      "of create: a label volume; of recover: an earlier copy of the project, or the volume that it "
-                      "was made from, which may have what is lost; of export: volume, tissues, rig, weights, pose, "
-                      "motion, gltf, seams, bone-map, or a result's name");
+                      "of create: a label volume; of recover: an earlier copy of the project, or its original volume, "
+                      "from which lost parts are taken; of export: volume, tissues, rig, weights, pose, motion, gltf, "
+                      "seams, bone-map, or a result's name");
   command->add_flag("--json", options->json, "inspect as JSON");
   command->add_option("--tissues", options->tissues, "of create: tissue table");
   command->add_option("--rig", options->rig, "of create: rig");
@@ -306,14 +307,16 @@ void add_project(CLI::App& app) {
   add_body_pose_options(*command, options->body,
                         command->add_option("--pose", options->pose, "of create: pose (default: at rest)"));
   add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
-  command->add_option("--seams", options->seams,
-                      "of create: where tissue touches without being one, as 'limber prepare --seams' writes it");
-  command->add_option("--bone-map", options->bone_map, "of create: JSON that says which rig bone a label follows");
+  command->add_option(
+      "--seams", options->seams,
+      "of create: file of seams, where tissue touches without being connected, from 'limber prepare --seams'");
+  command->add_option("--bone-map", options->bone_map,
+                      "of create: JSON file with the rig bone that each label follows");
   writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
   command->add_option("--frame", options->frame, "of export pose: a frame of the shown clip, with keys and constraints")
       ->check(CLI::Range(-kFarthestFrame, kFarthestFrame));
-  command->add_flag("--replace", options->replace, "of create and recover: write over a file of that name");
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+  command->add_flag("--replace", options->replace, "of create and recover: overwrite an existing file");
+  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { run(*options); });
 }

@@ -70,11 +70,11 @@ void repair(const Options& options) {
 }  // namespace
 
 void add_repair_joint(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("repair-joint", "weights around a joint that keep skin, fat and muscle at their volumes");
+  auto* command = app.add_subcommand(
+      "repair-joint", "changes the weights around a joint so that skin, fat and muscle keep their volumes");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--bone", options->bone, "the bone below the joint")->required();
+  command->add_option("--bone", options->bone, "the bone whose head is the joint")->required();
   command->add_option("--weights", options->weights, "weights to start from (default: heat)");
   command
       ->add_option("--range", options->range, "range of the joint in degrees from rest, e.g. 0,90 (default: its own)")

@@ -56,7 +56,7 @@ VectorVolume read_field(const std::string& path, const LabelVolume& after, Repor
   note(report, field.warnings);
   if (field.grid.size != after.grid.size || glm::distance(field.grid.origin, after.grid.origin) > kSamePlaceMm ||
       glm::distance(field.grid.spacing, after.grid.spacing) > kSamePlaceMm)
-    throw Error("the field lies on another grid than the posed volume", path,
+    throw Error("the field and the posed volume have different grids", path,
                 "give the field that was written with this volume");
   return field;
 }
@@ -119,7 +119,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_report(CLI::App& app) {
-  auto* command = app.add_subcommand("report", "what changed between two label volumes");
+  auto* command = app.add_subcommand("report", "reports what changed between two label volumes");
   auto options = std::make_shared<Options>();
   command->add_option("BEFORE", options->before, "label volume")->required();
   command->add_option("AFTER", options->after, "label volume")->required();
@@ -127,15 +127,18 @@ void add_report(CLI::App& app) {
   auto* field = command
                     ->add_option("--field", options->field,
                                  "the displacement at each voxel of AFTER, as `limber resample --field` writes it, in "
-                                 "either direction: also judges what was exposed")
+                                 "either direction; adds checks of tissue that was exposed")
                     ->type_name("F.nrrd");
   auto* rig = command
                   ->add_option("--rig", options->rig,
-                               "with --field: also judges bones, limbs and bands; say the pose as for resample")
+                               "with --field: adds checks of bones, limbs and bands (tissue pulled out between parts "
+                               "of the body); give the pose as for resample")
                   ->needs(field);
-  command->add_option("--bone-map", options->bone_map, "as for resample")->type_name("FILE")->needs(rig);
+  command->add_option("--bone-map", options->bone_map, "rig bone of each label, as for resample")
+      ->type_name("FILE")
+      ->needs(rig);
   add_pose_options(*command, options->pose);
-  command->add_flag("--strict", options->strict, "exit code 5 when a gate fails");
+  command->add_flag("--strict", options->strict, "exit with code 5 when a quality gate fails");
   command->add_flag("--json", options->json, "print the report as JSON (schema limber-report/1)");
   command->callback([options] { run(*options); });
 }

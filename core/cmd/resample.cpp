@@ -155,14 +155,14 @@ void note(Report& report, const std::vector<std::string>& warnings) {
 void check_sequence(const Options& options) {
   if (options.frames.empty()) return;
   if (options.pose.motion.empty())
-    throw Error("--frames says which frames, but of no motion", "--frames " + options.frames, "add --motion F.bvh");
+    throw Error("--frames needs a motion", "--frames " + options.frames, "add --motion F.bvh");
   if (options.pose.frame)
-    throw Error("one frame or a sequence", "--frame " + std::to_string(*options.pose.frame),
+    throw Error("--frame and --frames exclude each other", "--frame " + std::to_string(*options.pose.frame),
                 "leave --frame or --frames out");
   if (options.fit_joints)
     throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints",
                 "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
-  if (!options.steps.empty()) throw Error("a sequence leaves no steps", "--steps " + options.steps, "leave it out");
+  if (!options.steps.empty()) throw Error("--steps excludes --frames", "--steps " + options.steps, "leave it out");
   for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian,
                                     options.overlap, options.mesh_out, options.landmarks, options.fem->pressure})
     if (!output.empty() && output.find(kFrame) == std::string::npos)
@@ -173,7 +173,7 @@ void check_sequence(const Options& options) {
 // Throws Error for options that need other options or exclude each other.
 void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
-    throw Error("masses are kept by what a voxel is nearly, which --nearest does not ask", "--mass-exact",
+    throw Error("--mass-exact needs interpolated labels, which --nearest does not compute", "--mass-exact",
                 "leave one of the two out");
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
@@ -326,7 +326,7 @@ bool finish(const Options& options, const Body& body, const BoundBody& bound, co
   const std::shared_ptr<const FemShape> shape = posed.posed.shape;
   Report& report = posed.report;
   if (!options.mesh_out.empty() && !shape)
-    throw Error("the pose bends nothing, so there is no mesh", options.mesh_out,
+    throw Error("the pose bends no tissue, so there is no mesh", options.mesh_out,
                 "leave --mesh-out out, or give a pose");
   if (!options.mesh_out.empty()) note(report, {share_of_body(shape->model, body.file.volume)});
 
@@ -420,78 +420,78 @@ void run(const Options& options) {
 }  // namespace
 
 void add_resample(CLI::App& app) {
-  auto* command = app.add_subcommand("resample", "a posed label volume");
+  auto* command = app.add_subcommand("resample", "poses a label volume");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
+  command->add_option("--weights", options->weights, "weights, W.nrrd (default: computed by heat diffusion)");
   add_seam_option(*command, options->seams);
   add_pose_options(*command, options->pose);
   command
       ->add_option("--frames", options->frames,
-                   "several frames of the motion, one after the other: put {frame} into the outputs' names; fem meshes "
-                   "once and starts each from the one before")
+                   "several frames of the motion, one after the other: put {frame} into the outputs' names; fem makes "
+                   "its mesh once and starts each solve from the frame before")
       ->type_name("FIRST:LAST[:STEP]");
   command->add_option("--method", options->method, method_summaries(Methods::All))
       ->capture_default_str()
       ->check(CLI::IsMember(method_words(Methods::All)));
   add_fem_options(*command, options->fem);
   writes(command->add_option("--mesh-out", options->mesh_out,
-                             "fem: the posed tets of the solve as NAME.node and NAME.ele, with the tissue that fills "
-                             "most of each, and NAME.material in the form of particle codes; or as another ending "
-                             "says. It holds the soft tissue that bends, not the whole body: how much is told"),
+                             "fem: the posed mesh as NAME.node and NAME.ele, with the main tissue of each tet, and "
+                             "NAME.material for particle codes; or in the format of another extension. It contains "
+                             "only the soft tissue that bends; its share of the body is printed"),
          files_of_mesh(options))
       ->type_name("NAME");
-  command->add_option("--mesh-unit", options->mesh_unit, "fem: of the mesh: mm, or cm as in the phantoms of ICRP 145")
+  command->add_option("--mesh-unit", options->mesh_unit, "fem: unit of the mesh: mm, or cm as in ICRP 145")
       ->check(CLI::IsMember({"mm", "cm"}));
-  writes(command->add_option(
-             "--steps", options->steps,
-             "fem: for a program that watches: the mesh as NAME.mesh, the newest step of the solve as NAME.step"),
+  writes(command->add_option("--steps", options->steps,
+                             "fem: for a program that shows the progress: the mesh as NAME.mesh, the newest step of "
+                             "the solve as NAME.step"),
          files_written_to(options, {".mesh", ".step"}))
       ->type_name("NAME");
   add_glide_option(*command, options->glide);
-  command->add_flag("--fit-joints", options->fit_joints,
-                    "first moves the axis of each bent joint, and with it the pose, so that its bones do not collide: "
-                    "as 'limber fit-joint'");
+  command->add_flag(
+      "--fit-joints", options->fit_joints,
+      "first fits the axis of each bent joint so that its bones do not collide, as 'limber fit-joint' does");
   writes(command->add_option("-o,--output", options->output, "the posed volume"), files_written_to(options))
       ->required();
-  writes(command->add_option("--report", options->report, "what changed: JSON there, a table on stdout"),
+  writes(command->add_option("--report", options->report, "report of changes: JSON file, and a table on stdout"),
          files_written_to(options));
   command->add_flag(
       "--strict", options->strict,
-      "exit code 5 when a gate fails: measures the result as for --report, writes everything all the same");
-  command->add_option("--spacing", options->spacing, "of the output, mm (default: as the input)")
+      "exit with code 5 when a quality gate fails: measures the result as for --report, and still writes all outputs");
+  command->add_option("--spacing", options->spacing, "voxel size of the output, mm (default: as the input)")
       ->check(CLI::Range(1e-9, 1e6));
-  command->add_flag("--nearest", options->nearest, "labels of the nearest rest voxel");
-  auto* mass_exact = command->add_flag(
-      "--mass-exact", options->mass_exact,
-      "soft tissues get their rest volumes: borders between them move by the fewest and least sure voxels");
+  command->add_flag("--nearest", options->nearest, "take the label of the nearest voxel at rest");
+  auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact,
+                                       "restores the rest volume of each soft tissue, by changing as few voxels at "
+                                       "tissue borders as possible, the least certain first");
   command
       ->add_option("--mass-limit", options->mass_limit,
-                   "percent of a tissue that mass-exact may make up; more is refused (default: 3)")
+                   "largest change that mass-exact may make, percent of a tissue; more is refused (default: 3)")
       ->needs(mass_exact)
       ->check(CLI::Range(0.0, 20.0));
-  writes(command->add_option("--with", options->grey, "a grey volume moved by the same map"), files_of_pair(options))
+  writes(command->add_option("--with", options->grey, "also poses a grey volume (CT, MR)"), files_of_pair(options))
       ->type_name("GREY=OUT");
-  writes(
-      command->add_option("--landmarks", options->landmarks, "points (name,x,y,z; mm, LPS) that travel with the pose"),
-      files_of_pair(options))
+  writes(command->add_option("--landmarks", options->landmarks, "also poses points (name,x,y,z; mm, LPS)"),
+         files_of_pair(options))
       ->type_name("IN.csv=OUT.csv");
   auto* field = writes(command->add_option("--field", options->field,
                                            "displacement at each posed voxel, mm, world axes (LPS), zero in air: posed "
-                                           "minus rest, from the rest place of what lies there to the voxel"),
+                                           "minus rest position of the tissue in the voxel"),
                        files_written_to(options));
   command
       ->add_option("--field-direction", options->field_direction,
-                   "of --field: to-posed (posed minus rest), or to-rest, its negative: from each posed voxel to its "
-                   "rest place, with which ITK and SimpleITK warp the rest volume into the pose")
+                   "direction of --field: to-posed (posed minus rest), or to-rest, its negative, with which ITK and "
+                   "SimpleITK warp the rest volume into the pose")
       ->capture_default_str()
       ->check(CLI::IsMember({kToPosed, kToRest}))
       ->needs(field);
-  writes(
-      command->add_option("--overlap", options->overlap,
-                          "a label volume: 1 where two places of tissue claimed a posed voxel, 2 where two bones did"),
-      files_written_to(options));
-  writes(command->add_option("--jacobian", options->jacobian, "volume ratio at each posed voxel"),
+  writes(command->add_option(
+             "--overlap", options->overlap,
+             "label volume of overlaps: 1 where two parts of tissue move into one posed voxel, 2 where two bones do"),
+         files_written_to(options));
+  writes(command->add_option("--jacobian", options->jacobian,
+                             "volume ratio at each posed voxel (Jacobian determinant; 1 = unchanged)"),
          files_written_to(options));
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });

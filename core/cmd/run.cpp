@@ -19,14 +19,16 @@ namespace limber::cmd {
 
 namespace {
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 1 the input or the request is wrong, one line says what, where and what to do; 2 usage; 3 "
-    "cancelled; "
-    "4 finite elements could not reach the pose, the outputs hold the way to it; 5 with --strict, a gate failed, the "
-    "outputs are written.";
+    "Exit codes: 0 done; 1 the input or the request is wrong, which one line explains; 2 usage; 3 cancelled; 4 the "
+    "finite element solve did not reach the pose, the outputs show the last pose that it reached; 5 with --strict, a "
+    "quality gate failed, the outputs are written.";
 }  // namespace
 
 void add_commands(CLI::App& app, const std::string& commit) {
-  app.footer(std::string(kExitCodes) + "\n\nlimber COMMAND --xml describes a command for 3D Slicer and its like.");
+  app.footer(std::string(kExitCodes) +
+             "\n"
+             "\n"
+             "limber COMMAND --xml describes a command for 3D Slicer (Slicer Execution Model).");
   app.set_version_flag("--version", LIMBER_VERSION + (commit.empty() ? "" : ", commit " + commit));
   add_batch(app);
   add_clean_motion(app);
@@ -90,11 +92,10 @@ int run_command(CLI::App& app, int argc, char** argv) {
       return told(
           "there is not enough memory for another thread: this request: use a coarser spacing or a smaller volume", 1);
     return told(std::string("the system refuses: ") + error.what() +
-                    ": try again, and report it with the command that shows it if it stays",
+                    ": try again; if it fails again, report it with the command that shows it",
                 1);
   } catch (const std::exception& error) {
-    return told(std::string("a mistake of the program itself: ") + error.what() +
-                    ": please report it with the command that shows it",
+    return told(std::string("internal error: ") + error.what() + ": please report it with the command that shows it",
                 1);
   }
 }

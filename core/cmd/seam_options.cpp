@@ -10,8 +10,8 @@ namespace limber::cmd {
 void add_seam_option(CLI::App& command, std::string& seams) {
   command
       .add_option("--seams", seams,
-                  "where tissue touches without being one, as 'limber prepare --seams' writes it, or none (default: "
-                  "those that given weights were made with, else found by itself)")
+                  "file of seams, where tissue touches without being connected, from 'limber prepare --seams'; or none "
+                  "(default: the seams that the given weights were made with, else found automatically)")
       ->type_name("FILE|none");
 }
 

@@ -98,7 +98,7 @@ class CaseReader {
     double last = 0;
     for (double offset : offsets) {
       if (!(offset >= last && offset <= double(bones.size())))
-        fail("\"influence_offsets\" do not rise", "correct them");
+        fail("\"influence_offsets\" do not ascend", "correct them");
       skin.offsets.push_back(static_cast<std::int64_t>(offset));
       last = offset;
     }
@@ -127,7 +127,7 @@ void add_skin_points(CLI::App& app) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("skin-points", "points of a skin-ref/1 case through the blend kernel");
+  auto* command = app.add_subcommand("skin-points", "prints the points of a skin-ref/1 test case, posed by blending");
   command->add_option("CASE", options->file, "JSON of schema skin-ref/1")->required();
   command->add_option("--method", options->method, method_summaries(Methods::Blends))
       ->required()

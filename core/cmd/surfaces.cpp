@@ -82,7 +82,8 @@ void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, co
 }
 
 void add_surfaces(CLI::App& app) {
-  auto* command = app.add_subcommand("surfaces", "closed, smooth surfaces of tissues that share their borders");
+  auto* command =
+      app.add_subcommand("surfaces", "writes closed, smooth surfaces of tissues; neighbours share their borders");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
@@ -91,14 +92,14 @@ void add_surfaces(CLI::App& app) {
       ->type_name("A,B");
   command
       ->add_option("--relax", options->choice.settings.relaxations,
-                   "steps of smoothing (default: 5; more is smoother, but what is thin loses volume; 0 keeps voxels "
-                   "and volumes as they are)")
+                   "steps of smoothing (default: 5; more is smoother, but thin parts lose volume; 0 keeps the voxels' "
+                   "faces and volumes)")
       ->check(CLI::Range(0, 1000));
   writes(command->add_option("-o,--output", options->output,
-                             "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (a file a tissue: OUT-NAME.stl)"),
+                             "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (one file per tissue: OUT-NAME.stl)"),
          files_of_surfaces)
       ->required();
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] {
     check_place(options->output);

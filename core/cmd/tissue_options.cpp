@@ -9,9 +9,10 @@ CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options) {
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP): names, kinds and densities");
   command
       .add_option("--properties", options.properties,
-                  "more rows for the table of dielectric properties; they go before its own")
+                  "CSV table of dielectric properties, used before the built-in one")
       ->type_name("P.csv");
-  return command.add_option("--frequency", options.frequency, "of the field, in Hz, as in 900e6")->type_name("HZ");
+  return command.add_option("--frequency", options.frequency, "frequency of the field, Hz, such as 900e6")
+      ->type_name("HZ");
 }
 
 TissueTable tissues_of(const VolumeFile& file, const std::string& table) {
@@ -23,7 +24,8 @@ TissueTable tissues_of(const VolumeFile& file, const std::string& table) {
 std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const MaterialOptions& options,
                                          const std::string& where) {
   if (!options.frequency)
-    throw Error("permittivity and conductivity go by frequency", where, "add --frequency, as in --frequency 900e6");
+    throw Error("permittivity and conductivity depend on the frequency", where,
+                "add --frequency, as in --frequency 900e6");
   TissueMaterials found = tissue_materials(tissues, read_dielectric_table(options.properties), *options.frequency);
   if (!found.unmatched.empty())
     throw Error("no dielectric properties are known of: " + joined(found.unmatched), where,

@@ -110,14 +110,15 @@ void list_tissues(const Options& options) {
 }  // namespace
 
 void add_tissues(CLI::App& app) {
-  auto* command = app.add_subcommand("tissues", "permittivity, conductivity and density of each tissue at a frequency");
+  auto* command =
+      app.add_subcommand("tissues", "lists the permittivity, conductivity and density of each tissue at a frequency");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
   add_material_options(*command, options->material)->required();
-  command->add_flag("--json", options->json, "for programs");
+  command->add_flag("--json", options->json, "print as JSON");
   writes(command->add_option("-o,--output", options->output, "the list as comma-separated values"))
       ->type_name("OUT.csv");
-  command->add_option("--progress", options->progress, "json: one line a step on stderr")
+  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { list_tissues(*options); });
 }

@@ -35,7 +35,8 @@ void print_table(const BoneParts& parts, const Armature& armature) {
   for (const auto& part : parts.parts) has_part[part.bone] = true;
   for (size_t b = 0; b < armature.bones.size(); ++b)
     if (!has_part[b])
-      print("%-28s %10s   holds the tissue around its axis\n", one_line(armature.bones[b].name).c_str(), "none");
+      print("%-28s %10s   no bone tissue: moves the soft tissue around its axis\n",
+            one_line(armature.bones[b].name).c_str(), "none");
 }
 
 // Prints the rig bone that each label of bone tissue follows, and how this rig bone was found.
@@ -107,17 +108,22 @@ void make_weights(const Options& options) {
 }  // namespace
 
 void add_weights(CLI::App& app) {
-  auto* command = app.add_subcommand("weights", "how tissue follows the bones: up to four bones and weights a voxel");
+  auto* command = app.add_subcommand(
+      "weights", "computes skin weights: for each voxel up to four bones that it follows, and their weights");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--method", options->method, "heat, geodesic or rigid")->check(CLI::IsMember(binding_words()));
+  command
+      ->add_option("--method", options->method,
+                   "method: heat (smoothest), geodesic (faster) or rigid (one bone per voxel)")
+      ->check(CLI::IsMember(binding_words()));
   add_seam_option(*command, options->seams);
   writes(command->add_option("-o,--output", options->output, "W.nrrd"))->required();
   writes(command->add_option("--bender-dir", options->bender_folder,
-                             "also write weight_NN.mha, one a bone, into this folder"),
+                             "also write weight_NN.mha, one file per bone, into this folder"),
          files_of_bender_folder);
   command->add_flag("--strict", options->strict,
-                    "exit code 5 when the inputs do not belong together, or a named bone follows another's rig bone");
+                    "exit with code 5 when the inputs do not belong together, or an anatomical bone does not follow "
+                    "its own rig bone");
   add_run_options(*command, options->run);
   command->callback([options] { make_weights(*options); });
 }

@@ -162,7 +162,7 @@ void check_options(const ResampleOptions& options) {
     if (std::find(known.begin(), known.end(), word) == known.end())
       throw Error(std::string("there is no such ") + name, word, "write " + known[1] + " or " + known[2]);
   if (options.mass_exact && options.nearest)
-    throw Error("masses are kept by what a voxel is nearly, which nearest does not ask", "mass_exact",
+    throw Error("mass_exact needs interpolated labels, which nearest does not compute", "mass_exact",
                 "leave one of the two out");
   if (options.method == kFiniteElements) return;
   if (options.contact || !options.quality.empty() || !options.mesher.empty())
@@ -300,7 +300,7 @@ void export_volume(const Volume& volume, const Path& path, std::optional<double>
   std::vector<TissueMaterial> materials;
   if (exporter->needs_frequency) {
     if (!frequency)
-      throw Error("permittivity and conductivity go by frequency", path.string(), "add frequency=900e6, in Hz");
+      throw Error("permittivity and conductivity depend on the frequency", path.string(), "add frequency=900e6, in Hz");
     TissueMaterials found = tissue_materials(volume.file->tissues, read_dielectric_table({}), *frequency);
     std::string unknown;
     for (const std::string& name : found.unmatched) unknown += (unknown.empty() ? "" : ", ") + name;
@@ -337,7 +337,7 @@ void add_bodies(py::module_& module) {
 
 tissues   names and kinds of the labels, instead of the volume's own
 bones     labels that are bone, as values in the file; without them and without a table they are found
-bone_map  {"label or label@left": "rig bone"}: which rig bone a label of bone follows)")
+bone_map  {"label or label@left": "rig bone"}: the rig bone that each label follows)")
       .def(py::init(&body_from), py::arg("volume"), py::arg("rig"), py::kw_only(), py::arg("tissues") = nullptr,
            py::arg("bones") = std::vector<double>(), py::arg("bone_map") = BoneMap())
       .def_property_readonly("volume",
@@ -354,7 +354,7 @@ bone_map  {"label or label@left": "rig bone"}: which rig bone a label of bone fo
       .def("weights", &weights_of, py::arg("method") = "heat", py::kw_only(), py::arg("seams") = py::none(),
            py::arg("progress") = py::none(), R"(Computes how tissue follows the bones.
 
-method    heat, geodesic or rigid
+method    heat (smoothest), geodesic (faster) or rigid (one bone per voxel)
 seams     where tissue touches without being connected: None (found), "none", or a file of limber prepare --seams
 progress  a function of (stage, fraction), or a tqdm bar)")
       .def("read_weights", &read_weights_of, py::arg("path"), py::kw_only(), py::arg("seams") = py::none(),
@@ -397,13 +397,13 @@ bones, weights  N x 4, in the order of Weights.voxels; the weights of a voxel ar
           py::arg("progress") = py::none(), R"(Computes the label volume of a pose; of a list of poses a list.
 
 method        lbs, dqs, mix or fem
-glide         how far joints shift whose bones would enter each other: joint, voxel, off, or mm as a string (the
-              command line takes voxel for poses from files and motions, as their feet should stay where they are)
-quality       fem: draft, normal or fine; mesher: lattice or tetgen; contact: skin touches skin
-nearest       labels of the nearest rest voxel, nothing repaired
-mass_exact    soft tissues keep their volumes
+glide         largest shift of joints whose bones would overlap: joint, voxel, off, or mm as a string (the command
+              line uses voxel for poses from files and motions, because their feet should not move)
+quality       fem: draft, normal or fine; mesher: lattice or tetgen; contact: skin presses against skin
+nearest       takes the label of the nearest voxel at rest, and repairs nothing
+mass_exact    soft tissues keep their rest volumes
 fit_joints    fits the axes of joints to the bones first
-spacing       mm of the result's voxels (default: the volume's)
+spacing       voxel size of the result, mm (default: the volume's)
 report        measures the result: PosedVolume.report
 displacement, jacobian, overlap  fill the fields of these names
 grey          float array of the volume's shape (a CT) that is posed with it

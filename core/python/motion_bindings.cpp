@@ -30,7 +30,8 @@ std::shared_ptr<Motion> read_motion_from(const Path& path, const std::string& up
   warn_python(motion.warnings);
   const UpGuess guess = up_axis_of(motion);
   if (guess.axis == UpAxis::Z && up == "y")
-    warn_python({path.string() + " is read with y up, but " + reason_of(guess) + ": read it with up=\"z\""});
+    warn_python(
+        {path.string() + " is read with y as the up axis, but " + reason_of(guess) + ": read it with up=\"z\""});
   const bool turn = up == "z" || (up == "auto" && guess.axis == UpAxis::Z);
   return std::make_shared<Motion>(turn ? y_up_from_z_up(motion) : std::move(motion));
 }

@@ -49,8 +49,8 @@ FemError estimated_error(const FemShape& fine, const FemShape& coarse, const Gri
   FemError error;
   error.coarse_tet_mm = coarse.solve.parameters.tet_mm;
   const double ratio = error.coarse_tet_mm / fine.solve.parameters.tet_mm;
-  if (!fine.solve.converged) error.unknown = "the solve did not come to the pose";
-  else if (!coarse.solve.converged) error.unknown = "the second solve, with larger tets, did not come to the pose";
+  if (!fine.solve.converged) error.unknown = "the solve did not reach the pose";
+  else if (!coarse.solve.converged) error.unknown = "the second solve, with larger tets, did not reach the pose";
   else if (!(ratio > 1)) error.unknown = "the second solve has no larger tets";
   if (!error.unknown.empty()) return error;
   const ShapeDifference difference = difference_of(fine, coarse, grid);
@@ -59,7 +59,7 @@ FemError estimated_error(const FemShape& fine, const FemShape& coarse, const Gri
   for (std::size_t i = 0; i < volume.size(); ++i) volume[i] = signed_volume(mesh.V, mesh.T.row(difference.tet[i]));
   const double whole = std::accumulate(volume.begin(), volume.end(), 0.0);
   if (!(whole > 0)) {
-    error.unknown = "the two meshes share no flesh";
+    error.unknown = "the two meshes have no soft tissue in common";
     return error;
   }
   std::vector<std::size_t> order(volume.size());

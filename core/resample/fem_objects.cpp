@@ -131,7 +131,7 @@ std::vector<FemObjects::Way> FemObjects::ways_to(const FemObject& object) const 
     ways.push_back({away_from_axis(object.surface)});
     for (const glm::dvec3& way : ways.back().of_vertex)
       if (way == glm::dvec3(0))
-        throw Error("an object with points on its axis cannot come from around", object.name,
+        throw Error("an object with points on its axis cannot tighten around a limb", object.name,
                     "give a tube or a ring, or a direction");
   } else if (object.from) {
     add(*object.from);
@@ -159,7 +159,7 @@ std::vector<ObjectSweep> FemObjects::sweeps(double reach_mm) const {
       points += 0.5 * std::pow(pieces_of(object.surface, f, reach_mm) + 1, 2);
     if (points > kMostPoints)
       throw Error("the object is too large, or has too many triangles", object.name,
-                  "keep of it what is near the body, in mm");
+                  "keep only the part near the body; coordinates are in mm");
     for (const glm::ivec3& f : object.surface.F) add_points(object.surface, f, ways, reach_mm, sweep);
   }
   return sweeps;
@@ -170,12 +170,13 @@ void FemObjects::choose(const std::vector<ObjectClearance>& clearances) {
   for (std::size_t k = 0; k < objects_.size(); ++k) {
     if (!std::isfinite(clearances[k].mm))
       throw Error(objects_[k].from || objects_[k].tightens
-                      ? "the object cannot come to its place: over a metre the body is in its way"
-                      : "the object cannot come to its place: over a metre the body is in its way from every side",
-                  objects_[k].name, "place it at the skin, or say from which side it comes, as in @from=0,-1,0");
+                      ? "the object cannot reach its position: the body blocks its way for more than 1 m"
+                      : "the object cannot reach its position: the body blocks every way for more than 1 m",
+                  objects_[k].name,
+                  "move it to the skin, or set the direction from which it comes, as in @from=0,-1,0");
     if (!clearances[k].presses)
-      throw Error("the object is not near any skin at its place", objects_[k].name,
-                  "place it at the skin, in mm, and the body not inside it");
+      throw Error("the object is not near any skin at its position", objects_[k].name,
+                  "move it to the skin, outside the body; coordinates are in mm");
     way_.push_back(std::move(ways_to(objects_[k])[clearances[k].way]));
     way_.back().clear_mm = clearances[k].mm;
   }
@@ -285,7 +286,7 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
   std::vector<double> gentle_away = away_;
   solved = move(model, pose, solved, place, settings, spacing, progress, on_step);
   if (std::exchange(solved.reached, 1) < 1)
-    solved.blocked_by = "an object stops before its place: " + solved.blocked_by;
+    solved.blocked_by = "an object stops short of its position: " + solved.blocked_by;
   for (std::size_t k = 0; k < objects_.size(); ++k)
     if (const double wanted = objects_[k].force_n + objects_[k].share_of_weight * weight_n; wanted > 0)
       asked_n_[k] = wanted;
@@ -321,7 +322,8 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
       std::snprintf(text, sizeof text, "%.60s presses with %.3g N instead of %.3g N: ", objects_[k].name.c_str(),
                     pressing(solved, k), *asked_n_[k]);
       solved.converged = false;
-      solved.blocked_by = text + (solved.blocked_by.empty() ? "no place for it was found" : solved.blocked_by);
+      solved.blocked_by =
+          text + (solved.blocked_by.empty() ? "no position with this force was found" : solved.blocked_by);
     }
   return solved;
 }

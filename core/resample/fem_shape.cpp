@@ -294,7 +294,7 @@ FemError FemSequence::error_of(const FemShape& shape, Progress& progress) {
     no_estimate_ = why_it_failed([&] {
       const std::shared_ptr<const FemShape> coarse = coarse_->next(estimate);
       if (coarse) error = estimated_error(shape, *coarse, grid_);
-      else error.unknown = "the second solve, with larger tets, has no flesh that bends";
+      else error.unknown = "the second solve, with larger tets, contains no bending tissue";
     });
   }
   if (!no_estimate_.empty()) error.unknown = no_estimate_;
@@ -321,11 +321,11 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   SolvedPose solved = solve_pose(last_.model.fem, path, angle, settings, progress, fem_.on_step, &last_.V);
   // If the pose bends joints but the solve took no step, no moving bone contains a node of the mesh.
   if (solved.steps == 0 && solved.converged && largest_angle_degrees(to) > 0)
-    throw Error("no bone that moves is as large as the mesh's tets, so nothing would follow it", "finite elements",
-                "choose a finer quality, or blend instead");
+    throw Error("every moving bone is smaller than the mesh's tets, so no tissue would follow it", "finite elements",
+                "use a finer quality, or blending");
   has_weight_ = has_weight_ || solved.reached == 1;
   if (!objects_.empty() && !is_pressed_ && solved.reached < 1)
-    solved.blocked_by += ", so the objects were not brought to the body";
+    solved.blocked_by += ", so the objects were not moved to the body";
   if (!objects_.empty() && !std::exchange(is_pressed_, is_pressed_ || solved.reached == 1) && solved.reached == 1)
     solved = objects_.press(last_.model.fem, path(1), std::move(solved), settings, spacing_, weight_n_, progress,
                             fem_.on_step);
@@ -353,7 +353,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
     return is_bone_[tissue.first] != 0;
   });  // bone tissue has no stretch: its voxels move rigidly, even inside tets that stretch
   if (fem_.estimates_error)
-    shape->solve.error = ends && !solved.converged ? FemError{.unknown = "the solve did not come to the pose"}
+    shape->solve.error = ends && !solved.converged ? FemError{.unknown = "the solve did not reach the pose"}
                                                    : error_of(*shape, progress);
   shape->seconds_solve = seconds_since(solving);
   if (ends) return shape;

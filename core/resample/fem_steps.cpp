@@ -19,7 +19,7 @@ constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
 Path with(const Path& name, const char* ending) { return name.string() + ending; }
 
 [[noreturn]] void damaged(const std::string& where) {
-  throw Error("the steps of finite elements cannot be read", where, "run the solve again");
+  throw Error("the steps of the finite element solve cannot be read", where, "run the solve again");
 }
 
 void put_places(ByteWriter& writer, const Eigen::MatrixX3d& V) {
@@ -53,7 +53,8 @@ void write_whole(const std::string& bytes, const Path& path) {
   if (!file || failure) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
-    throw Error("the steps of finite elements cannot be written", path.string(), "free some room on the disk");
+    throw Error("the steps of the finite element solve cannot be written", path.string(),
+                "free some space on the disk");
   }
 }
 

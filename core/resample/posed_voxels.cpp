@@ -291,11 +291,10 @@ class PosedVoxels {
   Error too_far(const TissueTable& tissues, Label label, double percent) const {
     const Tissue* tissue = tissues.find(label);
     char text[200];
-    std::snprintf(text, sizeof text,
-                  "%.60s would have to %s %.1f %% to keep its mass, and more than %g %% is not made up",
+    std::snprintf(text, sizeof text, "%.60s would have to %s %.1f %% to keep its mass, but at most %g %% is corrected",
                   tissue ? tissue->name.c_str() : "a tissue", percent > 0 ? "gain" : "lose", std::abs(percent),
                   settings_.mass_limit_percent);
-    return Error(text, "mass-exact", "pose by finite elements, bend less, or allow more by --mass-limit");
+    return Error(text, "mass-exact", "use finite elements, bend less, or raise --mass-limit");
   }
 
   void run_tile(const VoxelRange& range, TileCounts& counts) {

@@ -200,8 +200,7 @@ class Page {
     }
     table(rows + "</tbody>", "Each technique at " + finest() +
                                  ": the largest change over all poses with the pose that has it, the most voxels that "
-                                 "two places of the body claimed, "
-                                 "mean " +
+                                 "two parts of the body covered, mean " +
                                  time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") +
                                  ". Tissues of fewer than " + grouped(study_.gates.least_voxels) +
                                  " voxels at rest are left out.");
@@ -458,14 +457,13 @@ class Page {
     }
     html +=
         "</tbody></table><div class=\"ramp\"><span>½ and less: pressed</span><i></i><span>2 and more: "
-        "stretched</span><span class=\"gap\"><b class=\"twice\"></b> claimed by two places of the body</span><span><b "
-        "class=\"bone\"></b> claimed by two bones</span></div>";
+        "stretched</span><span class=\"gap\"><b class=\"twice\"></b> covered by two parts of the body</span><span><b "
+        "class=\"bone\"></b> covered by two bones</span></div>";
     figure(html + html_of(figures_.overlaps.legend),
            "Maps at " + escaped(pose) + ", " + finest() + ", cut " + where() +
                ". Above: volume of each posed voxel's surroundings per volume at rest (determinant of the deformation; "
-               "grey is 1). "
-               "Below: voxels that two places of the body claimed, over the tissues in dull colours; the number is of "
-               "the whole volume.",
+               "grey is 1). Below: voxels that two parts of the body covered, over the tissues in dull colours; the "
+               "number is of the whole volume.",
            "grid");
     if (figures_.close_ups.empty()) return;
 

@@ -65,7 +65,8 @@ void append(DielectricTable& table, const Path& path) {
     table.parameters.push_back(parameters_of(fields, where));
     table.sources.push_back(fields.back());
   }
-  if (!has_columns) throw Error("the table is empty", path.string(), "write a line of columns, then a row a tissue");
+  if (!has_columns)
+    throw Error("the table is empty", path.string(), "write a line of columns, then one row per tissue");
 }
 }  // namespace
 

@@ -16,7 +16,7 @@ glm::ivec2 size_of(const std::string& text) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%dx%d%c", &size.x, &size.y, &rest) != 2 || size.x < 320 || size.y < 240 ||
       size.x > 16384 || size.y > 16384)
-    throw Error("the size is not understood", text, "write WIDTHxHEIGHT, such as 1600x900");
+    throw Error("this is not a window size", text, "write WIDTHxHEIGHT, such as 1600x900");
   return size;
 }
 

@@ -18,11 +18,12 @@ void add_guide(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("guide", "writes the user guide as pages for a browser");
-  cmd::writes(command->add_option("--html", options->folder,
-                                  "folder for the pages and their pictures, begin with index.html; made if absent"),
-              [](const std::string& folder) {
-                return cmd::OptionFiles{{}, {Path(folder) / "index.html", Path(folder) / "guide.css"}};
-              })
+  cmd::writes(
+      command->add_option("--html", options->folder,
+                          "folder for the pages and their pictures; index.html is the first page; created if missing"),
+      [](const std::string& folder) {
+        return cmd::OptionFiles{{}, {Path(folder) / "index.html", Path(folder) / "guide.css"}};
+      })
       ->required();
   command->callback([options] {
     const Keymap keymap = read_keymap(asset("keymap.json"));

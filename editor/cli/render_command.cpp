@@ -74,7 +74,7 @@ glm::ivec2 size_of(const std::string& text) {
   int width = 0, height = 0, end = 0;
   if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &end) != 2 || end != static_cast<int>(text.size()) ||
       width < 1 || height < 1 || width > 8192 || height > 8192)
-    throw Error("this is no size of a picture", "--size " + text,
+    throw Error("this is not a picture size", "--size " + text,
                 "write WIDTHxHEIGHT in pixels, each 1 to 8192, as in 1280x720");
   return {width, height};
 }
@@ -97,7 +97,7 @@ Visibility visibility_of(const Options& options, const TissueTable& tissues, Vis
     int end = 0;
     if (std::sscanf(request.c_str(), "%lf=%lf%n", &label, &opacity, &end) != 2 ||
         end != static_cast<int>(request.size()) || !(opacity >= 0) || opacity > 1)
-      throw Error("this is no label and opacity", "--opacity " + request,
+      throw Error("this is not a label with an opacity", "--opacity " + request,
                   "write LABEL=OPACITY with an opacity of 0 to 1");
     look_at(visibility, tissues, label, "--opacity " + request).opacity = static_cast<float>(opacity);
   }
@@ -363,9 +363,9 @@ void check_output(const Options& options, bool figure) {
   if (figure) return check_figure_path(output);
   if (!is_video(output)) return;
   if (!options.turntable || !options.slice.empty())
-    throw Error("a video shows the body from all around", options.output, "add --turntable N, without --slice");
+    throw Error("a video needs a turntable", options.output, "add --turntable N, without --slice");
   if (options.transparent)
-    throw Error("a video has a background", options.output,
+    throw Error("a video cannot have a transparent background", options.output,
                 "leave out --transparent, or use a name that ends in .png for numbered pictures");
   require_ffmpeg(output);
 }
@@ -408,7 +408,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_render(CLI::App& app) {
-  auto* command = app.add_subcommand("render", "a picture of a volume or a project, no display needed");
+  auto* command = app.add_subcommand("render", "draws a picture of a volume or a project; needs no display");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->body.volume, "label volume or project")->required();
   cmd::writes(command->add_option("-o,--output", options->output, "PNG"), [options](const std::string& name) {
@@ -419,7 +419,7 @@ void add_render(CLI::App& app) {
       ->delimiter(',')
       ->type_name("L,L");
   command->add_option("--size", options->size, "pixels")->type_name("WxH")->capture_default_str();
-  command->add_option("--view", options->view, "the side of the body that is seen")
+  command->add_option("--view", options->view, "side of the body from which the camera looks")
       ->transform(CLI::CheckedTransformer(std::map<std::string, StandardView>{{"front", StandardView::Front},
                                                                               {"back", StandardView::Back},
                                                                               {"left", StandardView::Left},
@@ -429,15 +429,15 @@ void add_render(CLI::App& app) {
   command->add_option("--turn", options->turn, "turns the view about the vertical axis, degrees");
   command->add_option("--tilt", options->tilt, "tilts the view to look down, degrees");
   command->add_option("--zoom", options->zoom, "zoom factor; 1 shows everything")->check(CLI::Range(0.01, 100.0));
-  command->add_flag("--orthographic", options->orthographic, "without perspective");
+  command->add_flag("--orthographic", options->orthographic, "parallel projection, without perspective");
   command->add_option("--display", options->display, "solid, xray or tissue")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Display>{
           {"solid", Display::Solid}, {"xray", Display::XRay}, {"tissue", Display::Tissue}}));
   command
       ->add_option(
           "--shading", options->shading,
-          "fine (default): soft shadows and covered light by rays, as the editor shows at rest, about a second "
-          "more a picture without a graphics card; draft: as while it moves")
+          "fine (default): soft shadows and ambient occlusion by rays, as in the editor when nothing moves; about a "
+          "second longer per picture without a graphics card. draft: simple light, as in a moving view")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, Light>{{"fine", Light::Fine}, {"draft", Light::Draft}}));
   command->add_option("--hide", options->hide, "labels to hide, as numbered in the file")
@@ -445,11 +445,13 @@ void add_render(CLI::App& app) {
       ->type_name("L,L");
   command->add_option("--opacity", options->opacity, "opacity of a label in the tissue display, 0 to 1")
       ->type_name("L=A");
-  command->add_option("--clip-box", options->clip_box, "two corners, voxels: only what lies between is shown")
+  command->add_option("--clip-box", options->clip_box, "clip box by two corners, voxels: everything outside is hidden")
       ->delimiter(',')
       ->expected(6)
       ->type_name("X,Y,Z,X,Y,Z");
-  command->add_option("--clip-plane", options->clip_plane, "point and normal, mm: the normal's side is hidden")
+  command
+      ->add_option("--clip-plane", options->clip_plane,
+                   "clip plane by a point and a normal, mm: the side to which the normal points is hidden")
       ->delimiter(',')
       ->expected(6)
       ->type_name("X,Y,Z,NX,NY,NZ");
@@ -468,8 +470,8 @@ void add_render(CLI::App& app) {
   command->add_flag("--outline", options->outline, "draws only the borders of tissues in the slice");
   command
       ->add_option("--turntable", options->turntable,
-                   "draws N pictures from all around: NAME-0000.png and so on, or a video (-o NAME.mp4 or .webm, "
-                   "by ffmpeg)")
+                   "turntable: draws N pictures while the camera goes once around: NAME-0000.png and so on, or a video "
+                   "(-o NAME.mp4 or .webm; needs ffmpeg)")
       ->check(CLI::Range(1, 9999));
   command->add_flag("--transparent", options->transparent, "no background");
   command->add_flag("--light", options->light, "the light theme's background");

@@ -328,8 +328,8 @@ def problems_of(code, out, err, memory, before, after, folder):
         problems.append("exit code %d" % code)
     if memory > MEMORY_KB:
         problems.append("memory %d MB" % (memory // 1000))
-    if b"mistake of the program" in err:
-        problems.append("mistake of the program")
+    if b"internal error" in err.lower():
+        problems.append("internal error")
     told = [line for line in err.splitlines() if not line.startswith(b"limber: warning:") and not re.match(rb"\d+ of \d+  ", line)]
     if code == 1 and len(told) != 1:
         problems.append("error that is no single line")

@@ -56,7 +56,7 @@ TEST_CASE("batch: one cell that fails stops no other, what is there is kept, and
   const auto all = run_limber({"batch", batch, "-o", out});
   CHECK(all.exit_code == 1);
   CHECK(all.err.find("2 of 6 cells failed") != std::string::npos);
-  CHECK(all.err.find("an arm, +30, dqs: there already") != std::string::npos);
+  CHECK(all.err.find("an arm, +30, dqs: already computed") != std::string::npos);
   CHECK(all.err.find("an arm, no, lbs: FAILED: ") != std::string::npos);
   const Path cell = rows[4][5];
   for (const char* name : {"posed.nrrd", "jacobian.nrrd", "report.json", "job.json", "cell.json"})

@@ -146,7 +146,7 @@ TEST_CASE(
   refused({"--frames", "3:0", "-o", out}, "these are no frames");
   refused({"--frames", "0:3x", "-o", out}, "these are no frames");
   refused({"--frames", "0:100000", "-o", out}, "the motion ends before that frame");
-  refused({"--frames", "0:3", "--frame", "1", "-o", out}, "one frame or a sequence");
+  refused({"--frames", "0:3", "--frame", "1", "-o", out}, "--frame and --frames exclude each other");
   refused({"--frames", "0:3", "--fit-joints", "-o", out}, "joints are fitted to one pose");
 }
 
@@ -179,7 +179,7 @@ TEST_CASE(
   std::filesystem::remove(out);
   const auto refused = posed("90", {"--mass-exact", "--mass-limit", "0.1"});
   CHECK(refused.exit_code == 1);
-  CHECK(refused.err.find("to keep its mass, and more than 0.1 % is not made up: mass-exact: ") != std::string::npos);
+  CHECK(refused.err.find("to keep its mass, but at most 0.1 % is corrected: mass-exact: ") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(out));
   CHECK(posed("90", {"--mass-exact", "--nearest"}).exit_code == 1);
   CHECK(posed("90", {"--mass-limit", "2"}).exit_code == 2);

@@ -161,14 +161,14 @@ TEST_CASE(
   const auto rest = run_limber({"experiment", study, "-o", killed});
   INFO(rest.err);
   REQUIRE(rest.exit_code == 0);
-  CHECK(count(rest.err, ": there already") == std::size_t(kept));
+  CHECK(count(rest.err, ": already computed") == std::size_t(kept));
   CHECK(count(rest.err, ": done") == std::size_t(6 - kept));
   CHECK(cells_of(killed) == cells);
   for (const auto& entry : fs::recursive_directory_iterator(killed))
     CHECK_MESSAGE(entry.path().filename().string()[0] != '.', entry.path().string());
 
   const auto again = run_limber({"experiment", study, "-o", killed});
-  CHECK(count(again.err, ": there already") == 6);
+  CHECK(count(again.err, ": already computed") == 6);
   CHECK(cells_of(killed) == cells);
 
   // A cell's job file makes the cell's volume again.
@@ -220,7 +220,7 @@ TEST_CASE(
   const auto page_with = [&](const json& of) {
     std::ofstream(out / "sar.json") << of;
     const auto run = run_limber(command);
-    CHECK(count(run.err, ": there already") == 4);
+    CHECK(count(run.err, ": already computed") == 4);
     return run.exit_code == 0 ? read_file(out / "report.html") : run.err;
   };
   const std::string shown = page_with(sar);
@@ -257,14 +257,14 @@ TEST_CASE("experiment: shards compute each their own cells, and a run without on
   }
   const auto all = run_limber({"experiment", study, "-o", out});
   REQUIRE(all.exit_code == 0);
-  CHECK(count(all.err, ": there already") == 4);
+  CHECK(count(all.err, ": already computed") == 4);
   CHECK(cells_of(out)["cells"].size() == 4);
 
   // A pose is added to the study: only its cells are computed.
   describe(study, R"(["lbs", "dqs"])",
            R"([{"name": "+0"}, {"name": "+40", "flex": ["Forearm=40"]}, {"name": "+20", "flex": "Forearm=20"}])");
   const auto more = run_limber({"experiment", study, "-o", out});
-  CHECK(count(more.err, ": there already") == 4);
+  CHECK(count(more.err, ": already computed") == 4);
   CHECK(count(more.err, ": done") == 2);
 }
 

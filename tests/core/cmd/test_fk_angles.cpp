@@ -57,9 +57,9 @@ TEST_CASE("fk: --angles lists ranges and tells of angles beyond them, and refuse
       run_limber({"fk", rig, "--joint", "left hip flexion=140", "--joint", "left shoulder abduction=90", "--angles"});
   REQUIRE(run.exit_code == 0);
   CHECK(run.out.find("140.0   -30 to 125, beyond") != std::string::npos);
-  CHECK(run.out.find("its other motions are the same rotation") != std::string::npos);
+  CHECK(run.out.find("its other motions turn about the same axis") != std::string::npos);
   CHECK(run.out.find("-0.0") == std::string::npos);
   const ProgramRun refused = run_limber({"fk", nameless, "--angles"});
   CHECK(refused.exit_code == 1);
-  CHECK(refused.err.find("no bone of the rig is known by its name") != std::string::npos);
+  CHECK(refused.err.find("no bone name of the rig is recognised") != std::string::npos);
 }

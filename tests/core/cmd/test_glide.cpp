@@ -117,7 +117,7 @@ TEST_CASE("glide: jobs say it as the command line does, and what is no way to gl
         // "nan" and "inf" are refused by the option parser itself, with exit code 2.
         std::string_view("nan inf").find(wrong) == std::string_view::npos;
     CHECK(run.exit_code == (is_number ? 1 : 2));
-    CHECK(run.err.find(is_number ? "joints do not glide that way" : "no finite number") != std::string::npos);
+    CHECK(run.err.find(is_number ? "this is not a value of --glide" : "not a finite number") != std::string::npos);
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
     CHECK_FALSE(std::filesystem::exists(arm.out));
   }

@@ -44,7 +44,7 @@ TEST_CASE("long names: a name that no file can have is refused in one clear line
     INFO(line[0], " ", line.size() > 2 ? line[2] : "", ": ", run.err);
     CHECK(run.exit_code == 1);
     CHECK(run.err.find("filesystem error") == std::string::npos);
-    CHECK(run.err.find("mistake of the program") == std::string::npos);
+    CHECK(run.err.find("internal error") == std::string::npos);
     CHECK(run.err.find(name) != std::string::npos);
     CHECK_FALSE(std::filesystem::exists(out));
   }

@@ -162,6 +162,6 @@ TEST_CASE("printed text: a zero byte in a name is refused, where the system woul
                         R"({"command": "prepare", "volume": "volume.nrrd", "output": "cut\u0000.nrrd"})");
   const auto run = run_limber({"job", arm.folder / "job.json"});
   CHECK(run.exit_code == 1);
-  CHECK(run.err.find("a setting holds a zero byte") != std::string::npos);
+  CHECK(run.err.find("a setting contains a zero byte") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(arm.folder / "cut"));
 }

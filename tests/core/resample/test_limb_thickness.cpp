@@ -87,5 +87,5 @@ TEST_CASE("fem: where no bone that moves is as large as the tets, the user is to
   const test::BentTube tube = test::bent_tube();
   CHECK_THROWS_WITH_AS(
       resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(70), Fem{.spacing_mm = 12}),
-      doctest::Contains("choose a finer quality"), Error);
+      doctest::Contains("use a finer quality"), Error);
 }

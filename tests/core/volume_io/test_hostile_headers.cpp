@@ -135,6 +135,6 @@ TEST_CASE("hostile headers: a bone beyond any body, and numbers on the command l
       const ProgramRun run = run_limber(words);
       CAPTURE(run.err);
       CHECK(run.exit_code == 2);
-      CHECK(run.err.starts_with("limber: this is no finite number: "));
+      CHECK(run.err.starts_with("limber: this is not a finite number: "));
     }
 }

@@ -74,12 +74,12 @@ std::string failure(LimbEditor& test) {
 
 TEST_CASE("resampling: what a report tells the command line to add, the editor tells where to find") {
   const ResultFacts facts = facts_of_report(
-      R"({"warnings": ["501 voxels are claimed by two bones: Fore still overlaps Upper by 2.1 mm after a shif)"
+      R"({"warnings": ["501 voxels are covered by two bones: Fore still overlaps Upper by 2.1 mm after a shif)"
       R"(t of 2.0 mm: --glide MM allows longer shifts; limber fit-joint, a command of its own, moves the axis)"
       R"( of a joint"]})");
   REQUIRE(facts.warnings.size() == 1);
   CHECK(facts.warnings[0] ==
-        "501 voxels are claimed by two bones: Fore still overlaps Upper by 2.1 mm after a shift of 2.0 mm: Keep bones "
+        "501 voxels are covered by two bones: Fore still overlaps Upper by 2.1 mm after a shift of 2.0 mm: Keep bones "
         "apart allows longer shifts; Fit joint axis in the Rig workspace moves the axis of a joint");
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   const std::string page = read_file(folder / "both.html");
   for (const char* part :
        {"Limber results", "2 results: 1 pose, 2 techniques", "Fore 30\u00b0", "Dual quaternions, mass-exact",
-        "data:image/png;base64,", "time by the clock", "Joint limits", "claimed by two bones"}) {
+        "data:image/png;base64,", "time by the clock", "Joint limits", "covered by two bones"}) {
     INFO(std::string(part));
     CHECK(page.find(part) != std::string::npos);
   }
