@@ -125,7 +125,7 @@ void CornerPoser::replace_single(const FourPoints& rest, const CornerWeights::Fo
   }
 }
 
-// Throws the Error "the pose tears the tissue too far apart" for the first of four corners that is too far away.
+// Throws the Error "the pose moves the tissue too far away" for the first of four corners that is too far away.
 void CornerPoser::throw_torn(const FourPoints& at, std::span<const FourWeights> influences) const {
   for (int i = 0; i < 4; ++i) {
     const double furthest = std::max({std::abs(at.x[i]), std::abs(at.y[i]), std::abs(at.z[i])});
@@ -138,7 +138,7 @@ void CornerPoser::throw_torn(const FourPoints& at, std::span<const FourWeights> 
 
 // Throws an Error that names a bone whose tissue is moved too far away.
 void CornerPoser::throw_torn(int bone) const {
-  throw Error("the pose tears the tissue too far apart", "bone " + (*names_)[bone],
+  throw Error("the pose moves the tissue too far away", "bone " + (*names_)[bone],
               "check the pose and the rig, or use a coarser spacing");
 }
 

@@ -160,7 +160,7 @@ glm::ivec3 PosedLattice::base(const RigidTransform& posed_from_rest) const {
   const glm::dvec3 at = output_.from_rest(glm::dvec3(voxel) + voxel_from_world_.linear * moved);
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(at[axis]) < 1e9))
-      throw Error("the pose carries the tissue too far away",
+      throw Error("the pose moves the tissue too far away",
                   "bone " + weights_->bones()[weights_->chunk(0).front().bone[0]], "check the root translation");
   return glm::ivec3(glm::floor(at + 0.5));
 }

@@ -241,7 +241,7 @@ void PosedTets::place_nodes() {
 
 FixedPoint PosedTets::fixed(const glm::dvec3& at) const {
   if (!(std::abs(at.x) < kFurthest && std::abs(at.y) < kFurthest && std::abs(at.z) < kFurthest))
-    throw Error("the pose tears the tissue too far apart", "tissue that bends",
+    throw Error("the pose moves the tissue too far away", "bending tissue",
                 "check the pose and the rig, or use a coarser spacing");
   return {std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne)};
 }

@@ -493,7 +493,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const auto fixed_at = [](const glm::dvec3& at) {
     for (int axis = 0; axis < 3; ++axis)
       if (!(std::abs(at[axis]) < kFurthest))
-        throw Error("the pose carries the tissue too far away", "while the volume follows the pose",
+        throw Error("the pose moves the tissue too far away", "preview of the posed volume",
                     "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
@@ -667,8 +667,7 @@ void LivePreview::rasterize() {
   tiles.size = tile_of(high + 2) - tiles.first + 1;
   const glm::ivec3 first = tiles.first * kTile, size = tiles.size * kTile;
   if (double(size.x) * size.y * size.z > double(kMostNodes))
-    throw Error("the pose tears the tissue too far apart", "while the volume follows the pose",
-                "check the pose and the rig");
+    throw Error("the pose stretches the tissue too far", "preview of the posed volume", "check the pose and the rig");
   const std::int64_t count = std::int64_t{tiles.size.x} * tiles.size.y * tiles.size.z;
   const bool fresh = first != first_ || size != size_;
   tiles.dirty.assign(count, fresh);

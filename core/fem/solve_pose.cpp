@@ -33,7 +33,7 @@ Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector
 
 void check(const FemModel& model, const Eigen::MatrixX3d* start) {
   const auto wrong = [](const char* what) {
-    throw Error("a model for finite elements does not fit together", what, "give one entry for each");
+    throw Error("the lists of a finite element model differ in length", what, "give one entry for each");
   };
   if (std::ssize(model.material) != model.mesh.T.rows()) wrong("materials and tets");
   if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("held nodes and nodes");
@@ -355,7 +355,7 @@ std::string PoseSolve::at(const std::array<int, 4>& nodes, const NodePositions& 
 }
 
 std::string PoseSolve::obstacle(const FemEnergy::Bound& bound, const NodePositions& x) const {
-  if (bound.obstacle == FemEnergy::Obstacle::None) return "the solver finds no lower energy";
+  if (bound.obstacle == FemEnergy::Obstacle::None) return "the solver finds no step that lowers the energy";
   std::string what =
       bound.obstacle == FemEnergy::Obstacle::Contact ? "skin presses against skin " : "tissue is squeezed flat ";
   for (const int v : bound.node)

@@ -142,7 +142,7 @@ std::string find_fault(const TetMesh& mesh, const std::map<std::uint16_t, double
   if (!is_closed(boundary_of(mesh.T, neighbours))) return "the boundary is open";
   const auto has = region_volumes(mesh);
   const double tolerance = kVolumeTolerance * total(volumes);
-  if (!(std::abs(total(has) - total(volumes)) <= tolerance)) return "the volume is not the surface's";
+  if (!(std::abs(total(has) - total(volumes)) <= tolerance)) return "the mesh's volume differs from the surface's";
   for (const auto& [region, volume] : volumes) {
     const auto found = has.find(region);
     if (!(std::abs((found == has.end() ? 0 : found->second) - volume) <= tolerance))

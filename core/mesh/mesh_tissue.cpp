@@ -48,7 +48,7 @@ void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSetting
   result.mesh = std::move(net.mesh);
   improve(result.mesh, net, ImproveSettings{}, progress);
   if (const std::string fault = find_fault_of(result.mesh, net); !fault.empty())
-    throw Error("a tet mesh is not sound", fault, "try another spacing of nodes");
+    throw Error("the tet mesh has a fault", fault, "try another node spacing");
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ class ObjReader {
     glm::dvec3 p;
     for (int axis = 0; axis < 3; ++axis) {
       const auto number = number_of<double>(next_word(line));
-      if (!number || !std::isfinite(*number)) soup_.refuse("a vertex has not three finite numbers", "correct the file");
+      if (!number || !std::isfinite(*number))
+        soup_.refuse("a vertex does not have three finite numbers", "correct the file");
       p[axis] = *number;
     }
     soup_.add_point(p);
@@ -63,7 +64,7 @@ class ObjReader {
     for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
       const auto vertex = number_of<std::int64_t>(word.substr(0, word.find('/')));
       if (!vertex || *vertex == 0 || *vertex < -count || *vertex > kMost)
-        soup_.refuse(in_quotes(word) + " stands where a face names a vertex", "correct the file");
+        soup_.refuse(in_quotes(word) + " was found where a face needs a vertex number", "correct the file");
       if (*vertex > last_) last_ = *vertex, line_of_last_ = line_;
       corners_.push_back(static_cast<int>(*vertex > 0 ? *vertex - 1 : count + *vertex));
       soup_.check_triangles(corners_.size() - 1);  // stops at an endless face before it fills the memory

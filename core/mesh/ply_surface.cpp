@@ -99,7 +99,7 @@ class PlyReader {
     element.name = next_word(words);
     const auto rows = number_of<std::uint64_t>(next_word(words));
     if (element.name.empty() || !rows)
-      soup_.refuse("an element has not a name and a number of rows", "correct the file, or export it again");
+      soup_.refuse("an element does not have a name and a number of rows", "correct the file, or export it again");
     for (const PlyElement& other : elements_)
       if (&other != &element && other.name == element.name)
         soup_.refuse("the element " + in_quotes(element.name) + " occurs twice", "correct the file");
@@ -158,7 +158,7 @@ class PlyReader {
       axes.push_back(is_axis ? property.name[0] - 'x' : -1);
       if (is_axis) found |= 1 << axes.back();
     }
-    if (found != 7) soup_.refuse("the vertices have not x, y and z", "export the file again");
+    if (found != 7) soup_.refuse("the vertices do not have x, y and z", "export the file again");
     return axes;
   }
 
@@ -221,7 +221,7 @@ class PlyReader {
     if (format_ == PlyFormat::Ascii) {
       const std::string_view word = take_text();
       const auto value = number_of<double>(word);
-      if (!value) soup_.refuse(in_quotes(word) + " stands where a number is needed", "correct the file");
+      if (!value) soup_.refuse(in_quotes(word) + " was found where a number is needed", "correct the file");
       return *value;
     }
     char raw[8];

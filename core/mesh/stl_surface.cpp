@@ -85,16 +85,16 @@ class AsciiStl {
         state_ = step.after;
         return;
       }
-    soup_.refuse(in_quotes(words[0]) + " stands where it has no meaning", "correct the file, or export it again");
+    soup_.refuse(in_quotes(words[0]) + " has no meaning here", "correct the file, or export it again");
   }
 
   void add_vertex(const std::vector<std::string_view>& words) {
-    if (words.size() < 4) soup_.refuse("a vertex has not three numbers", "correct the file, or export it again");
+    if (words.size() < 4) soup_.refuse("a vertex does not have three numbers", "correct the file, or export it again");
     glm::dvec3 p;
     for (int axis = 0; axis < 3; ++axis) {
       const auto number = number_of<double>(words[axis + 1]);
       if (!number)
-        soup_.refuse(in_quotes(words[axis + 1]) + " stands where a vertex needs a number", "correct the file");
+        soup_.refuse(in_quotes(words[axis + 1]) + " was found where a vertex needs a number", "correct the file");
       p[axis] = *number;
     }
     if (++corners_ > 3) soup_.refuse("a facet has more than three vertices", "export it again, as triangles");

@@ -31,7 +31,7 @@ std::string name_of_problem(int code) {
   switch (code) {
     case 1: return "it ran out of memory";
     case 3: return "the surface crosses itself";
-    case 4: return "the surface has a feature too small for it";
+    case 4: return "the surface has a detail too small for TetGen";
     case 5: return "two facets of the surface lie too close together";
     default: return "it stopped with its error " + std::to_string(code);
   }
@@ -206,7 +206,7 @@ bool starts_with(const std::vector<double>& points, const std::vector<double>& b
 Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const TetrahedralizeLimits& limits,
                                       const Progress& progress) {
   if (surface.F.rows() == 0) return {std::nullopt, "the surface is empty"};
-  if (!finite(surface.V)) return {std::nullopt, "the surface has places that are no numbers"};
+  if (!finite(surface.V)) return {std::nullopt, "the surface has positions that are not finite numbers"};
   Polyhedra input{xyz_of(surface.V), {}};
   for (const auto& f : surface.F.rowwise()) input.triangles.push_back({f[0], f[1], f[2]});
   // TetGen's switches: p = fill a surface; q2/0 = circumspheres of at most twice the shortest edge, no bound on angles;

@@ -98,7 +98,7 @@ std::string failure_of(Ending ending, int status) {
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "it took too much processor time";
   if (WIFSIGNALED(status)) return "it crashed (signal " + std::to_string(WTERMSIG(status)) + ")";
   if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
-    return "it gave up (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
+    return "it failed (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
   return {};
 }
 

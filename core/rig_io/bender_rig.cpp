@@ -59,7 +59,7 @@ class VtkText {
         std::from_chars(digits.data() + (digits.starts_with('+') ? 1 : 0), digits.data() + digits.size(), value);
     if (digits.empty()) refuse(std::string("the file ends inside ") + of, "copy the whole file again");
     if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-      refuse("\"" + std::string(digits.substr(0, 40)) + "\" stands where " + of + " needs a number",
+      refuse("\"" + std::string(digits.substr(0, 40)) + "\" was found where " + of + " needs a number",
              "correct the file");
     return value;
   }
@@ -135,7 +135,7 @@ void read_lines(VtkText& in, VtkArmature& read) {
   in.count("line numbers", 3 * kMostBones);
   for (int i = 0; i < count; ++i) {
     if (in.count("points in a line", 1 << 20) != 2)
-      in.refuse("a bone's line has not two points", "write each bone as a line from head to tail");
+      in.refuse("a bone's line does not have two points", "write each bone as a line from head to tail");
     const int head = in.count("LINES", 1 << 20), tail = in.count("LINES", 1 << 20);
     read.lines.emplace_back(head, tail);
   }

@@ -254,7 +254,7 @@ glm::dmat4 parent_from_node(const Json& node, const std::string& where) {
   auto numbers = [&](const char* key, size_t count) {
     const std::vector<double> values = node[key];
     if (values.size() != count)
-      throw Error("a node's " + std::string(key) + " has not " + std::to_string(count) + " numbers", where,
+      throw Error("a node's " + std::string(key) + " does not have " + std::to_string(count) + " numbers", where,
                   "export the file again");
     return values;
   };

@@ -48,7 +48,7 @@ ObjSummary parse_obj_summary(const std::string& text, const std::string& where) 
       glm::dvec3 p;
       for (int axis = 0; axis < 3; ++axis)
         if (!read_number(take_word(line), p[axis]) || !std::isfinite(p[axis]))
-          refuse("a vertex has not three finite numbers", "correct the file");
+          refuse("a vertex does not have three finite numbers", "correct the file");
       summary.lower = summary.vertices ? glm::min(summary.lower, p) : p;
       summary.upper = summary.vertices ? glm::max(summary.upper, p) : p;
       ++summary.vertices;

@@ -86,7 +86,7 @@ Components connected_components(const LabelView& volume, const RowSet* in_rows, 
   });
   std::partial_sum(result.first_run.begin(), result.first_run.end(), result.first_run.begin());
   if (result.first_run.back() > INT32_MAX)
-    throw Error("the volume is too intricate to find its connected pieces",
+    throw Error("the volume is too complex to find its connected components",
                 std::to_string(result.first_run.back()) + " runs", "use a coarser spacing");
   result.runs.reserve(result.first_run.back());
   for (auto& runs : of_slice) {

@@ -23,8 +23,9 @@ const BlendRule kMixedBlend{
     .word = "mix",
     .label = "Mixed",
     .name = "Mixed blend",
-    .summary = "between linear and dual quaternions, then flesh gets its volume back",
-    .description = "Between linear and dual quaternions; in results flesh then gets its volume back.",
+    .summary = "between linear and dual quaternions, then restores the volume of soft tissue",
+    .description =
+        "Mixed blending: between linear and dual quaternions. Results then restore the volume of soft tissue.",
     .point = blend_one<MixedKernel, false>,
     .stretched_point = blend_one<MixedKernel, true>,
     .four_points = blend_four<MixedKernel>,

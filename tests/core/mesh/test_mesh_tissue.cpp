@@ -215,7 +215,7 @@ TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own t
         std::string::npos);
   CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("it took too long") !=
         std::string::npos);
-  CHECK(with(120, [] { std::_Exit(3); }).find("it gave up (exit code 3)") != std::string::npos);
+  CHECK(with(120, [] { std::_Exit(3); }).find("it failed (exit code 3)") != std::string::npos);
 }
 
 TEST_CASE("mesh tissue: no voxels make no mesh, and no fuss") {
@@ -307,7 +307,7 @@ TEST_CASE("mesh tissue: the quality of a mesh with a fault is seen") {
   auto volumes = region_volumes(mesh);
   CHECK(find_fault(mesh, volumes) == "");
   volumes[0] *= 1 + 1e-7;
-  CHECK(find_fault(mesh, volumes) == "the volume is not the surface's");
+  CHECK(find_fault(mesh, volumes) == "the mesh's volume differs from the surface's");
   volumes = region_volumes(mesh);
   std::swap(volumes[1], volumes[0]);
   CHECK(find_fault(mesh, volumes) == "a region's volume is not that of its surface");

@@ -222,8 +222,8 @@ TEST_CASE("surface file: damaged STL is refused with its place") {
   check_refused(binary.substr(0, 200), "a.stl", "says 4 triangles and has 2");
   check_refused(binary.substr(0, 80) + "\xff\xff\xff\xff" + binary.substr(84), "a.stl", "says 4294967295 triangles");
   check_refused(ascii.substr(0, ascii.find("vertex")), "a.stl", "ends before");
-  check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 0"), "a.stl", "not three numbers");
-  check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 O 0"), "a.stl", "\"O\" stands where a vertex needs");
+  check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 0"), "a.stl", "does not have three numbers");
+  check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 O 0"), "a.stl", "\"O\" was found where a vertex needs");
   check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 nan 0"), "a.stl", "not finite");
   check_refused(replaced(ascii, "vertex 10 0 0\n", "vertex 10 0 0\nvertex 1 1 1\n"), "a.stl", "more than three");
   check_refused(replaced(ascii, "vertex 10 0 0\n", ""), "a.stl", "line 6: ");

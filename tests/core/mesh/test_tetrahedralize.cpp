@@ -131,9 +131,9 @@ TEST_CASE(
   CHECK(why({.at_start = [] { ::raise(SIGSEGV); }}) == "it crashed (signal 11)");
   CHECK(why({.seconds = 0.05, .at_start = [] { std::this_thread::sleep_for(std::chrono::hours(1)); }}) ==
         "it took too long");
-  CHECK(why({.at_start = [] { std::_Exit(7); }}) == "it gave up (exit code 7)");
+  CHECK(why({.at_start = [] { std::_Exit(7); }}) == "it failed (exit code 7)");
   CHECK(why({.at_start = [] { std::_Exit(0); }}) == "it ended without an answer");
-  CHECK(why({.at_start = [] { throw 2; }}) == "it gave up (exit code 1)");
+  CHECK(why({.at_start = [] { throw 2; }}) == "it failed (exit code 1)");
 #ifndef LIMBER_ADDRESS_SANITIZER
   // The child takes all memory that its limit allows before TetGen asks for some.
   const auto eat = [] {
@@ -163,7 +163,7 @@ TEST_CASE("tetrahedralize: no surface, one that crosses itself, is open or has n
   refused(open);
   RegionSurface nowhere = box(10);
   nowhere.V(3, 1) = std::nan("");
-  CHECK(refused(nowhere) == "the surface has places that are no numbers");
+  CHECK(refused(nowhere) == "the surface has positions that are not finite numbers");
 }
 
 TEST_CASE("tetrahedralize: a cancel while TetGen works is heard") {

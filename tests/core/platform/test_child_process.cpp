@@ -51,8 +51,8 @@ TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite
     return answer.failure;
   };
   CHECK(why([](const Send&) -> bool { std::abort(); }) == "it crashed (signal 6)");
-  CHECK(why([](const Send&) -> bool { std::_Exit(3); }) == "it gave up (exit code 3)");
-  CHECK(why([](const Send&) { return false; }) == "it gave up (exit code 1)");
+  CHECK(why([](const Send&) -> bool { std::_Exit(3); }) == "it failed (exit code 3)");
+  CHECK(why([](const Send&) { return false; }) == "it failed (exit code 1)");
   CHECK(why([](const Send& send) { return send("01234567890", 11), true; }) == "it answered more than expected");
   CHECK(why([](const Send&) { return ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
   // This child closes its pipe and does not end.
@@ -73,7 +73,7 @@ TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite
     };
   };
   CHECK(run_in_child(takes(most / 4), 10, {.memory_bytes = most}).sent);
-  CHECK(why(takes(most * 2), {.memory_bytes = most}) == "it gave up (exit code 1)");
+  CHECK(why(takes(most * 2), {.memory_bytes = most}) == "it failed (exit code 1)");
 #endif
 }
 
