@@ -84,7 +84,7 @@ std::string GlbData::file(std::string_view description) const {
   const std::uint64_t total = 12 + 8 + text.size() + 8 + data_size;
   if (total > std::numeric_limits<std::uint32_t>::max())
     throw Error("the file would be larger than 4 GB, which glTF cannot hold", "glTF export",
-                "take less: fewer tissues, shorter clips");
+                "export fewer tissues or shorter clips");
   std::string out = "glTF";
   const auto put = [&](std::uint64_t value) {
     for (int i = 0; i < 4; ++i) out += static_cast<char>(value >> 8 * i & 255);

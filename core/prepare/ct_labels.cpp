@@ -252,7 +252,7 @@ void check(const CtThresholds& t) {
   if (t.body < t.fat && t.fat < t.soft && t.soft < t.bone && t.skin_mm >= 0) return;
   char text[160];
   std::snprintf(text, sizeof text, "body %g, fat %g, soft tissue %g, bone %g", t.body, t.fat, t.soft, t.bone);
-  throw Error("the thresholds of a CT must rise from body over fat and soft tissue to bone", text,
+  throw Error("the thresholds of a CT must ascend: body, fat, soft tissue, bone", text,
               "the usual ones are -300, -190, -30 and 200");
 }
 

@@ -234,8 +234,8 @@ Project put_together(CarvedChunks& chunks, const std::string& where, Progress& p
     const auto node = node_of(chunks, hash);
     if (!node || !node->leaves.empty() || node->nodes.empty() || node->bytes.size() < sizeof(std::uint32_t)) continue;
     if (++tried > kMostRoots) break;
-    std::vector<std::string> warnings{"the last save's contents are lost; those of the latest save there is are kept"};
-    if (!told) warnings[0] = "which save was the last is lost; the latest there is is kept";
+    std::vector<std::string> warnings{"the contents of the last save are lost; the latest readable save is recovered"};
+    if (!told) warnings[0] = "it is unknown which save was the last; the latest readable save is recovered";
     if (auto document = try_root(hash, chunks, where, warnings, progress)) {
       project.document = std::move(*document);
       project.warnings = std::move(warnings);
@@ -243,14 +243,14 @@ Project put_together(CarvedChunks& chunks, const std::string& where, Progress& p
     }
   }
   std::vector<std::string> warnings{
-      "the list of the project's parts is lost; of each kind the part written last is kept"};
+      "the list of the project's parts is lost; the latest part of each kind is recovered"};
   if (auto document = Assembly(chunks, where, progress).document(warnings)) {
     project.document = std::move(*document);
     project.warnings = std::move(warnings);
     return project;
   }
   project.warnings = {
-      "no part of the project is whole; the chunks that are stay in the new file until it is saved again"};
+      "no part of the project is complete; its undamaged chunks stay in the new file until the next save"};
   return project;
 }
 

@@ -87,8 +87,9 @@ void Database::fail(int code) const {
     case SQLITE_NOTADB: throw Error("this is not a Limber project", where_, "name a .limber file");
     case SQLITE_CORRUPT:
     case SQLITE_TOOBIG:
-      throw Error("the project is damaged", where_,
-                  "open an earlier copy, or keep what is whole: limber project " + where_ + " recover -o OUT.limber");
+      throw Error(
+          "the project is damaged", where_,
+          "open an earlier copy, or recover the undamaged parts: limber project " + where_ + " recover -o OUT.limber");
     case SQLITE_IOERR: {
       const bool reading = code == SQLITE_IOERR_READ || code == SQLITE_IOERR_SHORT_READ || code == SQLITE_IOERR_FSTAT;
       throw Error(reading ? "the project cannot be read" : "the project cannot be written", where_,
@@ -169,7 +170,7 @@ void Database::clear_journal(const Path& path) {
     const bool ours = std::filesystem::symlink_status(file, error).type() == std::filesystem::file_type::regular &&
                       begins_as_journal(file);
     if (!ours)
-      throw Error("a file stands where the project's journal goes", file.string(),
+      throw Error("another file has the name of the project's journal", file.string(),
                   "move it away, or choose another name");
     std::filesystem::remove(file, error);
     if (error) throw Error("the journal of an earlier project cannot be removed", file.string(), error.message());

@@ -387,8 +387,9 @@ class Reading {
 
  private:
   Error damaged(const std::string& what) const {
-    return {"the " + what + " in the project cannot be read: it is damaged or incomplete", where_,
-            "open an earlier copy, or keep what is whole: limber project " + where_ + " recover -o OUT.limber"};
+    return {
+        "the " + what + " in the project cannot be read: it is damaged or incomplete", where_,
+        "open an earlier copy, or recover the undamaged parts: limber project " + where_ + " recover -o OUT.limber"};
   }
 
   std::string chunk(const ChunkHash& hash, const std::string& what) {
@@ -581,7 +582,7 @@ class Reading {
     if (!lost.empty()) {
       if (lost.size() + 1 == node.leaves.size()) throw damaged("weights");
       warnings_.push_back(part_lost("weights", lost.size(), node.leaves.size() - 1) +
-                          "their voxels follow the bones of a block beside them; compute or paint them anew");
+                          "their voxels got the weights of a neighbouring block; compute or paint them again");
       fill_lost_bricks(chunks, lengths);
     }
     return {std::move(bones), std::move(chunks)};

@@ -132,10 +132,10 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
     message = out_of_memory(label);
   } catch (const std::exception& error) {
     state = JobState::Failed;
-    message = Error("a mistake of the program itself", label, std::string(error.what()) + "; please report it").what();
+    message = Error("an internal error of the program", label, std::string(error.what()) + "; please report it").what();
   } catch (...) {
     state = JobState::Failed;
-    message = Error("a mistake of the program itself", label, "please report what you did").what();
+    message = Error("an internal error of the program", label, "please report what you did").what();
   }
   job->work = {};  // the job's inputs are freed here too
 

@@ -82,7 +82,7 @@ JournalWriter::JournalWriter(Start start, DocumentWriter& writer, const OpenLog&
   std::error_code error;
   if (!start.replace) fs::create_hard_link(fresh, start.path, error);
   if (start.replace || (error && error != std::errc::file_exists)) fs::rename(fresh, start.path, error);
-  if (error) throw Error("your edits cannot be kept between saves", start.path.string(), error.message());
+  if (error) throw Error("unsaved edits cannot be written to disk", start.path.string(), error.message());
   sync_folder(start.path.parent_path());
 }
 

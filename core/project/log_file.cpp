@@ -24,7 +24,7 @@ class SystemLogFile final : public LogFile {
  private:
   void require_success(const std::error_code& error) const {
     if (!error) return;
-    throw Error("your edits cannot be kept between saves", where_,
+    throw Error("unsaved edits cannot be written to disk", where_,
                 is_disk_full(error) ? "the disk is full: free some space, or save elsewhere" : error.message());
   }
   std::string where_;

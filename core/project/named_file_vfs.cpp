@@ -26,7 +26,7 @@ struct NamedFileVfs::State {
     if (refusal.what.empty()) refusal = {std::move(what), std::move(where), std::move(what_to_do)};
   }
   void refuse_other_file(const char* path) {
-    refuse("the project asks for another file, which no project of Limber's does",
+    refuse("the project refers to another file, which a project of Limber never does",
            std::string(path ? path : "a temporary file"), "do not trust this project; open an earlier copy");
   }
 };

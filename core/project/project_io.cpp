@@ -68,7 +68,8 @@ class Store final : public ChunkSource, public ChunkSink {
 
 Error damaged(const Path& path) {
   return {"the project is damaged", path.string(),
-          "open an earlier copy, or keep what is whole: limber project " + path.string() + " recover -o OUT.limber"};
+          "open an earlier copy, or recover the undamaged parts: limber project " + path.string() +
+              " recover -o OUT.limber"};
 }
 
 // Throws Error unless the database was made by Limber, has a known version, and has exactly the two tables of a

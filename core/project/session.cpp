@@ -178,7 +178,9 @@ void Session::move_leftover_aside() {
     std::error_code error, ignored;
     if (fs::exists(aside, error)) continue;
     fs::rename(journal_path_, aside, error);
-    if (error) throw Error("what an earlier session left cannot be set aside", journal_path_.string(), error.message());
+    if (error)
+      throw Error("the unsaved edits of an earlier session cannot be moved aside", journal_path_.string(),
+                  error.message());
     fs::create_symlink(aside, folder_ / (random_name() + ".edits"), ignored);
     break;
   }
@@ -211,7 +213,7 @@ void Session::watch_project() {
   identity_.reset();
   if (leftover_) return;  // leftover edits build on the missing file, so their journal is not touched
   const Document document = last();
-  begin_journal(&document, "The project's file has gone");
+  begin_journal(&document, "The project's file is missing");
   set_message(kGone);
 }
 

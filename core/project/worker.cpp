@@ -144,7 +144,7 @@ Error death(const ProgramEnd& end, const Path& job) {
     return {"the worker was ended by the system, most likely for lack of memory", job.string(),
             "use a coarser spacing, or close other programs"};
   return {"the worker crashed", job.string() + ", " + end.signal_text(),
-          "try other settings, and please report what you asked for"};
+          "try other settings, and please report those that failed"};
 }
 
 }  // namespace

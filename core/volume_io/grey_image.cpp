@@ -81,7 +81,7 @@ std::optional<std::string> grey_image_doubt(const LabelVolume& volume, const Tis
 void require_labels(const LabelVolume& volume, const TissueTable& tissues, const Path& path) {
   if (const auto doubt = grey_image_doubt(volume, tissues))
     throw Error("this looks like a grey image, not a label volume (" + *doubt + ")", path.string(),
-                "give the labels; `limber resample --with` moves the image along");
+                "use a label volume; `limber resample --with` also poses the grey image");
 }
 
 GreyWindow usual_window(const GreyVolume& volume) {

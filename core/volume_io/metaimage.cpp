@@ -61,7 +61,7 @@ void find_data(VolumeHeader& header, std::string_view value, std::string_view re
     while (!rest.empty() && header.data_names.size() <= 65536)
       if (const auto name = trimmed(take_line(rest)); !name.empty()) header.data_names.emplace_back(name);
     if (header.data_names.empty() || header.data_names.size() > 65536)
-      throw Error("ElementDataFile = LIST names no usable list of files", where, "list one file a slice below it");
+      throw Error("ElementDataFile = LIST names no usable list of files", where, "list one file per slice below it");
   } else if (value.find('%') != std::string_view::npos && words.size() >= 3) {
     const auto from = number_of<std::int64_t>(words[1]), to = number_of<std::int64_t>(words[2]);
     const auto step = words.size() > 3 ? number_of<std::int64_t>(words[3]) : 1;

@@ -420,7 +420,7 @@ class NrrdReader {
     if (lower_case(words[0]) == "list") {
       header_.data_names = text_.data_list;
       if (header_.data_names.empty())
-        throw Error("`data file: LIST` lists no file", where_, "name one file a line below it");
+        throw Error("`data file: LIST` lists no file", where_, "name one file per line below it");
     } else if (name->find('%') != std::string::npos && words.size() >= 4) {
       const auto first = number_of<std::int64_t>(words[1]), last = number_of<std::int64_t>(words[2]),
                  step = number_of<std::int64_t>(words[3]);

@@ -221,10 +221,10 @@ std::string as_label_descriptions(const TissueTable& table) {
 
 TissueTable parse_tissue_table(const std::string& bytes, const std::string& where) {
   const auto start = trimmed(std::string_view(bytes).substr(0, 4096));
-  if (start.empty()) throw Error("the label table is empty", where, "write one label a line, or JSON");
+  if (start.empty()) throw Error("the label table is empty", where, "write one label per line, or JSON");
   auto tissues =
       start[0] == '{' || start[0] == '[' ? tissues_from_json(bytes, where) : tissues_from_lines(bytes, where);
-  if (tissues.empty()) throw Error("the label table names no label", where, "write one label a line, or JSON");
+  if (tissues.empty()) throw Error("the label table names no label", where, "write one label per line, or JSON");
 
   // When the table has several entries for a value, the last one is used.
   std::map<double, Tissue> by_value;

@@ -72,7 +72,7 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
       throw Error("the spacing along axis " + std::to_string(axis + 1) + " is " + text_of(spacing) + " mm", where,
                   "spacing must be positive and finite; correct the header");
     if (!std::isfinite(raw.origin[axis]) || std::abs(raw.origin[axis]) > 1e12)
-      throw Error("the origin is not a finite place", where, "correct the header");
+      throw Error("the origin is not a finite position", where, "correct the header");
     const double length = glm::length(raw.direction[axis]);
     if (!std::isfinite(length) || length < 1e-9 || length > 1e9)
       throw Error("the direction of axis " + std::to_string(axis + 1) + " has no finite length", where,

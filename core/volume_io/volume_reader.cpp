@@ -27,7 +27,7 @@ constexpr int kAskMilliseconds = 20;  // milliseconds between two checks whether
 constexpr int kPipeBytes = 1 << 20;
 constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a header with all its keys
 constexpr int kNotLoaded = 127;                      // exit code of a process that lacks a shared library
-constexpr const char* kHarmful = "it is damaged, or made to do harm; export or download it again";
+constexpr const char* kHarmful = "it is damaged or malicious; export or download it again";
 
 // Converts the text of an Error, "what: where: what to do", back to an Error.
 Error error_from(const std::string& text, const std::string& where) {
@@ -154,9 +154,7 @@ class Conversation {
   void require(bool holds) const {
     if (!holds) throw nonsense();
   }
-  Error out_of_memory() const {
-    return {"the file made its reader take more memory than such a file may", parsed_, kHarmful};
-  }
+  Error out_of_memory() const { return {"the file's reader exceeded its memory limit", parsed_, kHarmful}; }
 
  private:
   // Call this function after each wait for the reader, with false when nothing arrived during the wait.
@@ -176,14 +174,14 @@ class Conversation {
     }
     const auto seconds = [](double value) { return std::to_string(static_cast<long>(value)) + " s"; };
     if (processor - busy_at_sign_ > settings_.busy_seconds)
-      throw Error("the file kept its reader busy for " + seconds(settings_.busy_seconds) + " and nothing came of it",
-                  parsed_, kHarmful);
+      throw Error("the file's reader made no progress in " + seconds(settings_.busy_seconds) + " of computing", parsed_,
+                  kHarmful);
     if (std::chrono::duration<double>(now - sign_).count() > settings_.silent_seconds)
-      throw Error("the file's reader has said nothing for " + seconds(settings_.silent_seconds), parsed_,
-                  "check the disk; if that is sound, export or download the file again");
+      throw Error("the file's reader has not answered for " + seconds(settings_.silent_seconds), parsed_,
+                  "check the disk; if it has no fault, export or download the file again");
   }
 
-  Error nonsense() const { return {"the file made its reader answer nonsense", parsed_, kHarmful}; }
+  Error nonsense() const { return {"the file's reader gave an invalid answer", parsed_, kHarmful}; }
 
   // Returns the Error for a reader that closed its pipe before it had sent everything.
   Error death() {
@@ -195,9 +193,9 @@ class Conversation {
     if (!end->by_signal() && end->exit_code == kNotLoaded)
       return {"the reader of volumes cannot be started", settings_.program.string(),
               "a library that it needs is missing; install Limber again"};
-    if (end->took_too_much_time()) return {"the file made its reader take too much processor time", parsed_, kHarmful};
-    if (end->by_signal()) return {"the file made its reader crash (" + end->signal_text() + ")", parsed_, kHarmful};
-    return {"the file made its reader give up (exit code " + std::to_string(end->exit_code) + ")", parsed_, kHarmful};
+    if (end->took_too_much_time()) return {"the file's reader took too much processor time", parsed_, kHarmful};
+    if (end->by_signal()) return {"the file's reader crashed (" + end->signal_text() + ")", parsed_, kHarmful};
+    return {"the file's reader failed (exit code " + std::to_string(end->exit_code) + ")", parsed_, kHarmful};
   }
 
   const ReaderSettings& settings_;

@@ -310,7 +310,7 @@ void check_room(const ByteSource& source, const VolumeHeader& header, std::int64
   }
   if (most < bytes + header.decoded_skip)
     throw Error("the header promises " + std::to_string(bytes) + " bytes of voxels, the file holds " +
-                    std::to_string(there) + (header.encoding == Encoding::Raw ? "" : " encoded ones, too few"),
+                    std::to_string(there) + (header.encoding == Encoding::Raw ? "" : " encoded bytes, too few"),
                 source.where(), kExportAgain);
 }
 }  // namespace
@@ -346,7 +346,8 @@ struct VoxelStream::Sources {
   void open_next() {
     close();
     ++current;
-    if (current == count()) throw Error("more voxels were asked for than promised", source->where(), kExportAgain);
+    if (current == count())
+      throw Error("more voxels were requested than the header states", source->where(), kExportAgain);
     open();
   }
   void pass_decoded(std::int64_t bytes) {
@@ -354,13 +355,13 @@ struct VoxelStream::Sources {
     while (bytes > 0) {
       const std::size_t got =
           decoder->read(sink.data(), static_cast<std::size_t>(std::min<std::int64_t>(bytes, sink.size())));
-      if (got == 0) throw Error("the data end before they begin", source->where(), kExportAgain);
+      if (got == 0) throw Error("the data end before the first voxel", source->where(), kExportAgain);
       bytes -= static_cast<std::int64_t>(got);
     }
   }
   void close() {
     if (!decoder->ends_here() && header.byte_skip >= 0)
-      warnings.push_back("more data than the header promises: " + source->where() + ": the rest is passed over");
+      warnings.push_back("more data than the header promises: " + source->where() + ": the rest is ignored");
     if (header.compressed_bytes && current == 0) {
       const std::int64_t used = source->place() - data_start;
       if (*header.compressed_bytes != used)

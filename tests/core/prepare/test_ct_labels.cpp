@@ -128,7 +128,7 @@ TEST_CASE("labels of a CT: what is no CT, no body or no order of thresholds is r
   std::vector<float> sheet = air;  // 4 mm thick, like a blanket
   for (std::size_t i = 0; i < 800; ++i) sheet[3200 + i] = 40;
   CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, sheet)), doctest::Contains("no body was found"), Error);
-  CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, air), {.soft = 300}), doctest::Contains("must rise"), Error);
+  CHECK_THROWS_WITH_AS(labels_of_ct(grey_levels(grid, air), {.soft = 300}), doctest::Contains("must ascend"), Error);
 }
 
 TEST_CASE("labels of a CT: a body that reaches the borders of the image is labelled up to them") {

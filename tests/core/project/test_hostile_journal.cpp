@@ -174,7 +174,7 @@ TEST_CASE("hostile journal: a new project takes a name beside which a cut-off sa
   CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is no journal of one"));
   CHECK(message_of([&] { make_project(project); }).starts_with("the file beside the project is no journal of one"));
   fs::remove(project);
-  CHECK(message_of([&] { make_project(project); }).starts_with("a file stands where the project's journal goes"));
+  CHECK(message_of([&] { make_project(project); }).starts_with("another file has the name of the project's journal"));
   CHECK(read_file(journal) == "notes on the journal");
 }
 

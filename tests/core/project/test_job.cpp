@@ -89,7 +89,7 @@ TEST_CASE("job: whatever is thrown becomes a message, and the document stays as 
   CHECK(jobs.status(error).message == "no tissue: arm.mha: choose another volume");
   CHECK(jobs.status(memory).message.starts_with("there is not enough memory: B: "));
   CHECK(jobs.status(mistake).message.find("bad index") != std::string::npos);
-  CHECK(jobs.status(unknown).message.starts_with("a mistake of the program itself: D: "));
+  CHECK(jobs.status(unknown).message.starts_with("an internal error of the program: D: "));
   CHECK(jobs.status(edit).message.starts_with("the volume has gone"));
   CHECK(jobs.status(too_much).message.starts_with("there is not enough memory"));
   for (const JobStatus& status : jobs.statuses()) CHECK(status.state == JobState::Failed);

@@ -213,7 +213,7 @@ TEST_CASE("project: of a damaged one the parts that are whole can be kept, and v
   CHECK(same >= back.document.weights->chunk_count() - 32);  // all but one group of 32 bricks
   CHECK(same < back.document.weights->chunk_count());
   REQUIRE(back.warnings.size() == 1);
-  CHECK(back.warnings[0].find("blocks of the weights are lost: their voxels follow the bones of a block beside them") !=
+  CHECK(back.warnings[0].find("blocks of the weights are lost: their voxels got the weights of a neighbouring block") !=
         std::string::npos);
   CHECK(verify_project(path).size() == 2);
 }
