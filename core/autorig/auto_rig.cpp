@@ -327,9 +327,10 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   if (const auto guess = guess_bone_tissue(volume, tissues, long_bones)) {
     const Tissue* tissue = tissues.find(guess->label);
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "no table says what is bone: label %.0f, which lies along %.0f %% of the long bones, is taken for it",
-                  tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
+    std::snprintf(
+        text, sizeof text,
+        "no tissue table marks bone: label %.0f is used as bone, because it lies along %.0f %% of the long bones",
+        tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
     warnings.push_back(text);
     labels[guess->label] = 1;
   }
@@ -378,8 +379,8 @@ void warn_of_joints(AutoFit& result) {
   if (!doubtful.empty()) result.warnings.push_back("found with little confidence, check by eye: " + doubtful);
   if (!far_off.empty())
     result.warnings.push_back(
-        "the body is of another shape here and little tells these joints, which may lie up to some " +
-        std::to_string(std::lround(farthest)) + " mm off: " + far_off);
+        "the body's shape differs here from the known body, so these joints may be off by up to about " +
+        std::to_string(std::lround(farthest)) + " mm: " + far_off);
   if (!outside.empty()) result.warnings.push_back("bones that leave the tissue: " + outside);
 }
 
@@ -425,9 +426,8 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     else if (has_trunk(rig)) fitted = capsule_start(rig, target, progress);
   }
   if (!fitted.body) {
-    result = by_extents(
-        volume, rig,
-        kinds.empty() ? "the bones' names do not tell of a body that is known" : "the tissue has hardly any surface");
+    result = by_extents(volume, rig,
+                        kinds.empty() ? "the bones' names match no known body" : "the tissue has too little surface");
   } else {
     progress.update("fitting", 0);
     refine_by_skin(fitted, target);
@@ -460,7 +460,7 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     // diagonal.
     constexpr double kUnlike = 0.016;
     if (result.misfit_mm > kUnlike * target.length)
-      result.warnings.push_back("the tissue looks little like the body that this rig is of; check every joint by eye");
+      result.warnings.push_back("the tissue differs much from the body of this rig; check every joint by eye");
   }
   result.check = check_rig(volume, result.armature);
   warn_of_joints(result);

@@ -363,10 +363,10 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
     }
   }
   if (!unseen.empty())
-    warnings.push_back("the tissue is cut off, and beyond the cut these joints are laid on by proportion alone: " +
+    warnings.push_back("the tissue is cut off; these joints beyond the cut are positioned by body proportions only: " +
                        unseen);
   if (!doubted.empty())
-    warnings.push_back("the tissue is cut off close to these joints, which may lie far off: " + doubted);
+    warnings.push_back("the tissue is cut off close to these joints, so their positions may be far off: " + doubted);
 }
 
 }  // namespace limber

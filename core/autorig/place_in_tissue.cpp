@@ -78,7 +78,7 @@ AutoFit fitted_or_placed(const LabelVolume& volume, const TissueTable& tissues, 
   placed.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1, error_by_extents(volume)});
   placed.warnings = {
       "no joint could be found with confidence: the rig was only placed and scaled to the tissue; move its joints by "
-      "hand, or name its bones as the body's parts are named"};
+      "hand, or give its bones anatomical names"};
   return placed;
 }
 

@@ -89,7 +89,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   }
   if (islands.size() > kMostLines)
     report.warnings.push_back("no bone reaches " + std::to_string(islands.size() - kMostLines) +
-                              " smaller pieces either: each given to the bone nearest to it");
+                              " smaller pieces either; each follows its nearest bone");
 }
 
 }  // namespace limber

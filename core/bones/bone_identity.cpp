@@ -242,8 +242,8 @@ void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armat
     for (int side = 0; side < 2; ++side)
       if (bones.candidates[side].empty()) {
         const Tissue* tissue = tissues.find(label);
-        throw Error("the bone map says only one side of \"" + (tissue ? tissue->name.substr(0, 80) : std::string()) +
-                        "\", and its name does not say the other",
+        throw Error("the bone map has only one side of \"" + (tissue ? tissue->name.substr(0, 80) : std::string()) +
+                        "\", and its name does not give the other side",
                     "bone map", side == 0 ? "add the label with @left" : "add the label with @right");
       }
 }

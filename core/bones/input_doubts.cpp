@@ -56,7 +56,8 @@ Armature moved(Armature armature, const Move& move) {
 std::optional<std::string> doubt_about_grey(const LabelVolume& volume, const TissueTable& tissues) {
   const auto doubt = grey_image_doubt(volume, tissues);
   if (!doubt) return std::nullopt;
-  return "this looks like a grey image, not a label volume: " + *doubt + "; give the labels, and the image with --with";
+  return "this looks like a grey image, not a label volume: " + *doubt +
+         "; give the label volume as input, and the image with --with";
 }
 
 // Position of a rig relative to a volume: mm of the rig's length in the volume and in tissue, and the number of times
@@ -115,7 +116,7 @@ std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Ar
   const char* advice = std::max(turned, mirrored) < inside + kFitsMuchBetter
                            ? "fit it with `limber fit-rig`, or give the rig of this body"
                        : turned >= mirrored ? "negate its x and y: it seems to be in RAS axes, and Limber's are LPS"
-                                            : "mirror its x: it fits the body's other side";
+                                            : "mirror the rig along x: it fits the other side of the body";
   std::snprintf(text, sizeof text, "the rig lies outside the body: only %.0f %% of its length is in tissue; %s",
                 100 * inside, advice);
   return text;
@@ -192,7 +193,7 @@ std::optional<std::string> doubt_about_sides(const LabelVolume& volume, const Ti
   }
   if (disagree <= agree) return std::nullopt;
   return "left and right are swapped between rig and labels: \"" + example +
-         "\" lies at the rig's other side, and so do most; mirror the rig or correct the labels' names";
+         "\" is on the rig's other side, like most labels; mirror the rig or correct the labels' names";
 }
 
 // Returns a doubt if, by the volume's axes (x points to the left), the rig's left bones are to the right of its right
@@ -208,8 +209,8 @@ std::optional<std::string> doubt_about_axes(const TissueTable& tissues, const Ar
     (x(0) > x(1) ? agree : disagree) += 1;
   }
   if (disagree < 2 || agree > 0) return std::nullopt;
-  return "the rig's left bones lie at the body's right: x grows to the left in Limber's axes, which are LPS; mirror "
-         "the rig, or negate its x and y if it is in RAS axes";
+  return "the rig's left bones are on the body's right: x points to the left in Limber's axes (LPS); mirror the rig, "
+         "or negate its x and y if it is in RAS axes";
 }
 
 // Returns true if a point is beside the middle part of a rig bone, away from its joints.

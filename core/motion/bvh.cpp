@@ -109,7 +109,7 @@ class Reader {
         digits[exponent + 1] == '-')
       return 0;
     if (error != std::errc() || stop != end || !(std::abs(value) <= kLargest))
-      refuse("\"" + printable(digits) + "\" stands where " + of + " needs a finite number", "correct the file");
+      refuse("\"" + printable(digits) + "\" was found where " + of + " needs a finite number", "correct the file");
     return value;
   }
 
@@ -229,7 +229,7 @@ bool read_hierarchy(Reader& in, Motion& motion) {
     } else if (inside && same_word(word, "end")) {
       read_end_site(in, motion.joints[open.back()]);
     } else {
-      in.refuse("\"" + Reader::printable(word) + "\" stands where a joint" +
+      in.refuse("\"" + Reader::printable(word) + "\" was found where a joint" +
                     (inside ? " is described" : " or MOTION should begin"),
                 word == "}" || same_word(word, "motion") ? "correct the braces" : "correct the file");
     }
@@ -263,7 +263,7 @@ void read_motion(Reader& in, Motion& motion) {
   if (motion.frame_time < 0) in.refuse("the frame time is negative", "correct the file");
   if (motion.frame_time == 0) {
     motion.frame_time = 1.0 / 30;
-    motion.warnings.push_back("the frame time is 0; 30 frames a second are taken");
+    motion.warnings.push_back("the frame time is 0; 30 frames per second are used");
   }
   if (motion.channel_count == 0) return;
 
@@ -273,7 +273,8 @@ void read_motion(Reader& in, Motion& motion) {
     const size_t more = motion.values.size() - whole;
     if (more % row == 0) whole = motion.values.size();
     else if (more > row)
-      in.refuse("a frame has not " + std::to_string(row) + " values", "let every row hold one value for each channel");
+      in.refuse("a frame does not have " + std::to_string(row) + " values",
+                "let every row hold one value for each channel");
   }
 
   const bool cut = motion.values.size() != whole;
@@ -284,8 +285,8 @@ void read_motion(Reader& in, Motion& motion) {
     char count[32];
     *std::to_chars(count, count + sizeof count - 1, promised, std::chars_format::fixed).ptr = 0;
     motion.warnings.push_back("the file promises " + std::string(count) + " frames and holds " +
-                              std::to_string(motion.frame_count) + (cut ? " whole ones and a piece" : "") +
-                              "; the whole ones are used");
+                              std::to_string(motion.frame_count) + (cut ? " complete ones and a part of one" : "") +
+                              "; the complete ones are used");
   }
 }
 }  // namespace

@@ -169,7 +169,7 @@ void ConstraintStack::find_order() {
       found_[i].emplace(on_rig(list[i], *armature_, limbs));
       const std::vector<int> turned = constraint_rule(list[i].kind).turned(*found_[i], *armature_);
       if (share_a_bone(turned, bones_of_target(*found_[i], *armature_)))
-        throw Error("the target moves along with the constrained bone", list[i].name, "choose another target");
+        throw Error("the constrained bone moves its own target", list[i].name, "choose another target");
       if (!list[i].on) continue;
       turned_[i] = turned;
       waiting.add(i, turned, bones_read(*found_[i], *armature_, turned));
@@ -193,7 +193,7 @@ void ConstraintStack::find_order() {
 void ConstraintStack::leave_out(const std::vector<std::size_t>& circle) {
   const auto name = [&](std::size_t place) { return constraints_->list[circle[place % (circle.size() - 1)]].name; };
   for (std::size_t k = 0; k + 1 < circle.size(); ++k) {
-    problems_[circle[k]].emplace("these constraints wait for each other in a circle", name(k) + " and " + name(k + 1),
+    problems_[circle[k]].emplace("these constraints depend on each other in a cycle", name(k) + " and " + name(k + 1),
                                  "choose another target, or remove one");
     turned_[circle[k]].clear();
   }

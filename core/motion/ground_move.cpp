@@ -13,7 +13,7 @@ int only_root(const Armature& armature) {
   for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
     if (armature.bones[bone].parent < 0) root = bone, ++roots;
   if (roots != 1)
-    throw Error("the body cannot turn as one", "the rig has " + std::to_string(roots) + " root bones",
+    throw Error("the body cannot be turned as a whole", "the rig has " + std::to_string(roots) + " root bones",
                 "use a rig with one root bone");
   return root;
 }

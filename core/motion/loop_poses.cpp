@@ -21,11 +21,11 @@ void require_loop(std::size_t count, const LoopSettings& settings) {
   if (steps < 2)
     throw Error("the take is too short to be repeated", std::to_string(count) + " frames", "use three frames or more");
   if (settings.repeats < 1 || settings.repeats * steps >= kMostFrames)
-    throw Error("so many repeats cannot be made", std::to_string(settings.repeats) + " repeats",
-                "choose from 1 to " + std::to_string((kMostFrames - 1) / steps));
+    throw Error("these repeats have too many frames", std::to_string(settings.repeats) + " repeats",
+                "use 1 to " + std::to_string((kMostFrames - 1) / steps));
   if (settings.blend < 0 || settings.blend > steps)
-    throw Error("the seam cannot be blended over so many frames", std::to_string(settings.blend) + " frames",
-                "choose from 0 to " + std::to_string(steps));
+    throw Error("the blend at the seam is longer than the motion", std::to_string(settings.blend) + " frames",
+                "use 0 to " + std::to_string(steps));
 }
 
 // Removes the travel and the change of heading from a take, evenly over its frames.

@@ -42,8 +42,8 @@ RestStance stance_of_word(const std::string& word, const std::string& where) {
   for (const RestStance stance : kRestStances)
     if (same(word_of(stance))) return stance;
   if (same("supine")) return RestStance::Anatomical;
-  throw Error("\"" + word.substr(0, 60) + "\" is no rest pose", where,
-              "write T, A, anatomical, or file for as it lies");
+  throw Error("\"" + word.substr(0, 60) + "\" is not a rest pose", where,
+              "write T, A, anatomical, or file (the pose that the file stores)");
 }
 
 std::optional<glm::dvec3> direction_in(RestStance stance, const JointRole& role) {

@@ -342,7 +342,7 @@ RetargetMap match_by_names(const Motion& motion, const Armature& armature) {
   for (size_t b = 0; b < joint_of.size(); ++b)
     if (joint_of[b] >= 0) map.sources[armature.bones[b].name] = {motion.joints[joint_of[b]].name, {}};
   if (map.sources.empty())
-    throw Error("no joint of the motion is known by its name", names_of(motion),
+    throw Error("no joint name of the motion is recognised", names_of(motion),
                 "write a map file and give it with --map");
   return map;
 }

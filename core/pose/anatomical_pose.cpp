@@ -48,7 +48,7 @@ SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::s
   if (has_joint(frames, joint)) return joint;
   const std::string known = joints_of_rig(frames);
   if (known.empty())
-    throw Error("no bone of the rig is known by its name", where,
+    throw Error("no bone name of the rig is recognised", where,
                 "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
   if (is_paired(joint.joint) && joint.side == BodySide::Middle) {
     const SidedJoint left{joint.joint, BodySide::Left}, right{joint.joint, BodySide::Right};
@@ -286,7 +286,9 @@ std::string limbs_apart(const Armature& armature, const BodyFrames& frames) {
         names += (names.empty() ? "" : ", ") + armature.bones[static_cast<std::size_t>(*below)].name + " from " +
                  armature.bones[static_cast<std::size_t>(*above)].name;
     }
-  return names.empty() ? "" : "bones of limbs do not hang from the bone above them and stay behind: " + names;
+  return names.empty()
+             ? ""
+             : "these limb bones are not children of the bone above them, so they do not move with it: " + names;
 }
 
 std::vector<int> bones_of_joints(const BodyFrames& frames, const JointAngles& angles) {

@@ -21,7 +21,8 @@ FlexRequest parse_flex_request(const std::string& request, const std::string& wh
   const auto [stop, error] = std::from_chars(begin, end, degrees);
   const bool is_number = error == std::errc() && stop == end;
   if (equals == 0 || !is_number || !(std::abs(degrees) <= kMostDegrees))
-    throw Error("this is no flex", where + " " + request, "write BONE=DEG from -360 to 360, as in Forearm=45");
+    throw Error("this is not a value of --flex", where + " " + request,
+                "write BONE=DEG from -360 to 360, as in Forearm=45");
   return {request.substr(0, equals), degrees};
 }
 

@@ -320,7 +320,7 @@ void add_joint_request(JointAngles& angles, const std::string& request, const st
 
 void add_joint_angle(JointAngles& angles, const std::string& asked, double degrees, const std::string& where) {
   if (!(std::abs(degrees) <= kMostDegrees))
-    throw Error("this is no angle of a joint", where,
+    throw Error("this is not the angle of a joint", where,
                 "write JOINT MOTION=DEGREES, from -360 to 360, as in \"left hip flexion=90\"");
   const std::vector<std::string> words = words_of(asked);
 

@@ -37,7 +37,7 @@ std::vector<double> numbers(const Json& value, size_t count, const char* key, co
 glm::dquat unit(const glm::dquat& q, const std::string& where) {
   const double length = glm::length(q);
   if (!(length > 1e-9) || !std::isfinite(length))
-    throw Error("the rotation is not a quaternion that can be made unit", where, "give w, x, y, z, not all zero");
+    throw Error("the quaternion cannot be normalised", where, "give w, x, y, z, not all zero");
   // Keeps a quaternion of unit length bit for bit, so that a file that was written reads back unchanged.
   return std::abs(length - 1) < 1e-15 ? q : q / length;
 }

@@ -149,8 +149,8 @@ Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec
 Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to) {
   const Bone &first = armature.bones.at(from.bone), &last = armature.bones.at(to.bone);
   if (glm::distance(place_of(armature, from), place_of(armature, to)) <= kTouching)
-    throw Error("the joints meet: there is nothing to fill", first.name + " and " + last.name,
-                "choose bones that lie apart");
+    throw Error("both joints are at one position: no bone fits between them", first.name + " and " + last.name,
+                "select bones that lie apart");
   Armature next = extruded(armature, from, place_of(armature, to));
   int root = from.bone;
   while (armature.bones[root].parent >= 0) root = armature.bones[root].parent;
@@ -257,7 +257,7 @@ Armature parented(const Armature& armature, const std::vector<int>& bones, int p
     if (bone == parent) continue;
     for (int above = parent; above >= 0; above = armature.bones.at(above).parent)
       if (above == bone)
-        throw Error("a bone cannot hang on one that hangs on it",
+        throw Error("a bone cannot be the child of its own descendant",
                     armature.bones[bone].name + " on " + armature.bones[parent].name,
                     "clear the parent of " + armature.bones[parent].name + " first");
     all.at(bone).parent = parent;

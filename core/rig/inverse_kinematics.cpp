@@ -446,7 +446,7 @@ Reach reach(const Armature& armature, const Pose& start, const std::vector<Reach
     if (goal.bone < 0 || goal.bone >= std::ssize(armature.bones))
       throw Error("there is no such bone", "goal for bone " + std::to_string(goal.bone), "name one of the rig's bones");
     if (!std::isfinite(goal.target.x + goal.target.y + goal.target.z))
-      throw Error("the target is not a place", "goal for bone " + armature.bones[goal.bone].name,
+      throw Error("the target is not a position", "goal for bone " + armature.bones[goal.bone].name,
                   "give three finite numbers");
   }
   return Search(armature, start, goals, settings).run();

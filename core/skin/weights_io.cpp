@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 static_assert(sizeof(Influence) == 16 && std::endian::native == std::endian::little,
               "Influence is stored as it lies in memory");
-const char* const kMakeAnew = "make weights anew with `limber weights`";
+const char* const kMakeAnew = "compute the weights again with `limber weights`";
 
 std::string tissue_sha256(const TissueVoxels& tissue) {
   std::string bytes;

@@ -23,7 +23,7 @@ std::string needs_place(const Editor& editor) {
   if (const std::string why = needs_constraint(editor); !why.empty()) return why;
   return constraint_rule(active_constraint(editor)->kind).target == ConstraintTarget::Place
              ? ""
-             : "The constraint has no place as its target";
+             : "The constraint's target is not a position";
 }
 
 std::string needs_any_constraint(const Editor& editor) {
@@ -43,7 +43,7 @@ std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
     if (std::string why = needs_constraint(editor); !why.empty()) return why;
     if (order_neighbour(editor, active_constraint(editor)->name, where)) return "";
     return std::string("A move ") + (where == InOrder::Earlier ? "up" : "down") +
-           " changes nothing: what turns the same bones keeps its order";
+           " changes nothing: constraints that turn the same bones keep their order";
   };
 }
 
@@ -83,12 +83,13 @@ std::vector<Operator> constraint_operators() {
        of_active(toggle), needs_constraint,
        [](const Editor& e) { return active_constraint(e) && active_constraint(e)->on; }},
       {"constraint.up", "Move constraint up", icon::kUp, "Motion",
-       "Apply the active bone's constraint before an earlier one that turns the same bones. The later one has the last "
-       "word.",
+       "Apply the active bone's constraint before an earlier one that turns the same bones. The one applied later "
+       "decides the rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Earlier); }),
        needs_neighbour(InOrder::Earlier)},
       {"constraint.down", "Move constraint down", icon::kDown, "Motion",
-       "Apply the active bone's constraint after a later one that turns the same bones, so that it has the last word.",
+       "Apply the active bone's constraint after a later one that turns the same bones, so that it decides the "
+       "rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Later); }),
        needs_neighbour(InOrder::Later)},
       {"constraint.key_weight", "Key weight", icon::kKey, "Motion",
@@ -99,14 +100,14 @@ std::vector<Operator> constraint_operators() {
          return constraint && has_weight_key(e, *constraint, shown_frame(e));
        }},
       {"constraint.switch", "Switch IK and FK", "", "Motion",
-       "Key the weight here, and the opposite weight a third of a second later: the constraint takes over from the "
-       "keys, or the keys from it.",
+       "Key the weight at this frame, and the opposite weight a third of a second later, to fade the constraint in or "
+       "out.",
        of_active(switch_weight), needs_constraint},
       {"constraint.to_cross_hair", "Target at cross-hair", icon::kCrossHair, "Motion",
        "Move the target of the active bone's constraint to the cross-hair.", of_active(aim_at_cross_hair), needs_place},
       {"constraint.apply", "Apply constraints", "", "Motion",
-       "Bake all constraints of the clip into keys, one in each frame. What plays stays the same.", apply_constraints,
-       needs_any_constraint},
+       "Bake all constraints of the clip into keys, one in each frame. The animation does not change.",
+       apply_constraints, needs_any_constraint},
   };
   operators.insert(operators.end(), others.begin(), others.end());
   return operators;

@@ -26,7 +26,7 @@ BrushRule add_brush() {
 BrushRule subtract_brush() {
   return {.id = "subtract",
           .name = "Subtract",
-          .description = "Takes from the active bone's weight.",
+          .description = "Reduces the active bone's weight.",
           .paint = [](double before, double cover, double full, const Brush&) { return before - cover * full; },
           .paint_whole = [](int before, int covered, const Brush&) { return std::max(before - covered, 0); }};
 }

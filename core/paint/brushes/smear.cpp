@@ -56,7 +56,7 @@ class SmearSide final : public BrushSide {
 BrushRule smear_brush() {
   return {.id = "smear",
           .name = "Smear",
-          .description = "Drags weights along.",
+          .description = "Drags weights along the stroke.",
           .looks_around = true,
           .accumulates = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {

@@ -210,7 +210,7 @@ TEST_CASE("auto-fit: bones drawn as rods are followed along their axes, and foun
   CHECK(found[found.size() / 2].first < 12);
   CHECK(fitted.joints[require_bone(truth, "LeftLeg")].how == JointFit::How::BoneAxis);
   CHECK(fitted.check.whole > share_in_tissue(file.volume, truth) - 0.005);
-  CHECK(fitted.warnings[0].starts_with("no table says what is bone: label 4"));
+  CHECK(fitted.warnings[0].starts_with("no tissue table marks bone: label 4"));
 }
 
 TEST_CASE(
@@ -361,7 +361,7 @@ TEST_CASE(
     }
   }
   CHECK(std::any_of(fitted.warnings.begin(), fitted.warnings.end(), [](const std::string& text) {
-    return text.find("by proportion alone") != std::string::npos && text.find("LeftFoot") != std::string::npos;
+    return text.find("by body proportions only") != std::string::npos && text.find("LeftFoot") != std::string::npos;
   }));
 }
 

@@ -72,7 +72,7 @@ TEST_CASE("input doubts: a rig beside the body, in RAS axes or mirrored is told 
   CHECK(doubts(aside, "outside the body"));
   CHECK(doubts(aside, "fit-rig"));
   CHECK(doubts(ras, "RAS"));
-  CHECK(doubts(mirrored, "mirror its x"));
+  CHECK(doubts(mirrored, "mirror the rig along x"));
 }
 
 TEST_CASE("input doubts: a rig that reaches beyond a scan which cuts its body raises none") {

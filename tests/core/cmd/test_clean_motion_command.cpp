@@ -181,7 +181,7 @@ TEST_CASE("clean-motion command: what cannot be cleaned is one clear line, and n
   refused({}, "nothing to clean");
   refused({"--smooth", "1e6"}, "cutoff frequency");
   refused({"--plant-feet"}, "no leg");
-  refused({"--loop", "2", "--seam", "100000"}, "the seam cannot be blended");
+  refused({"--loop", "2", "--seam", "100000"}, "the blend at the seam is longer");
   refused({"--hold", "tail@0-1"}, "no limb of this name");
   refused({"--hold", "hand"}, "a hold is not understood");
   for (const char* value : {"hand=1,2@0-1", "hand=1,2,nan@0-1", "hand@0", "hand@0-", "hand@0.5-1", "hand=@0-1",

@@ -184,7 +184,7 @@ TEST_CASE("planted faults: a mirrored rig is caught also where no label says its
     if (is_bone(tissue.kind)) tissue.name = "Bone";
   rewrite_rig(figure, [](const glm::dvec3& p) { return p * glm::dvec3(-1, 1, 1); });
   write_figure(figure, folder.path());
-  check_caught(resample(folder, {}), folder, "the rig's left bones lie at the body's right");
+  check_caught(resample(folder, {}), folder, "the rig's left bones are on the body's right");
 }
 
 TEST_CASE("planted faults: a rig of another limb is caught") {

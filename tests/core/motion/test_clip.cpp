@@ -93,7 +93,7 @@ TEST_CASE("clip: what matches nothing is said, and the rig stays at rest") {
   const ClipOnRig on_rig(std::make_shared<const Clip>(clip_of(bending(5), "bending")),
                          std::make_shared<const Armature>(other));
   CHECK(on_rig.retarget() == nullptr);
-  CHECK(on_rig.problem().find("no joint of the motion is known") != std::string::npos);
+  CHECK(on_rig.problem().find("no joint name of the motion is recognised") != std::string::npos);
   CHECK(on_rig.at(3) == rest_pose(other));
 }
 

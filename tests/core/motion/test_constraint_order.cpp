@@ -60,7 +60,7 @@ TEST_CASE("constraint order: what is switched off closes no circle, and closes i
   CHECK(one.order() == Order{1});
   left.on = true;
   const ConstraintStack both = made_of(rig, {left, right});
-  CHECK(both.problem(0).find("wait for each other in a circle") != std::string::npos);
+  CHECK(both.problem(0).find("depend on each other in a cycle") != std::string::npos);
   CHECK(both.order().empty());
   Constraint gone = made(ConstraintKind::Aim, "Tail");
   gone.on = false;

@@ -410,15 +410,15 @@ TEST_CASE("constraints: circles and missing bones are refused with one line, and
       bare{.name = "Bare", .kind = ConstraintKind::CopyRotation, .bone = "Spine"};
   const ConstraintStack stack = stack_of(rig, {left, aim, right, own, gone, bare});
   CHECK(stack.problem(0) ==
-        "these constraints wait for each other in a circle: Plant and Right: choose another target, or remove one");
+        "these constraints depend on each other in a cycle: Plant and Right: choose another target, or remove one");
   CHECK(stack.problem(1) == "");
   CHECK(stack.problem(2) ==
-        "these constraints wait for each other in a circle: Right and Plant: choose another target, or remove one");
-  CHECK(stack.problem(3) == "the target moves along with the constrained bone: Own: choose another target");
+        "these constraints depend on each other in a cycle: Right and Plant: choose another target, or remove one");
+  CHECK(stack.problem(3) == "the constrained bone moves its own target: Own: choose another target");
   CHECK(stack.problem(4) == "the rig has no bone \"Tail\": Gone: choose another bone, or remove the constraint");
   CHECK(stack.problem(5) == "the constraint has no target: Bare: choose a bone as its target");
   CHECK_THROWS_WITH_AS(stack.require_applied(3),
-                       "the target moves along with the constrained bone: Own: choose another target", Error);
+                       "the constrained bone moves its own target: Own: choose another target", Error);
   CHECK_NOTHROW(stack.require_applied(1));
   const Pose rest = rest_pose(rig);
   CHECK(stack.constrained(rest, {}, 0) == constrained(rig, aim, rest));

@@ -369,7 +369,7 @@ TEST_CASE("body poses: what a rig lacks or cannot tell is refused in one line") 
         std::string::npos);
   Armature nameless{{{.name = "Bone", .tail = {0, 0, 10}}}};
   CHECK(refusal(nameless, "sit", {}).find("no limb's joint") != std::string::npos);
-  CHECK(refusal(nameless, "", {"neck flexion=3"}).find("no bone of the rig is known") != std::string::npos);
+  CHECK(refusal(nameless, "", {"neck flexion=3"}).find("no bone name of the rig is recognised") != std::string::npos);
 }
 
 TEST_CASE(

@@ -72,7 +72,7 @@ TEST_CASE("joint angles: what is not understood is refused in one line that list
   CHECK(refusal("left hip 2 flexion=90").find("no motion") != std::string::npos);
   CHECK(refusal("left spine flexion=90").find("one spine only") != std::string::npos);
   for (const char* number : {"", "nan", "inf", "-inf", "1e400", "9x", "90 90", "361", "=", "0x10"})
-    CHECK_MESSAGE(refusal("left hip flexion=" + std::string(number)).find("this is no angle") != std::string::npos,
+    CHECK_MESSAGE(refusal("left hip flexion=" + std::string(number)).find("this is not the angle") != std::string::npos,
                   number);
   for (const char* request : {"left hip flexion", "=90", "", "left=90", "left hip"}) {
     const std::string line = refusal(request);

@@ -79,5 +79,5 @@ TEST_CASE("pose: a file of clinical angles sets the joints that it names, over i
   CHECK(*clinical_angles(arm, body_frames(arm), bent).at({BodyJoint::Elbow, BodySide::Middle})[0] ==
         doctest::Approx(60));
   CHECK(refusal(R"({"angles": [3]})").find("table of joints") != std::string::npos);
-  CHECK(refusal(R"({"angles": {"left hip": {"flexion": 999}}})").find("no angle") != std::string::npos);
+  CHECK(refusal(R"({"angles": {"left hip": {"flexion": 999}}})").find("not the angle") != std::string::npos);
 }

@@ -287,14 +287,14 @@ TEST_CASE("constraint panel: circles and targets that move along are refused wit
   ArmEditor test({planted_hand()}, kThigh, kHand);
   const Document before = test.document();
   run(*test.editor, "constraint.add_aim");
-  CHECK(test.fact("error") == "These constraints wait for each other in a circle");
+  CHECK(test.fact("error") == "These constraints depend on each other in a cycle");
   CHECK_THROWS_WITH(add_constraint(*test.editor, ConstraintKind::Aim),
-                    "these constraints wait for each other in a circle: Aim LeftThigh and Plant LeftHand: choose "
+                    "these constraints depend on each other in a cycle: Aim LeftThigh and Plant LeftHand: choose "
                     "another target, or remove one");
   CHECK(test.document() == before);
   test.play("key Escape\n wait-idle");
   CHECK_THROWS_WITH(set_target(*test.editor, "Plant LeftHand", "LeftForeArm"),
-                    "the target moves along with the constrained bone: Plant LeftHand: choose another target");
+                    "the constrained bone moves its own target: Plant LeftHand: choose another target");
   test.editor->selection.bones = {kTrunk};
   test.editor->selection.bone = kTrunk;
   CHECK_THROWS_WITH(add_constraint(*test.editor, ConstraintKind::Plant),
@@ -375,7 +375,7 @@ TEST_CASE("constraint panel: no order is offered where one constraint must wait 
     for (const InOrder where : {InOrder::Earlier, InOrder::Later})
       for (const Constraint& one : list) CHECK_FALSE(order_neighbour(*test.editor, one.name, where));
     CHECK(disabled_reason(*test.editor, *find_operator(*test.editor, "constraint.up")) ==
-          "A move up changes nothing: what turns the same bones keeps its order");
+          "A move up changes nothing: constraints that turn the same bones keep their order");
   }
 }
 

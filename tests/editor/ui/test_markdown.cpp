@@ -56,7 +56,7 @@ TEST_CASE("user guide: its lists of formats, exporters and brushes are the progr
   std::string guide;
   for (const std::string& name : documents()) guide += with_tables(read_file(asset(name)));
   CHECK(guide.find("{table.") == std::string::npos);
-  for (const char* word : {"VTK image", ".gprmax.h5 (gprMax geometry)", "Smear: Drags weights along."})
+  for (const char* word : {"VTK image", ".gprmax.h5 (gprMax geometry)", "Smear: Drags weights along the stroke."})
     CHECK(guide.find(word) != std::string::npos);
 }
 
