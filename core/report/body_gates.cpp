@@ -22,7 +22,7 @@ constexpr double kTear = 0.5;
 
 void judge_inputs(const Json& report, const QualityLimits&, QualityGate& gate) {
   const Json& doubts = part(report, "doubts");
-  if (!doubts.is_array()) return not_checked(gate, "volume, labels and rig were not held against each other.");
+  if (!doubts.is_array()) return not_checked(gate, "volume, labels and rig were not compared.");
   const std::string first = doubts.empty() || !doubts[0].is_string() ? "" : doubts[0].get<std::string>();
   decide(
       gate, doubts.empty(), counted(double(doubts.size()), "doubt"),
@@ -41,7 +41,7 @@ double voxel_edge(const Json& report) {
 void judge_whole(const Json& report, const QualityLimits& limits, QualityGate& gate) {
   const Json& bones = part(report, "whole_bones");
   const Json* worst = worst_row(bones, [](const Json& bone) { return number(bone, "residual_mm"); });
-  if (!worst) return not_checked(gate, "no posed voxel of a label that names a bone of the rig was looked at.");
+  if (!worst) return not_checked(gate, "no posed voxel has a label that names a bone of the rig.");
   const double residual = *number(*worst, "residual_mm");
   gate.worst = text(*worst, "name");
   const bool passed = residual <= std::max(limits.bone_residual_mm, kTear * voxel_edge(report));
@@ -60,15 +60,14 @@ std::optional<double> wrong_percent(const Json& bone) {
 void judge_follows(const Json& report, const QualityLimits& limits, QualityGate& gate) {
   const Json& bones = part(report, "whole_bones");
   const Json* worst = worst_row(bones, wrong_percent);
-  if (!worst) return not_checked(gate, "no posed voxel of a label that names a bone of the rig was looked at.");
+  if (!worst) return not_checked(gate, "no posed voxel has a label that names a bone of the rig.");
   const bool passed = *wrong_percent(*worst) <= limits.wrong_bone_percent;
   gate.worst = text(*worst, "name");
   decide(gate, passed, formatted("%.2f %%", *wrong_percent(*worst)),
-         passed
-             ? "Each of " + counted(double(bones.size()), "named bone") + " went with a rig bone that its name allows."
-             : counted(number(*worst, "wrong_voxels").value_or(0), "voxel") + " of " +
-                   counted(number(*worst, "voxels").value_or(0), "voxel") + " of " + in_quotes(gate.worst) +
-                   " went with " + text(*worst, "went_with") + ", but belong to " + text(*worst, "belongs_to") + ".");
+         passed ? "Each of " + counted(double(bones.size()), "named bone") + " follows a rig bone that its name allows."
+                : counted(number(*worst, "wrong_voxels").value_or(0), "voxel") + " of " +
+                      counted(number(*worst, "voxels").value_or(0), "voxel") + " of " + in_quotes(gate.worst) +
+                      " follow " + text(*worst, "went_with") + ", but belong to " + text(*worst, "belongs_to") + ".");
 }
 
 void judge_directions(const Json& report, const QualityLimits& limits, QualityGate& gate) {
@@ -79,9 +78,10 @@ void judge_directions(const Json& report, const QualityLimits& limits, QualityGa
   gate.worst = text(*worst, "bone");
   const bool passed = off <= limits.direction_degrees;
   decide(gate, passed, formatted("%.2f\u00b0", off),
-         passed ? "Each of " + counted(double(limbs.size()), "turned limb") + " points where the pose asked, within " +
-                      formatted("%.2f degrees.", off)
-                : gate.worst + " points " + formatted("%.1f degrees", off) + " away from where the pose asked.");
+         passed ? "Each of " + counted(double(limbs.size()), "turned limb") +
+                      " points in the direction that the pose sets, within " + formatted("%.2f degrees.", off)
+                : gate.worst + " points " + formatted("%.1f degrees", off) +
+                      " away from the direction that the pose sets.");
 }
 
 void judge_exposed(const Json& report, const QualityLimits& limits, QualityGate& gate) {
@@ -93,7 +93,7 @@ void judge_exposed(const Json& report, const QualityLimits& limits, QualityGate&
   const Json* most = worst_row(labels, [](const Json& row) { return number(row, "voxels"); });
   if (most) gate.worst = text(*most, "name");
   const std::string exposed = counted(*voxels, "voxel") + " that lay deep inside " + (*voxels == 1 ? "is" : "are") +
-                              " at the air now, " + formatted("%.2f %% of the surface", *percent);
+                              " exposed to the air now, " + formatted("%.2f %% of the surface", *percent);
   decide(gate, passed, formatted("%.2f %%", *percent),
          *voxels == 0
              ? "Nothing that lay deep inside is at the air."
@@ -218,10 +218,10 @@ const GateRule<Json> kBodyGates[] = {
      [](const QualityLimits& l) { return "at most half a voxel, or " + formatted("%g mm", l.bone_residual_mm); }, true,
      judge_whole},
     {"follows", "Bones follow their rig bone",
-     "Of each bone that a label names, the share that went with another rig bone, {}.",
+     "Of each bone that a label names, the share that follows another rig bone, {}.",
      at_most_percent<&QualityLimits::wrong_bone_percent>, true, judge_follows},
     {"directions", "Limbs point as asked",
-     "The angle between where the pose asked a limb to point and where its bones point, {}.",
+     "The angle between the direction of a limb that the pose sets and the direction of its bones, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g degrees", l.direction_degrees); }, true,
      judge_directions},
     {"exposed", "Inside stays inside", "Voxels at the air that lay deep at rest and are not skin, {}.",

@@ -41,7 +41,7 @@ void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshRe
 
 void print_glide(std::ostream& out, const std::vector<GlidedJoint>& joints) {
   if (joints.empty()) return;
-  out << line("%-24s %-24s %9s %9s %9s %9s", "joint that glides", "against", "shift mm", "of most", "deep mm", "after");
+  out << line("%-24s %-24s %9s %9s %9s %9s", "shifted joint", "against", "shift mm", "of most", "deep mm", "after");
   for (const GlidedJoint& joint : joints)
     out << line("%-24.24s %-24.24s %9.1f %9.1f %9.1f %9.1f %s", joint.bone.c_str(), joint.against.c_str(),
                 glm::length(joint.shift), joint.most_mm, joint.depth_before, joint.depth_after,
@@ -109,18 +109,17 @@ void print_report(std::ostream& out, const Report& report) {
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
                 static_cast<long long>(deform.mended_voxels));
     if (deform.settled && deform.settled->cells > 0)
-      out << line(
-          "flesh settled: cells were off their volume by %.1f %% in the mean, and are by %.1f %%; moved by up to %.1f "
-          "mm",
-          100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
-          deform.settled->largest_shift_mm);
+      out << line("flesh settled: mean volume error of cells %.1f %% before, %.1f %% after; moved by up to %.1f mm",
+                  100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
+                  deform.settled->largest_shift_mm);
     std::int64_t moved = 0;
     for (const auto& [_, voxels] : deform.kept_organs) moved += std::abs(voxels);
     if (moved > 0)
-      out << line("organs kept: %lld that were off by more than 5 %% were given or gave %lld voxels at their surface",
+      out << line("organs kept: %lld with a volume error of more than 5 %% gained or lost %lld voxels at their surface",
                   static_cast<long long>(deform.kept_organs.size()), static_cast<long long>(moved));
     if (deform.mass_exact)
-      out << line("mass-exact: %lld voxels changed hands", static_cast<long long>(deform.mass_exact->changed_voxels));
+      out << line("mass-exact: %lld voxels changed their label",
+                  static_cast<long long>(deform.mass_exact->changed_voxels));
     double worst = 0;
     for (const auto& bone : deform.bones) worst = std::max(worst, bone.rigid_residual_mm);
     if (!deform.bones.empty())

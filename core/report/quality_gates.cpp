@@ -151,7 +151,7 @@ const GateRule<Json> kFineGates[] = {
      none, false, judge_islands},
     {"inverted", "No inverted cells", "Tetrahedra that were turned inside out.", none, false, judge_inverted},
     {"crossings", "No self-intersection",
-     "Pairs of the skin's triangles that cross, and voxels that two places of the body claim.", none, false,
+     "Pairs of the skin's triangles that cross, and voxels in which two parts of the body overlap.", none, false,
      judge_crossings},
     {"limits", "Joint limits", "How far the joint that is turned too far is beyond its limits.",
      [](const QualityLimits& l) { return "at most " + formatted("%g degrees", l.joint_excess_degrees); }, false,

@@ -35,7 +35,7 @@ QualityGate unmeasured(const char* id, const char* name, const char* meaning, co
 QualityGate judge_reached(const Json& report) {
   QualityGate gate =
       unmeasured("reached", "Pose reached",
-                 "How much of the pose a solve by finite elements came to, and whether it settled there.", "all of it");
+                 "How much of the pose the finite element solve reached, and whether it converged there.", "all of it");
   const Json solve = part(report, "solve");
   if (!solve.contains("reached") || !solve["reached"].is_number() || !solve.contains("converged") ||
       !solve["converged"].is_boolean())
@@ -43,8 +43,8 @@ QualityGate judge_reached(const Json& report) {
   const double reached = solve["reached"];
   const bool converged = solve["converged"];
   gate.state = converged ? GateState::Passed : GateState::Failed;
-  gate.figure = formatted("%.0f %%", std::floor(100 * reached)) + (converged || reached < 1 ? "" : ", not settled");
-  gate.sentence = "The solve came to " + gate.figure + " of the pose.";
+  gate.figure = formatted("%.0f %%", std::floor(100 * reached)) + (converged || reached < 1 ? "" : ", not converged");
+  gate.sentence = "The solve reached " + gate.figure + " of the pose.";
   return gate;
 }
 

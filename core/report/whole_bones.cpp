@@ -131,7 +131,7 @@ std::vector<std::string> astray_bones(const std::vector<WholeBone>& bones, std::
     lines.push_back(std::to_string(astray[k]->wrong_voxels) + " of " + std::to_string(astray[k]->voxels) +
                     " voxels of \"" + astray[k]->name.substr(0, 80) + "\" follow " + astray[k]->went_with +
                     ", but belong to " + astray[k]->belongs_to +
-                    ": compute the weights anew, or say so with --bone-map");
+                    ": compute the weights again, or name the bone with --bone-map");
   if (astray.size() > most)
     lines.push_back(std::to_string(astray.size() - most) +
                     " more bones follow a wrong rig bone; the report lists them");

@@ -143,7 +143,8 @@ void write_bundle(const Study& study, const std::vector<CellResult>& cells, cons
                   const std::string& commit, Progress& progress) {
   for (const CellResult& cell : cells)
     if (!cell.done())
-      throw Error("a cell of the study failed", text_of(study, cell.cell), "bundle a study whose cells are all there");
+      throw Error("a cell of the study failed", text_of(study, cell.cell),
+                  "bundle a study whose cells are all computed");
   std::error_code error;
   fs::create_directories(folder / "inputs", error);
   if (error) throw Error("the folder cannot be made", folder.string(), error.message());

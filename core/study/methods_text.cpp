@@ -156,8 +156,8 @@ class MethodsWriter {
     const std::string how = word == "joint"   ? "5 % of the shorter of its two bones"
                             : word == "voxel" ? "the edge of a voxel"
                                               : mm(word);
-    return " Joints whose bones would enter each other were shifted by the least that frees them, at most by " + how +
-           ".";
+    return " Joints whose bones would overlap were shifted by the smallest distance that separates them, at most by " +
+           how + ".";
   }
 
   std::string weights() {
@@ -187,7 +187,8 @@ class MethodsWriter {
     if (word == "dqs") return "Dual quaternions blend the motions as screw motions" + cite("dual") + ".";
     if (word == "mix")
       return "The mixed blend lies between linear blend" + cite("linear") + " and dual quaternions" + cite("dual") +
-             "; the least and smoothest shifts then give flesh its volume back" + cite("projective") + ".";
+             "; the smallest and smoothest displacements then restore the volume of soft tissue" + cite("projective") +
+             ".";
     const DeformationMethod* method = find_method(word);
     return method ? escaped(method->description) : "";
   }

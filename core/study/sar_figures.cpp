@@ -43,8 +43,8 @@ SarFigures figures_of(const Json& json, const Study& study, const std::vector<Ce
     body.cell = &*same;
     if (!sar.bodies.empty() && (body.cell->cell.spacing != sar.bodies.front().cell->cell.spacing ||
                                 body.cell->cell.technique != sar.bodies.front().cell->cell.technique))
-      throw Error("SAR is told for bodies of one spacing and technique", "sar.json, " + text_of(study, body.cell->cell),
-                  "let sar_openems.py study write it again");
+      throw Error("SAR is reported for bodies of one spacing and technique",
+                  "sar.json, " + text_of(study, body.cell->cell), "write it again with sar_openems.py study");
     sar.bodies.push_back(body);
   }
   std::sort(sar.bodies.begin(), sar.bodies.end(),
@@ -59,12 +59,12 @@ std::optional<SarFigures> read_sar(const Path& out, const Study& study, const st
   const Json json = Json::parse(checked_json(read_file(path, kLargest), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != "limber-sar/2")
     throw Error("this is no SAR of a study, or that of an older version", path.string(),
-                "delete it, or let sar_openems.py study write it again");
+                "delete it, or write it again with sar_openems.py study");
   try {
     return figures_of(json, study, cells);
   } catch (const Json::exception& error) {
     throw Error("the SAR of the study is damaged", path.string(),
-                std::string("delete it, or let sar_openems.py study write it again (") + error.what() + ")");
+                std::string("delete it, or write it again with sar_openems.py study (") + error.what() + ")");
   }
 }
 

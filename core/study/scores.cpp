@@ -33,7 +33,8 @@ int whole_number(const std::string& text, int least, int most, const Path& path,
 
 void read_row(const std::vector<std::string>& fields, int line, RaterScores& rater) {
   const Path& path = rater.file;
-  if (fields.size() != 6) refuse(path, line, "the row has not six fields", std::string("keep the columns ") + kColumns);
+  if (fields.size() != 6)
+    refuse(path, line, "the row does not have six fields", std::string("keep the columns ") + kColumns);
   const std::string &name = fields[1], &code = fields[3];
   if (name.empty() || name.size() > kLongestName)
     refuse(path, line, "the rater has no name", "write the rater's name or number in the second column");
@@ -47,7 +48,7 @@ void read_row(const std::vector<std::string>& fields, int line, RaterScores& rat
   if (!rater.scores.emplace(code, score).second)
     refuse(path, line, "the picture is scored twice", "leave one of both rows out");
   if (rater.scores.size() > kMostScores)
-    refuse(path, line, "the file has too many scores", "hand in the form's own file");
+    refuse(path, line, "the file has too many scores", "use the file that rating.html saved");
 }
 
 TechniqueScore technique_score(const std::vector<double>& scores) {
@@ -72,8 +73,8 @@ RaterScores read_scores(const Path& path) {
     begin = end + 1;
     ++line;
     if (line == 1 && row != kColumns && row != std::string("\xef\xbb\xbf") + kColumns)
-      throw Error("this is no file of scores", path.string(),
-                  "hand in a file that rating.html has saved, with the columns " + std::string(kColumns));
+      throw Error("this is not a file of scores", path.string(),
+                  "use a file that rating.html saved, with the columns " + std::string(kColumns));
     if (line > 1 && !row.empty()) read_row(csv_fields(row), line, rater);
   }
   if (rater.scores.empty()) throw Error("the file has no scores", path.string(), "score the pictures of rating.html");

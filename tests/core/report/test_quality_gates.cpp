@@ -119,7 +119,7 @@ TEST_CASE("quality gates: each fails just beyond its limit, with its figure") {
       {"reached", R"({"solve": {"converged": true, "reached": 1}})",
        R"({"solve": {"converged": false, "reached": 0.999}})", "99 %"},
       {"reached", R"({"solve": {"converged": true, "reached": 1}})", R"({"solve": {"converged": false, "reached": 1}})",
-       "100 %, not settled"},
+       "100 %, not converged"},
       {"gap", R"({"mesh": {"min_gap_mm": 0.001}})", R"({"mesh": {"min_gap_mm": 0}})", "0.000 mm"},
       {"inverted", R"({"mesh": {"inverted": 0}})", R"({"mesh": {"inverted": 2}})", "2"},
       {"crossings", R"({"mesh": {"self_intersections": 0}, "total": {"overlap_voxels": 0}})",

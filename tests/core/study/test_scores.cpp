@@ -65,7 +65,7 @@ TEST_CASE("scores: a wrong file is refused in one line that says where") {
   const test::TemporaryFolder folder;
   for (const auto& [text, named] : std::vector<std::pair<std::string, std::string>>{
            {"", "no scores"},
-           {"picture,score\n0a,3\n", "no file of scores"},
+           {"picture,score\n0a,3\n", "not a file of scores"},
            {kHead, "no scores"},
            {kHead + "E,R,1,0a,,\n", "no scores"},
            {kHead + "E,R,1,0a,6,\n", "line 2"},
