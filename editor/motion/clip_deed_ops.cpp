@@ -50,11 +50,12 @@ std::string frames_text(int frames) { return std::to_string(frames) + (frames ==
 
 // Throws Error if no clip or rig is left, or if the playing range has too many frames.
 void require_frames(const Editor& editor) {
-  if (!needs_clip_and_rig(editor).empty()) throw Error("there is no clip any more", "clip", "open this again");
+  if (!needs_clip_and_rig(editor).empty())
+    throw Error("the clip was deleted meanwhile", "clip", "select a clip and open the dialog again");
   const auto [first, last] = playing_range(editor);
   if (std::int64_t{last} - first >= kMostFrames)
-    throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
-                "set a shorter range");
+    throw Error("the playing range has too many frames",
+                "frames " + std::to_string(first) + " to " + std::to_string(last), "set a shorter range");
 }
 
 void mirror_shown(Editor& editor) {
@@ -73,7 +74,7 @@ void bake(Editor& editor) {
     return [=](Editor& e) {
       take_in_clip(e, source, rig, "Bake clip", *baked, false);
       e.messages.ok(frames_text(baked->motion->frame_count) + " baked",
-                    "Keys and retargeting are part of the motion, which is the rig's own now");
+                    "The motion now contains the keys and the retargeting, for this rig's bones");
     };
   });
 }
@@ -82,7 +83,7 @@ void bake(Editor& editor) {
 
 const Clip& require_clip(const Editor& editor) {
   const Clip* clip = shown_clip(editor);
-  if (!clip) throw Error("there is no clip any more", "speed", "open this again");
+  if (!clip) throw Error("the clip was deleted meanwhile", "speed", "select a clip and open the dialog again");
   return *clip;
 }
 
@@ -102,7 +103,7 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
   const double steps = double(clip->range_end) - clip->range_start;
   if (factor < kSlowest || factor > kFastest)
     throw Error("this length cannot be reached", frames_text(static_cast<int>(fields[2].value)),
-                "choose from " + std::to_string(static_cast<int>(std::ceil(steps / kFastest)) + 1) + " to " +
+                "enter a length from " + std::to_string(static_cast<int>(std::ceil(steps / kFastest)) + 1) + " to " +
                     std::to_string(static_cast<std::int64_t>(steps / kSlowest) + 1));
   std::set<int> moved;
   const std::set<int> keys = frames_of(clip->keys);
@@ -111,9 +112,9 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
   std::snprintf(text, sizeof text, "%s at %.4g times the speed become %s.",
                 frames_text(clip->range_end - clip->range_start + 1).c_str(), factor,
                 frames_text(static_cast<int>(std::lround(steps / factor)) + 1).c_str());
-  return text + (moved.size() < keys.size()
-                     ? " " + std::to_string(keys.size() - moved.size()) + " frames with keys fall on others and go."
-                     : std::string());
+  return text + (moved.size() < keys.size() ? " " + std::to_string(keys.size() - moved.size()) +
+                                                  " frames with keys coincide with others and are deleted."
+                                            : std::string());
 }
 
 // Replaces the shown clip by the clip with the changed speed. The play head moves to the frame that shows the same
@@ -147,12 +148,12 @@ void ask_speed(Editor& editor) {
   const auto [low, high] = playing_range(editor);
   editor.open_dialog(make_form(
       {"Change speed",
-       "Makes the clip longer or shorter at the same frame rate. Keys, markers and range keep their places in it.",
+       "Makes the clip longer or shorter at the same frame rate. Keys, markers and range are stretched with it.",
        "Change",
-       {choice_of("Set", "Whether the speed or the length is set.", {"Speed", "Length"}),
+       {choice_of("Set", "Set the clip's speed, or its length.", {"Speed", "Length"}),
         number_of("Speed", "2 plays twice as fast, 0.5 half as fast.", 1, kSlowest, kFastest, "%.3f", "times"),
-        number_of("Length", "Number of frames that then play.", std::clamp<double>(double(high) - low + 1, 2, 1e6), 2,
-                  1e6, "%.0f", "frames")},
+        number_of("Length", "Number of frames in the playing range afterwards.",
+                  std::clamp<double>(double(high) - low + 1, 2, 1e6), 2, 1e6, "%.0f", "frames")},
        speed_outcome,
        [](Editor& e, const std::vector<FormField>& fields) {
          stop_playing(e);
@@ -164,13 +165,14 @@ void ask_speed(Editor& editor) {
 
 void tell_of_loop(Editor& editor, const LoopedPoses& loop, int repeats) {
   char text[160];
-  std::snprintf(text, sizeof text, "The seam closes a gap of up to %.1f\u00b0%s%.40s", loop.gap_degrees,
+  std::snprintf(text, sizeof text, "The seam blends over a difference of up to %.1f\u00b0%s%.40s", loop.gap_degrees,
                 loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str());
   const std::string detail = text;
   const std::string line = std::to_string(repeats) + (repeats == 1 ? " repeat, " : " repeats, ") +
                            frames_text(static_cast<int>(loop.poses.size()));
   if (loop.haste <= kHasty) return editor.messages.ok(line, detail);
-  std::snprintf(text, sizeof text, "; bones turn %.1f times as fast: loop a whole cycle, or blend longer", loop.haste);
+  std::snprintf(text, sizeof text,
+                "; bones turn %.1f times as fast there: loop a whole cycle, or blend over more frames", loop.haste);
   editor.messages.warn(line, detail + text);
 }
 
@@ -208,28 +210,27 @@ void ask_loop(Editor& editor) {
   const double usual = std::min<double>(steps, std::round(0.3 * shown_clip(editor)->rate));
   editor.open_dialog(make_form(
       {"Loop clip",
-       "Repeats the frames that play. Each repeat begins where the one before ended, with the pose of the first frame.",
+       "Repeats the playing range. Each repeat begins where the one before ended, in the pose of the first frame.",
        "Loop",
-       {number_of("Repeats", "How many times the frames play in all.", 4, 1, 1000, "%.0f"),
-        number_of("Blend", "Frames around each seam in which the end of the take is led over to its beginning.", usual,
-                  0, steps, "%.0f", "frames"),
-        choice_of("Body", "Whether travel and heading go on, or the body stays in its place.",
+       {number_of("Repeats", "Number of times that the range plays in all.", 4, 1, 1000, "%.0f"),
+        number_of("Blend", "Frames around each seam in which the end of the range is blended into its beginning.",
+                  usual, 0, steps, "%.0f", "frames"),
+        choice_of("Body", "Continue the body's travel and heading from repeat to repeat, or keep the body in place.",
                   {"Travels on", "On the spot"}),
-        choice_of("Result", "Whether the repeats become a clip of their own or replace the shown clip.",
-                  {"New clip", "Same clip"})},
+        choice_of("Result", "Store the repeats in a new clip, or replace the shown clip.", {"New clip", "Same clip"})},
        [](const Editor& e, const std::vector<FormField>& fields) {
          require_frames(e);
          const auto [first, last] = playing_range(e);
          const LoopSettings settings = loop_of(fields);
          const std::int64_t frames = std::int64_t{last - first} * settings.repeats + 1;
          if (frames > kMostFrames)
-           throw Error("so many repeats cannot be made", std::to_string(frames) + " frames", "choose fewer");
+           throw Error("these repeats have too many frames", std::to_string(frames) + " frames", "enter fewer repeats");
          const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
          return frames_text(last - first + 1) + " become " + frames_text(static_cast<int>(frames)) +
                 ", keys included." +
-                (is_locked && !settings.stays ? " The body stays in place here: for travel, set Root motion to Free "
-                                                "first."
-                                              : "");
+                (is_locked && !settings.stays
+                     ? " Root motion keeps the body in place: for travel, set it to Free first."
+                     : "");
        },
        [](Editor& e, const std::vector<FormField>& fields) {
          start_looping(e, loop_of(fields), fields[3].chosen == 0);
@@ -241,16 +242,16 @@ void ask_loop(Editor& editor) {
 std::vector<Operator> clip_deed_operators() {
   return {
       {"motion.mirror_clip", "Mirror clip", icon::kMirror, "Motion",
-       "Swap left and right in the whole clip: its motion, its keys with their curves, and the body's travel.",
+       "Swap left and right in the whole clip: its motion, its keys with their curves, and the body's path.",
        mirror_shown, needs_clip_and_rig},
       {"motion.loop_clip", "Loop clip...", icon::kLoop, "Motion",
-       "Repeat the frames that play, with blended seams; travel and heading go on, or the body stays on the spot.",
-       ask_loop, needs_three_frames},
+       "Repeat the playing range with blended seams. The body travels on, or stays on the spot.", ask_loop,
+       needs_three_frames},
       {"motion.speed", "Change speed...", "", "Motion",
-       "Make the clip longer or shorter by a factor or to a number of frames; keys keep their places in it.", ask_speed,
+       "Make the clip longer or shorter by a factor or to a number of frames. Keys are stretched with it.", ask_speed,
        needs_clip},
       {"motion.bake", "Bake clip", "", "Motion",
-       "Make keys and curves part of the motion, for the frames that play. What plays stays the same.", bake,
+       "Bake keys and curves into the motion of the playing range. The animation does not change.", bake,
        needs_clip_and_rig},
   };
 }

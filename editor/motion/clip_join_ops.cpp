@@ -111,11 +111,12 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
   if (!wish.settings.keeps_feet) return result;
   double slides = 0;
   for (const Plant& plant : made.plants) slides = std::max(slides, error_of(plant, *rig, limbs, made.poses).slide);
-  result.detail = made.plants.empty() ? "No foot was found to stand in the cross-fade"
-                                      : "Feet that stand there slide by up to " + mm_text(slides);
+  result.detail = made.plants.empty() ? "No standing foot was found in the cross-fade"
+                                      : "Standing feet slide in the cross-fade by up to " + mm_text(slides);
   result.is_doubtful = slides > kSlides || made.foot_gap > 0;
   if (made.foot_gap > 0)
-    result.detail += "; a foot goes " + mm_text(made.foot_gap) + " unlifted: join where the same foot steps";
+    result.detail +=
+        "; a foot moves " + mm_text(made.foot_gap) + " without being lifted: join where the same foot steps";
   return result;
 }
 
@@ -143,29 +144,30 @@ JoinWish wish_of(const std::vector<FormField>& fields) {
 }
 
 std::string join_outcome(const Editor& editor, const NextTake& next, const std::vector<FormField>& fields) {
-  if (!needs_clip_and_rig(editor).empty()) throw Error("there is no clip any more", "join", "open this again");
+  if (!needs_clip_and_rig(editor).empty())
+    throw Error("the clip was deleted meanwhile", "join", "select a clip and open the dialog again");
   const auto [low, high] = playing_range(editor);
   const std::int64_t here = std::int64_t{high} - low + 1,
                      there = frames_at_rate(*next.motion, shown_clip(editor)->rate);
   const JoinWish wish = wish_of(fields);
   if (wish.settings.fade > std::min(here, there))
-    throw Error("the takes cannot fade over so many frames", std::to_string(wish.settings.fade) + " frames",
-                "choose from 1 to " + std::to_string(std::min(here, there)));
+    throw Error("the cross-fade is longer than a motion", std::to_string(wish.settings.fade) + " frames",
+                "enter 1 to " + std::to_string(std::min(here, there)));
   if (here + there > kMostFrames)
-    throw Error("too many frames play", std::to_string(here + there) + " frames", "set a shorter range");
+    throw Error("the joined clip has too many frames", std::to_string(here + there) + " frames", "set a shorter range");
   const auto limbs = planted_limbs(*editor.document().armature);
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
   if (wish.settings.keeps_feet && !has_legs)
-    throw Error("no leg of the rig is known by its name", "feet", "name its bones as in \"LeftThigh\"");
+    throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
   const bool is_locked = shown_clip(editor)->motion && shown_clip(editor)->retarget.travel == Travel::Locked;
   return std::to_string(here) + " frames and " + std::to_string(there) + " of " + next.name + " become " +
          std::to_string(here + there - wish.settings.fade) + ", keys included." +
-         (is_locked ? " The body stays in place here: for travel, set Root motion to Free first." : "");
+         (is_locked ? " Root motion keeps the body in place: for travel, set it to Free first." : "");
 }
 
 void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {
   if (const std::string why = needs_clip_and_rig(editor); !why.empty())
-    throw Error("there is no clip any more", next->name, "import or make one first");
+    throw Error("the clip was deleted meanwhile", next->name, "import or make one first");
   const auto [low, high] = playing_range(editor);
   const double rate = shown_clip(editor)->rate;
   const double most = double(std::min(std::int64_t{high} - low + 1, frames_at_rate(*next->motion, rate)));
@@ -173,14 +175,14 @@ void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
   editor.open_dialog(make_form(
       {"Join " + next->name + ".bvh",
-       "Appends this take to the frames that play. It begins with the place and heading that the body has there.",
+       "Appends this motion to the playing range. It starts with the body's position and heading at the range's end.",
        "Join",
-       {number_of("Cross-fade", "Frames in which the shown clip fades out and the take fades in.",
+       {number_of("Cross-fade", "Number of frames in which the shown clip fades out and this motion fades in.",
                   std::clamp(std::round(0.3 * rate), 1.0, most), 1, most, "%.0f", "frames"),
-        choice_of("Feet", "Whether feet that stand in the cross-fade are kept in place.",
-                  {"As they are", "Kept in place"}, has_legs ? 1 : 0),
+        choice_of("Feet", "Keep standing feet in place during the cross-fade.", {"As they are", "Kept in place"},
+                  has_legs ? 1 : 0),
         choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, next->up == UpAxis::Z ? 1 : 0),
-        choice_of("Result", "Whether the joined takes become a clip of their own or replace the shown clip.",
+        choice_of("Result", "Store the joined motion in a new clip, or replace the shown clip.",
                   {"New clip", "Same clip"})},
        [next](const Editor& e, const std::vector<FormField>& fields) { return join_outcome(e, *next, fields); },
        [next](Editor& e, const std::vector<FormField>& fields) { start_joining(e, *next, wish_of(fields)); }}));
@@ -201,17 +203,18 @@ void read_next(Editor& editor, const Path& path) {
 }  // namespace
 
 std::vector<Operator> clip_join_operators() {
-  return {{"motion.join_clip", "Join clip...", "", "Motion",
-           "Append a take from a BVH file to the clip, with a cross-fade from where the body is and as it stands.",
-           [](Editor& editor) {
-             browse(editor, {.purpose = "file.import_motion",
-                             .title = "Join a motion to the clip",
-                             .action = "Join",
-                             .filters = {{"Motions", {".bvh"}}},
-                             .folder = editor.project_path.parent_path(),
-                             .chosen = read_next});
-           },
-           needs_clip_and_rig}};
+  return {
+      {"motion.join_clip", "Join clip...", "", "Motion",
+       "Append a motion from a BVH file to the clip, with a cross-fade from the body's position and pose at its end.",
+       [](Editor& editor) {
+         browse(editor, {.purpose = "file.import_motion",
+                         .title = "Join a motion to the clip",
+                         .action = "Join",
+                         .filters = {{"Motions", {".bvh"}}},
+                         .folder = editor.project_path.parent_path(),
+                         .chosen = read_next});
+       },
+       needs_clip_and_rig}};
 }
 
 }  // namespace limber::editor

@@ -29,7 +29,7 @@ void change_list(Clip& clip, const std::function<void(Constraints&)>& change) {
 Constraint& named(Constraints& constraints, const std::string& name) {
   const auto found = std::find_if(constraints.list.begin(), constraints.list.end(),
                                   [&](const Constraint& constraint) { return constraint.name == name; });
-  if (found == constraints.list.end()) throw Error("there is no such constraint any more", name, "add it again");
+  if (found == constraints.list.end()) throw Error("the constraint was removed meanwhile", name, "add it again");
   return *found;
 }
 
@@ -180,7 +180,7 @@ void add_constraint(Editor& editor, ConstraintKind kind) {
   const Armature& armature = *editor.document().armature;
   const ConstraintRule& rule = constraint_rule(kind);
   if (constraints_of(editor.document()).list.size() >= kMostConstraints)
-    throw Error("the clip has as many constraints as it can", rule.name, "remove one first");
+    throw Error("the clip has too many constraints", rule.name, "remove one first");
   Constraint added{.kind = kind, .bone = armature.bones[*editor.selection.bone].name};
   if (const auto other = other_bone(editor); other && rule.target != ConstraintTarget::None)
     added.target = armature.bones[*other].name;

@@ -101,7 +101,7 @@ bool draw_order(Editor& editor, const Rect& rect, const Constraint& constraint, 
     }
     if (!draw_small_icon(editor, place, earlier ? "Up" : "Down", earlier ? icon::kUp : icon::kDown, look.theme.text2,
                          std::string("Apply ") + (earlier ? "before " : "after ") + other->name,
-                         "Both turn the same bones, and the later one has the last word."))
+                         "Both turn the same bones. The one applied later decides the rotation."))
       continue;
     attempt(editor, "Move constraint", [&](Editor& e) { move_constraint(e, name, where); });
     return true;
@@ -160,12 +160,13 @@ void draw_weight(Editor& editor, Column& column, const Constraint& constraint) {
   if (!find_constraint(editor.document(), constraint.name)) return;
   const Rect key{{rect.high.x - button, rect.low.y}, rect.high};
   const std::string name = constraint.name;
-  if (draw_small_icon(editor, key, "Key weight", icon::kKey,
-                      is_here    ? look.theme.select
-                      : is_keyed ? look.theme.accent_text
-                                 : look.theme.text3,
-                      is_here ? "Delete weight key" : "Key weight",
-                      "The weight goes from key to key: 0 is the pose of the keys, 1 the constraint."))
+  if (draw_small_icon(
+          editor, key, "Key weight", icon::kKey,
+          is_here    ? look.theme.select
+          : is_keyed ? look.theme.accent_text
+                     : look.theme.text3,
+          is_here ? "Delete weight key" : "Key weight",
+          "The weight is interpolated between its keys: at 0 the bone has its keyed pose, at 1 the constraint's."))
     attempt(editor, "Key weight", [&](Editor& e) { toggle_weight_key(e, name); });
   if (!is_keyed) return;
   const auto& track = shown_clip(editor)->keys;
@@ -240,13 +241,13 @@ void draw_limits(Editor& editor, Column& column, const Constraint& constraint) {
       number.low = -kWidestLimit;
       number.high = kWidestLimit;
     }
-    draw_three(editor, column, is_maximum ? "Most, \u00b0" : "Least, \u00b0", numbers);
+    draw_three(editor, column, is_maximum ? "Maximum, \u00b0" : "Minimum, \u00b0", numbers);
   }
 }
 
 void draw_aim(Editor& editor, Column& column, const Constraint& constraint) {
   int chosen = static_cast<int>(constraint.aim);
-  if (choose(editor, column, "Points with", {"+X", "-X", "+Y (along)", "-Y", "+Z", "-Z"}, chosen))
+  if (choose(editor, column, "Aim axis", {"+X", "-X", "+Y (along)", "-Y", "+Z", "-Z"}, chosen))
     change(editor, constraint, "Set aiming axis",
            [chosen](Constraint& changed) { changed.aim = static_cast<BoneAxis>(chosen); });
 }

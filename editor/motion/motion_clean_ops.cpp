@@ -44,11 +44,12 @@ struct Cleaning {
 };
 
 FormField becomes_field(Becomes usual) {
-  return choice_of("Result", "Whether the cleaned motion becomes a clip of its own or replaces the shown clip.",
+  return choice_of("Result", "Store the cleaned motion in a new clip, or replace the shown clip.",
                    {"New clip", "Same clip"}, static_cast<int>(usual));
 }
 FormField ease_field() {
-  return number_of("Ease", "Time over which a limb comes to its place and leaves it.", 0.15, 0, 10, "%.2f", "s");
+  return number_of("Ease", "Time over which a limb blends into the held position and out of it.", 0.15, 0, 10, "%.2f",
+                   "s");
 }
 
 std::string needs_clip_and_rig(const Editor& editor) {
@@ -101,15 +102,15 @@ void tell_of_short(const Armature& rig, const std::vector<PlantedLimb>& limbs, c
   const WorstPlant worst = worst_of(rig, limbs, plants, result.poses);
   result.is_short = !(worst.off <= kOff);
   if (!result.is_short) return;
-  if (worst.plant->limb == told) result.detail += ": it does not reach";
+  if (worst.plant->limb == told) result.detail += ": the limb is too short to reach it";
   else
-    result.detail +=
-        "; the " + limbs[worst.plant->limb].name + " does not reach its place and is " + mm_text(worst.off) + " off";
+    result.detail += "; the " + limbs[worst.plant->limb].name + " does not reach its position and is " +
+                     mm_text(worst.off) + " away";
 }
 
 void tell_of_hold(const Armature& rig, const std::vector<PlantedLimb>& limbs, const Plant& hold, Result& result) {
   const double off = error_of(hold, rig, limbs, result.poses).from_place;
-  result.detail = "The " + limbs[hold.limb].name + " is " + mm_text(off) + " off its place at most";
+  result.detail = "The " + limbs[hold.limb].name + " is " + mm_text(off) + " away from its position at most";
 }
 
 void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& before,
@@ -120,10 +121,10 @@ void tell_of_feet(const Armature& rig, const std::vector<PlantedLimb>& limbs, co
     slides = std::max(slides, error_of(plant, rig, limbs, result.poses).slide);
   }
   if (feet.empty()) {
-    result.detail = "No foot was found to stand: none is low and slow for a tenth of a second";
+    result.detail = "No standing foot was found: no foot stays low and slow for 0.1 s";
   } else {
-    result.detail = "Feet stand " + std::to_string(feet.size()) + " times; there they slid by up to " + mm_text(slid) +
-                    ", and now by " + mm_text(slides);
+    result.detail = "Feet stand " + std::to_string(feet.size()) + " times; while standing they slid by up to " +
+                    mm_text(slid) + ", and now slide by " + mm_text(slides);
   }
 }
 
@@ -156,7 +157,7 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
   if (cleaning.gap) {
     result.poses = with_gap_closed(smooth, cleaning.gap->first, cleaning.gap->last);
     result.line = std::to_string(cleaning.gap->last - cleaning.gap->first + 1) + " frames replaced";
-    result.detail = "The body goes on with the speeds that it has before and after them";
+    result.detail = "The body keeps the speeds that it has before and after these frames";
     return result;
   }
   if (cleaning.plants_feet || cleaning.hold) {
@@ -207,10 +208,10 @@ bool has_legs(const std::vector<PlantedLimb>& limbs) {
 // Throws Error if no clip or rig is left, or if the playing range has too many frames.
 void require_frames(const Editor& editor) {
   if (!shown_clip(editor) || !editor.document().armature)
-    throw Error("there is no clip any more", "clean", "open this again");
+    throw Error("the clip was deleted meanwhile", "clean", "select a clip and open the dialog again");
   const auto [first, last] = playing_range(editor);
   if (std::int64_t{last} - first >= kMostFrames)
-    throw Error("too many frames play", frames_text(first, last), "set a shorter range");
+    throw Error("the playing range has too many frames", frames_text(first, last), "set a shorter range");
 }
 
 void ask_cleaning(Editor& editor) {
@@ -226,24 +227,23 @@ void ask_cleaning(Editor& editor) {
   };
   editor.open_dialog(make_form(
       {"Clean clip",
-       "Takes the tremble out of the frames that play, and keeps feet in place while they stand.",
+       "Removes jitter from the playing range, and keeps standing feet in place.",
        "Clean",
-       {number_of("Smooth", "Filters out movement faster than this; 6 Hz suits walking. 0: no filter.",
+       {number_of("Smooth", "Remove movement above this frequency. 6 Hz suits walking. 0 = no filter.",
                   std::min(6.0, most), 0, most, "%.1f", "Hz"),
-        choice_of("Feet", "Whether feet that stand on the ground, and hands that rest at a place, are kept there.",
-                  {"As they are", "Planted"}, feet ? 1 : 0),
+        choice_of("Feet", "Keep standing feet and resting hands in place.", {"As they are", "Planted"}, feet ? 1 : 0),
         ease_field(), becomes_field(Becomes::NewClip)},
        [feet, cleaning_of](const Editor& e, const std::vector<FormField>& fields) {
          require_frames(e);
          const Cleaning cleaning = cleaning_of(fields);
          if (cleaning.smooth <= 0 && !cleaning.plants_feet) throw NotYet{"Set a filter, or plant the feet."};
          if (cleaning.plants_feet && !feet)
-           throw Error("no leg of the rig is known by its name", "feet", "name its bones as in \"LeftThigh\"");
+           throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
          const auto [first, last] = playing_range(e);
          const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
-         return "Cleans " + frames_text(first, last) + ". Keys of the clip become part of the motion." +
+         return "Cleans " + frames_text(first, last) + ". The clip's keys are baked into the motion." +
                 (cleaning.plants_feet && is_locked
-                     ? " The body stays in place here, so few feet stand: set Root motion to Free first."
+                     ? " Root motion keeps the body in place, so few feet stand: set it to Free first."
                      : "");
        },
        [cleaning_of](Editor& e, const std::vector<FormField>& fields) { start_cleaning(e, cleaning_of(fields)); }}));
@@ -293,7 +293,7 @@ std::string hold_outcome(const Editor& editor, const std::vector<FormField>& fie
   if (last < first) throw NotYet{"The last frame comes before the first one."};
   const std::string& limb = fields[kLimb].choices[static_cast<std::size_t>(fields[kLimb].chosen)];
   std::string words = "Holds the " + limb + " in " + frames_text(first, last) + ".";
-  if (!shown_clip(editor)->keys.empty()) words += " Keys of the clip become part of the motion.";
+  if (!shown_clip(editor)->keys.empty()) words += " The clip's keys are baked into the motion.";
   const auto wish = static_cast<HoldPlace>(fields[kPlace].chosen);
   if (wish == HoldPlace::WhereItIs) return words;
   const std::optional<glm::dvec3> place = place_before_hold(editor, fields);
@@ -326,21 +326,21 @@ void ask_hold(Editor& editor) {
   const auto [low, high] = playing_range(editor);
   const int frame = std::clamp(shown_frame(editor), low, high);
   const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 2)));
-  editor.open_dialog(make_form(
-      {"Hold a hand or foot",
-       "Keeps the tip of a limb in place for some frames; elbow or knee bend so that it does.",
-       "Hold",
-       {choice_of("Limb", "The hand or foot that is held.", names, static_cast<int>(names.size()) - 1),
-        number_of("From frame", "The first frame in which it is held.", frame, low, high, "%.0f"),
-        number_of("To frame", "The last frame in which it is held.", until, low, high, "%.0f"),
-        choice_of("Place",
-                  "Where it is held: where it is in the first of these frames, at the cross-hair of the slices, or at "
-                  "the position that is typed below.",
-                  {"Where it is", "Cross-hair", "Position"}),
-        text_of("Position", "x, y and z in mm, LPS: for Place = Position.", ""), ease_field(),
-        becomes_field(Becomes::SameClip)},
-       hold_outcome,
-       hold_limb}));
+  editor.open_dialog(
+      make_form({"Hold a hand or foot",
+                 "Keeps a hand or foot in place for some frames, by bending the elbow or knee.",
+                 "Hold",
+                 {choice_of("Limb", "The hand or foot that is held.", names, static_cast<int>(names.size()) - 1),
+                  number_of("From frame", "The first frame in which it is held.", frame, low, high, "%.0f"),
+                  number_of("To frame", "The last frame in which it is held.", until, low, high, "%.0f"),
+                  choice_of("Place",
+                            "Where it is held: at its position in the first of these frames, at the cross-hair, or at "
+                            "the position typed below.",
+                            {"Where it is", "Cross-hair", "Position"}),
+                  text_of("Position", "x, y and z in mm, in LPS axes. Used if Place is Position.", ""), ease_field(),
+                  becomes_field(Becomes::SameClip)},
+                 hold_outcome,
+                 hold_limb}));
 }
 
 std::string needs_gap(const Editor& editor) {
@@ -364,7 +364,7 @@ void ask_gap(Editor& editor) {
          require_frames(e);
          if (fields[1].value < fields[0].value) throw NotYet{"The last frame comes before the first one."};
          return "Replaces " + frames_text(static_cast<int>(fields[0].value), static_cast<int>(fields[1].value)) +
-                ". Keys of the clip become part of the motion.";
+                ". The clip's keys are baked into the motion.";
        },
        [](Editor& e, const std::vector<FormField>& fields) {
          const int first = playing_range(e).low;
@@ -380,8 +380,8 @@ void ask_gap(Editor& editor) {
 
 std::vector<Operator> motion_clean_operators() {
   return {
-      {"motion.clean", "Clean clip...", "", "Motion",
-       "Take the tremble out of the clip, and keep feet in place while they stand.", ask_cleaning, needs_clip_and_rig},
+      {"motion.clean", "Clean clip...", "", "Motion", "Remove jitter from the clip, and keep standing feet in place.",
+       ask_cleaning, needs_clip_and_rig},
       {"motion.hold", "Hold a hand or foot...", "", "Motion",
        "Keep a hand or foot in place for some frames of the clip.", ask_hold, needs_limb},
       {"motion.close_gap", "Close gap...", "", "Motion",

@@ -61,7 +61,7 @@ std::string orders_of(const Motion& motion) {
     for (const std::string& name : names)
       if (count++ < kNamed) others += (others.empty() ? "" : ", ") + name + " " + order;
   }
-  if (count == 0) return most->first + " in every joint, as the file says.";
+  if (count == 0) return most->first + " in every joint, as stored in the file.";
   return most->first + "; differs in " + std::to_string(count) + (count == 1 ? " joint: " : " joints: ") + others +
          (count > kNamed ? ", ..." : ".");
 }

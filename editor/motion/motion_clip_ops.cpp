@@ -192,7 +192,8 @@ void ask_rate(Editor& editor) {
        {number_of("Frame rate", "Frames per second.", shown_clip(editor)->rate, 1, 1000, "%.6g", "fps")},
        [](const Editor& e, const std::vector<FormField>& fields) {
          const Clip* clip = shown_clip(e);
-         if (!clip) throw Error("there is no clip any more", "resample", "open this again");
+         if (!clip)
+           throw Error("the clip was deleted meanwhile", "resample", "select a clip and open the dialog again");
          const double ratio = fields[0].value / clip->rate;
          return std::to_string(clip->range_end - clip->range_start + 1) + " frames become " +
                 std::to_string(static_cast<int>(std::round((clip->range_end - clip->range_start) * ratio)) + 1) + ".";
@@ -208,7 +209,8 @@ std::vector<Operator> motion_clip_operators() {
   return {
       {"motion.retarget", "Retarget", icon::kMirror, "Motion", "Show the settings for how the clip moves the rig.",
        show_retargeting, needs_both},
-      {"motion.map", "Map...", "", "Motion", "Select which joint of the motion moves each bone.", open_map, needs_both},
+      {"motion.map", "Map...", "", "Motion", "Map each bone to the joint of the motion that moves it.", open_map,
+       needs_both},
       {"motion.map_by_names", "Match by names", "", "Motion", "Match joints and bones by the meaning of their names.",
        map_by_names, needs_both},
       {"motion.load_map", "Load map...", icon::kOpen, "Motion",
@@ -229,7 +231,7 @@ std::vector<Operator> motion_clip_operators() {
                 Reference::RestPose),
       reference("motion.reference_first", "Clip's first frame", "Match the rig's rest pose to the clip's first frame.",
                 Reference::FirstFrame),
-      rest("motion.rest_file", "Clip as stored", "Take the clip's rest pose from the directions of its joints.",
+      rest("motion.rest_file", "Clip as stored", "Use the clip's rest pose as the file stores it.",
            &RestStances::source, RestStance::AsItLies),
       rest("motion.rest_t", "Clip in T-pose",
            "Treat the clip's rest pose as arms to the sides and palms down, regardless of its joints' directions.",

@@ -252,7 +252,7 @@ std::vector<Operator> motion_operators() {
       {"motion.scrub", "Scrub", "", "Motion",
        "Show the frame under the pointer while the button is held. On a key, select and move the key.", press_timeline,
        needs_clip},
-      {"motion.pan", "Pan the timeline", "", "Motion", "Move the shown part of the timeline.", pan_timeline},
+      {"motion.pan", "Pan the timeline", "", "Motion", "Drag to scroll the timeline.", pan_timeline},
       {"motion.zoom", "Zoom the timeline", "", "Motion", "Show fewer or more frames around the pointer.", zoom},
       {"motion.view_all", "Show all frames", "", "Motion", "Fit the whole clip into the timeline.",
        [](Editor& e) { fit_window(e); }, needs_clip},

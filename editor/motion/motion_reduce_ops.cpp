@@ -40,15 +40,16 @@ struct Reduced {
 std::string summary_of(const Reduced& result) {
   const ReducedKeys& reduced = result.keys.reduced;
   char text[160];
-  std::snprintf(text, sizeof text, "At most %.2g\u00b0 off%s%.60s", reduced.most_degrees,
+  std::snprintf(text, sizeof text, "Largest error %.2g\u00b0%s%.60s", reduced.most_degrees,
                 reduced.worst_bone.empty() ? "" : ", in ", reduced.worst_bone.c_str());
   std::string words = text;
   if (!reduced.keys.root.empty()) {
-    std::snprintf(text, sizeof text, "; the body's shift at most %.2g mm", reduced.most_mm);
+    std::snprintf(text, sizeof text, "; the body at most %.2g mm from its path", reduced.most_mm);
     words += text;
   }
   if (result.plants > 0) {
-    std::snprintf(text, sizeof text, "; feet and hands that stay are at most %.2g mm off", result.keys.most_off);
+    std::snprintf(text, sizeof text, "; standing feet and resting hands at most %.2g mm from their places",
+                  result.keys.most_off);
     words += text;
     if (result.is_short()) {
       std::snprintf(text, sizeof text, ", more than the %.2g mm that were asked for", result.plant_mm);
@@ -107,11 +108,12 @@ void start_reducing(Editor& editor, const Wanted& wanted) {
 }
 
 std::string outcome_of(const Editor& e) {
-  if (!shown_clip(e) || !e.document().armature) throw Error("there is no clip any more", "reduce", "open this again");
+  if (!shown_clip(e) || !e.document().armature)
+    throw Error("the clip was deleted meanwhile", "reduce", "select a clip and open the dialog again");
   const auto [first, last] = playing_range(e);
   if (std::int64_t{last} - first >= kMostFrames)
-    throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
-                "set a shorter range");
+    throw Error("the playing range has too many frames",
+                "frames " + std::to_string(first) + " to " + std::to_string(last), "set a shorter range");
   return "Reduces frames " + std::to_string(first) + " to " + std::to_string(last) +
          ", with the clip's keys. The result has keys and no recorded motion.";
 }
@@ -120,18 +122,17 @@ void ask_reducing(Editor& editor) {
   const bool has_limbs = !planted_limbs(*editor.document().armature).empty();
   editor.open_dialog(make_form(
       {"Reduce to keys",
-       "Makes few keys of the frames that play, joined by Bezier curves, to be edited in the graph editor.",
+       "Replaces the playing range by a few keys with Bezier curves, for editing in the graph editor.",
        "Reduce",
-       {number_of("Largest error", "No bone is turned by more than this from its recorded rotation, in any frame.", 0.5,
+       {number_of("Largest error", "Largest difference of a bone's rotation from the recording, in any frame.", 0.5,
                   0.01, 45, "%.2f", "\u00b0"),
-        number_of("Shift error", "The body's shift differs by no more than this, in any frame.", 2, 0.01, 1000, "%.2f",
-                  "mm"),
+        number_of("Shift error", "Largest distance of the body from its recorded position, in any frame.", 2, 0.01,
+                  1000, "%.2f", "mm"),
         number_of("Planted feet",
-                  "Feet that stand and hands that rest are off their places by no more than this; the bones that carry "
-                  "them get more keys. 0: they go as their bones do, and may slide.",
+                  "Largest distance of standing feet and resting hands from their places; their limbs get more keys "
+                  "for it. 0 = no limit: feet may slide.",
                   has_limbs ? 1 : 0, 0, has_limbs ? 1000 : 0, "%.2f", "mm"),
-        choice_of("Result", "Whether the keys become a clip of their own or replace the shown clip.",
-                  {"New clip", "Same clip"})},
+        choice_of("Result", "Store the keys in a new clip, or replace the shown clip.", {"New clip", "Same clip"})},
        [](const Editor& e, const std::vector<FormField>&) { return outcome_of(e); },
        [](Editor& e, const std::vector<FormField>& fields) {
          start_reducing(e,
@@ -144,7 +145,7 @@ void ask_reducing(Editor& editor) {
 std::vector<Operator> motion_reduce_operators() {
   return {
       {"motion.reduce_keys", "Reduce to keys...", "", "Motion",
-       "Make few keys of the frames that play, with curves that stay within an error that you set.", ask_reducing,
+       "Replace the playing range by a few keys with curves that stay within an error that you set.", ask_reducing,
        needs_clip_and_rig},
   };
 }

@@ -210,7 +210,7 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
     next.frame = static_cast<int>(std::clamp<double>(moment, left.low, left.high));
     if (next.frame != moment)
       editor.messages.info("The play head is at frame " + std::to_string(next.frame),
-                           "The frame at which it was is no longer in the clip");
+                           "Its old frame is no longer in the clip");
   }
   shown = std::make_shared<const Clip>(std::move(clip));
   if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &editor.timeline->prepared);

@@ -147,7 +147,7 @@ TEST_CASE("cleaning clips: a hand that rested and does not reach its place any m
   const Toast& toast = test.editor->messages.toasts.back();
   CAPTURE(toast.detail);
   CHECK(toast.severity == Severity::Warning);
-  CHECK(toast.detail.find("the left hand does not reach its place") != std::string::npos);
+  CHECK(toast.detail.find("the left hand does not reach its position") != std::string::npos);
 }
 
 TEST_CASE("reducing clips: where feet cannot be kept as closely as asked, a warning says so") {
