@@ -48,7 +48,8 @@ std::optional<MouseButton> mouse_button(const std::string& word) {
 }
 
 void need(const std::vector<std::string>& words, std::size_t count) {
-  if (words.size() < count) throw Error("a word is missing", "after '" + words.back() + "'", "complete the line");
+  if (words.size() < count)
+    throw Error("the command lacks an argument", "after '" + words.back() + "'", "complete the line");
 }
 
 std::u32string characters_of(const std::string& utf8) {

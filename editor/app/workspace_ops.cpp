@@ -38,7 +38,7 @@ std::vector<Operator> workspace_operators() {
       to_workspace("workspace.pose", "Pose", icon::kPose,
                    "Switch to the Pose workspace, to turn joints or play a motion.", Workspace::Pose),
       to_workspace("workspace.resample", "Resample", icon::kResample,
-                   "Switch to the Resample workspace, to write the posed body as a new label volume.",
+                   "Switch to the Resample workspace, to make a new label volume of the posed body.",
                    Workspace::Resample),
       {"workspace.pie", "Workspace menu", "", "Workspace", "Open a menu of the workspaces at the pointer.",
        [](Editor& e) { e.open_popup = "Workspaces"; }},

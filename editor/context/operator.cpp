@@ -58,10 +58,10 @@ bool attempt(Editor& editor, const std::string& label, const std::function<void(
                                ": close other programs, or use a coarser volume");
   } catch (const std::filesystem::filesystem_error& error) {
     editor.messages.show_error(error.code().message() + ": " + error.path1().string() +
-                                   ": check the name, and that you may read and write there",
+                                   ": check the name, and your permission to read and write there",
                                label);
   } catch (const std::exception& error) {
-    editor.messages.show_error(std::string("A mistake of the program itself: ") + label + ": " + error.what());
+    editor.messages.show_error(std::string("Internal error: ") + label + ": " + error.what());
   }
   return false;
 }

@@ -165,9 +165,9 @@ glm::ivec2 figure_pixels(const FigureOptions& options) {
   std::snprintf(text, sizeof text, "%g x %g mm at %g dpi", options.size.x, options.size.y, options.dots_per_inch);
   for (const double side : {options.size.x, options.size.y})
     if (!(side >= kSmallestFigure) || !(side <= kLargestFigure))
-      throw Error("this is no size of a figure", text, "use 20 to 1000 mm a side");
+      throw Error("this is not a figure size", text, "use 20 to 1000 mm a side");
   if (!(options.dots_per_inch >= kLowestResolution) || !(options.dots_per_inch <= kHighestResolution))
-    throw Error("this is no resolution of a figure", text, "use 30 to 2400 dpi");
+    throw Error("this is not a figure resolution", text, "use 30 to 2400 dpi");
   const glm::ivec2 pixels(glm::round(options.size * options.dots_per_inch / 25.4));
   if (std::max(pixels.x, pixels.y) > kMostFigurePixels || double(pixels.x) * pixels.y > kLargestFigureArea)
     throw Error("the figure has too many pixels", text,

@@ -75,7 +75,8 @@ void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) 
     const bool perspective =
         !shows_slice(e) && e.views->body.camera.projection == render::Projection::Perspective && fields[7].chosen == 0;
     return std::to_string(pixels.x) + " x " + std::to_string(pixels.y) + " pixels." +
-           (perspective ? " The scale holds at the focus; without perspective it holds everywhere." : "");
+           (perspective ? " The scale bar is exact at the view's focus; without perspective it is exact everywhere."
+                        : "");
   };
   const auto act = [last](Editor& e, const std::vector<FormField>& fields) {
     const FigureOptions options = *last = options_of(fields);
@@ -91,20 +92,19 @@ void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) 
   };
   editor.open_dialog(make_form(
       {"Export figure",
-       "A picture of the active view for a page, with a scale bar and a legend of its tissues.",
+       "Exports the active view for a publication, with a scale bar and a legend of its tissues.",
        "Export...",
-       {number_of("Width", "Width of the figure on the page.", last->size.x, kSmallestFigure, kLargestFigure, "%.1f",
+       {number_of("Width", "Width of the printed figure.", last->size.x, kSmallestFigure, kLargestFigure, "%.1f", "mm"),
+        number_of("Height", "Height of the printed figure.", last->size.y, kSmallestFigure, kLargestFigure, "%.1f",
                   "mm"),
-        number_of("Height", "Height of the figure on the page.", last->size.y, kSmallestFigure, kLargestFigure, "%.1f",
-                  "mm"),
-        number_of("Resolution", "Pixels per inch on the page. Journals ask for 300 to 600.", last->dots_per_inch,
-                  kLowestResolution, kHighestResolution, "%.0f", "dpi"),
-        text_of("Letter", "Letter of this figure among others, as in a. May be empty.", last->letter),
+        number_of("Resolution", "Pixels per inch of the printed figure. Journals ask for 300 to 600.",
+                  last->dots_per_inch, kLowestResolution, kHighestResolution, "%.0f", "dpi"),
+        text_of("Letter", "Letter in the figure's corner, such as a. May be empty.", last->letter),
         text_of("Title", "Title above the picture. May be empty.", last->title),
         choice_of("Background", "Colour behind everything.", {"White", "Black", "None"}, static_cast<int>(last->paper)),
         choice_of("Legend", "Names and colours of the tissues that the picture shows.", {"Show", "Leave out"},
                   last->legend ? 0 : 1),
-        choice_of("Scale bar", "A bar of a round length in the body.", {"Show", "Leave out"}, last->scale_bar ? 0 : 1)},
+        choice_of("Scale bar", "A scale bar with a round length.", {"Show", "Leave out"}, last->scale_bar ? 0 : 1)},
        outcome,
        act,
        {}}));

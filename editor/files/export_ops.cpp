@@ -89,12 +89,11 @@ Operator picture_operator(const char* id, const char* label, const char* descrip
 }
 
 Operator motion_pictures() {
-  Operator op =
-      picture_operator("file.export_motion_pictures", "Motion as pictures...",
-                       "Export the frames that play as the body in the 3D view: a video at the clip's speed, or a "
-                       "picture of each frame.",
-                       motion_stem, {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
-                       ask_motion_pictures);
+  Operator op = picture_operator(
+      "file.export_motion_pictures", "Motion as pictures...",
+      "Export the playing range as seen in the 3D view: a video at the clip's speed, or a picture of each frame.",
+      motion_stem, {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
+      ask_motion_pictures);
   op.disabled_reason = why_no_motion_pictures;
   return op;
 }
@@ -194,7 +193,7 @@ std::vector<Operator> export_operators() {
        },
        needs_result},
       {"file.export_image", "Posed image...", icon::kExport, "File",
-       "Export the grey image (CT, MR) as it was posed together with the selected result.",
+       "Export the grey image (CT, MR) that was posed with the selected result.",
        [](Editor& e) {
          browse_for_result(e, "Export posed image", "posed image", stem_of(e) + "-image", writable_volumes(),
                            export_posed_image);
@@ -212,8 +211,8 @@ std::vector<Operator> export_operators() {
       picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", stem_of,
                        {{"PNG pictures", {".png"}}}, export_picture),
       {"file.export_figure", "Figure...", icon::kCamera, "File",
-       "Export the active view for a page: its size in mm, with a scale bar, a legend and a title, as PNG, TIFF or "
-       "SVG.",
+       "Export the active view for a publication: its size in mm, with a scale bar, a legend and a title, as PNG, TIFF "
+       "or SVG.",
        [last = std::make_shared<FigureOptions>()](Editor& e) { ask_for_figure(e, last); }, needs_volume},
       picture_operator(
           "view.turntable", "Turntable...",

@@ -167,7 +167,7 @@ void take_image(Editor& editor, const std::shared_ptr<const GreyLevels>& image, 
     show_image(e, image, path);
     e.views->display = render::Display::Image;
     e.messages.ok(path.filename().string(),
-                  "A grey image. Edit > Prepare volume > Labels from CT makes tissues of it that can be rigged.");
+                  "This is a grey image. To rig it, make labels first: Edit > Prepare volume > Labels from CT.");
   };
   opened->agreed = agreed;
   add_recent(editor.recent_files, path, std::time(nullptr));

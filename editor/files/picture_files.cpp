@@ -39,7 +39,7 @@ std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
   if (!(pictures <= kMostPictures)) {
     char count[32];
     std::snprintf(count, sizeof count, "%.0f pictures", pictures);
-    throw Error("too many frames play", count, "set a shorter range");
+    throw Error("the playing range has too many frames", count, "set a shorter range");
   }
   std::vector<int> frames;
   for (int i = 0; i < static_cast<int>(pictures); ++i)
@@ -56,7 +56,7 @@ class PosedScenes {
         blend_(preview_blend(editor)),
         frames_(std::move(frames)),
         maker_(editor.live->lend()) {
-    if (!clip_.problem().empty()) throw Error("the clip cannot be shown", clip_.clip()->name, clip_.problem());
+    if (!clip_.problem().empty()) throw Error("the clip cannot be drawn", clip_.clip()->name, clip_.problem());
   }
 
   // Poses the scene for a picture. Returns false while the frame's preview map is still being computed.
@@ -166,7 +166,7 @@ std::string why_no_motion_pictures(const Editor& editor) {
   if (!shown_clip(editor)) return "Import a motion first, or insert a key";
   if (!document.weights) return "Compute the weights first";
   if (editor.live->is_lent()) return "The pictures of a motion are being drawn";
-  if (watched_solve(editor)) return "A solve is watched: show the volume at rest first";
+  if (watched_solve(editor)) return "The views show a running solve: show the volume at rest first";
   return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
 }
 
@@ -200,15 +200,14 @@ void ask_motion_pictures(Editor& editor, const Path& path) {
   const auto act = [path](Editor& e, const std::vector<FormField>& fields) {
     export_motion_pictures(e, path, static_cast<MotionCamera>(fields[0].chosen));
   };
-  editor.open_dialog(make_form({"Motion as pictures",
-                                "Draws the body in each frame that plays, from where the 3D view looks now.",
-                                "Export",
-                                {choice_of("Camera",
-                                           "A camera that follows the body keeps its pelvis, or its root, in the same "
-                                           "place of the picture.",
-                                           {"Stands still", "Follow the body"})},
-                                outcome,
-                                act}));
+  editor.open_dialog(make_form(
+      {"Motion as pictures",
+       "Draws the body in each frame of the playing range, with the current camera of the 3D view.",
+       "Export",
+       {choice_of("Camera", "Follow the body: keeps the pelvis, or the root bone, at the same position in the picture.",
+                  {"Stands still", "Follow the body"})},
+       outcome,
+       act}));
 }
 
 }  // namespace limber::editor

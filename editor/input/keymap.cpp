@@ -68,7 +68,7 @@ Keymap read_keymap(const Path& path, TwoMeanings two_meanings) {
     for (const auto& entry : bindings) {
       const Binding binding = binding_of(entry, context, path);
       if (two_meanings == TwoMeanings::Refuse && keymap.find(binding.chord, {context}))
-        throw Error("the key " + to_text(binding.chord) + " has two meanings", path.string() + ", context " + context,
+        throw Error("the key " + to_text(binding.chord) + " runs two commands", path.string() + ", context " + context,
                     "remove one of them");
       list.push_back(binding);
     }

@@ -51,9 +51,9 @@ void ask(Editor& editor, const std::string& title, const std::string& descriptio
 
 void ask_holes(Editor& editor) {
   ask(editor, "Fill holes of", "Give the tissue the voxels that it encloses.", "Fill",
-      {choice_of("Holes of", "Air: holes with other tissue in them stay, such as marrow in bone.",
+      {choice_of("Holes of", "Air: keep holes that contain other tissue, such as marrow in bone.",
                  {"Air", "Any tissue"}),
-       number_of("Up to", "Larger holes stay. 0 = holes of any size.", 0, 0, 1e5, "%.3g", "ml")},
+       number_of("Up to", "Largest hole to fill. 0 = holes of any size.", 0, 0, 1e5, "%.3g", "ml")},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress&) -> FoundLabelEdit {
         FilledHoles found = fill_holes(
             volume, label, {.largest_volume = fields[1].value * kMm3PerMl, .only_air = fields[0].chosen == 0});
@@ -70,7 +70,7 @@ void ask_grow(Editor& editor) {
   const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
                                 editor.document().volume->grid.spacing.z});
   ask(editor, "Grow", "Extend the tissue by a distance in all directions.", "Grow",
-      {number_of("By", "The distance. One shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
+      {number_of("By", "The distance. A distance shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
        choice_of("Over", "The voxels that the tissue may take: all, only air, or only other tissue.",
                  {"All", "Air", "Tissue"})},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress& progress) -> FoundLabelEdit {
@@ -81,7 +81,7 @@ void ask_grow(Editor& editor) {
         }
         LabelChange change = grown_label(volume, label, fields[0].value, mask, progress);
         const std::string note =
-            change.empty() ? "Nothing was in reach: enter a larger distance" : voxels_of(change) + " more";
+            change.empty() ? "No voxel changed: enter a larger distance" : voxels_of(change) + " more";
         return {std::move(change), note};
       });
 }
@@ -89,20 +89,21 @@ void ask_grow(Editor& editor) {
 void ask_shrink(Editor& editor) {
   const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
                                 editor.document().volume->grid.spacing.z});
-  ask(editor, "Shrink", "Take away the tissue's rim, as deep as a distance.", "Shrink",
-      {number_of("By", "The distance. One shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
+  ask(editor, "Shrink", "Shrink the tissue by a distance from all sides.", "Shrink",
+      {number_of("By", "The distance. A distance shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
        erased_choice()},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress& progress) -> FoundLabelEdit {
         LabelChange change = shrunk_label(volume, label, fields[0].value, erased_of(fields[1]), progress);
         const std::string note =
-            change.empty() ? "Nothing was in reach: enter a larger distance" : voxels_of(change) + " fewer";
+            change.empty() ? "No voxel changed: enter a larger distance" : voxels_of(change) + " fewer";
         return {std::move(change), note};
       });
 }
 
 void ask_islands(Editor& editor) {
-  ask(editor, "Remove islands of", "Remove pieces of the tissue that are separate from its rest.", "Remove",
-      {number_of("Keep", "The number of largest pieces that stay. 0 = all that are large enough.", 1, 0, 10000, "%.0f",
+  ask(editor, "Remove islands of", "Remove pieces of the tissue that are not connected to its largest pieces.",
+      "Remove",
+      {number_of("Keep", "Number of largest pieces to keep. 0 = all that are large enough.", 1, 0, 10000, "%.0f",
                  "pieces"),
        number_of("At least", "Smaller pieces are removed in any case.", 0, 0, 1e5, "%.3g", "ml"), erased_choice()},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress&) -> FoundLabelEdit {
@@ -142,13 +143,14 @@ std::vector<Operator> label_edit_operators() {
        ask_holes, needs_edited_tissue},
       {"labels.grow", "Grow...", "", "Labels", "Extend the selected tissue by a distance in mm.", ask_grow,
        needs_edited_tissue},
-      {"labels.shrink", "Shrink...", "", "Labels",
-       "Take away the rim of the selected tissue, as deep as a distance in mm.", ask_shrink, needs_edited_tissue},
+      {"labels.shrink", "Shrink...", "", "Labels", "Shrink the selected tissue by a distance in mm.", ask_shrink,
+       needs_edited_tissue},
       {"labels.islands", "Remove islands...", "", "Labels",
-       "Remove pieces of the selected tissue that are separate from its rest.", ask_islands, needs_edited_tissue},
+       "Remove pieces of the selected tissue that are not connected to its largest pieces.", ask_islands,
+       needs_edited_tissue},
       {"labels.split", "Split by a cut", icon::kCut, "Labels",
-       "Draw a line across the selected tissue. The cut goes along the line of sight, and the smaller part becomes a "
-       "tissue of its own.",
+       "Cut the selected tissue along a line that you draw, in the direction of view. The smaller part becomes a new "
+       "tissue.",
        [](Editor& e) {
          e.modal = begin_split(e);
          e.modal_wrap = {};

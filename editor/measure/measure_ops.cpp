@@ -83,10 +83,11 @@ std::vector<Operator> measure_operators() {
       tool_operator("measure.angle", "Measure angle", "Click three points of the body; the angle is at the second.",
                     MeasureKind::Angle),
       tool_operator("measure.girth", "Measure girth",
-                    "Click a limb: a tape goes around it, across the nearest bone, or in the plane of a slice.",
+                    "Click a limb to measure its girth: at right angles to the nearest bone or, in a slice, in the "
+                    "slice's plane.",
                     MeasureKind::Girth),
       tool_operator("measure.thickness", "Measure thickness",
-                    "Click a tissue: the shortest line through it, from border to border.", MeasureKind::Thickness),
+                    "Click a tissue to measure its thickness: the shortest line through it.", MeasureKind::Thickness),
       {"measure.show", "Show measurements", "", "View", "Show or hide all measurements in the views.",
        [](Editor& e) { e.measures->shown = !e.measures->shown; }, needs_measurement,
        [](const Editor& e) { return e.measures->shown; }},

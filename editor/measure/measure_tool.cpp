@@ -126,10 +126,9 @@ class MeasureTool final : public Modal {
     const bool needs_tissue = kind_ == MeasureKind::Girth || kind_ == MeasureKind::Thickness;
     if (!point || (needs_tissue && editor.document().volume->at_or_air(point->voxel) == 0)) {
       const bool is_result = scene_at_pointer(editor, *place).volume != editor.document().volume;
-      editor.messages.info(
-          "There is no point of the body under the pointer",
-          is_result ? "A result shows what was measured before. Set points on the body at rest or in the pose."
-                    : "Click on the body, in 3D or in a slice.");
+      editor.messages.info("The pointer is not on the body",
+                           is_result ? "Points cannot be set on a result. Set them on the body at rest or in the pose."
+                                     : "Click on the body, in 3D or in a slice.");
       return true;
     }
     try {
@@ -176,7 +175,7 @@ class MeasureTool final : public Modal {
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
-    const char* click = kind_ == MeasureKind::Girth       ? "Put a tape around the body"
+    const char* click = kind_ == MeasureKind::Girth       ? "Measure the girth"
                         : kind_ == MeasureKind::Thickness ? "Measure the tissue"
                                                           : "Set a point";
     std::vector<KeyHint> all{{{"LMB"}, click}};

@@ -63,8 +63,7 @@ ReadyBody make_ready(const PosedBody& body, int divisor) {
   bool fits = weights.chunk_count() == std::ssize(tissue.bricks());
   for (std::int64_t brick = 0; fits && brick < weights.chunk_count(); ++brick)
     fits = std::ssize(weights.chunk(brick)) == tissue.bricks()[brick].count();
-  if (!fits)
-    throw Error("the weights belong to another volume", "while the volume follows the pose", "compute them again");
+  if (!fits) throw Error("the weights belong to another volume", "preview of the posed volume", "compute them again");
   tissue.set_seams(body_seams().of({body.volume, body.tissues, body.armature, body.seams, body.bone_map}));
   return {body,
           std::make_unique<LivePreview>(body.volume, *body.tissues, tissue, weights, preview_step(tissue) / divisor)};

@@ -56,7 +56,7 @@ void ask_flex(Editor& editor) {
   }
   const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
     if (!e.document().armature || fields[0].chosen >= std::ssize(e.document().armature->bones))
-      throw Error("the rig was changed", "flex", "open this again");
+      throw Error("the rig was changed", "flex", "open the dialog again");
     flex_axis(*e.document().armature, fields[0].chosen);
     const JointLimits& limits = e.document().armature->bones[fields[0].chosen].limits;
     if (limits.type != JointLimits::Type::Hinge)
@@ -347,7 +347,7 @@ std::vector<Operator> pose_operators() {
       {"pose.blend_copied", "Blend to copied pose", "", "Pose",
        "Blend the selected bones partly towards the copied pose.", blend_to_copied, needs_copy},
       {"pose.pin", "Pin joint", "", "Pose",
-       "Keep the ends of the selected bones in place while other joints are dragged. Run again to unpin them.",
+       "Keep the tails of the selected bones in place while other joints are dragged. Run again to unpin them.",
        toggle_pins, needs_bone,
        [](const Editor& e) {
          return needs_bone(e).empty() &&
@@ -369,7 +369,7 @@ std::vector<Operator> pose_operators() {
        [](Editor& e) { e.transform_settings->auto_ik = !e.transform_settings->auto_ik; }, nullptr,
        [](const Editor& e) { return e.transform_settings->auto_ik; }},
       {"edit.x_mirror", "X-mirror", icon::kMirror, "Edit",
-       "Also apply every change of a bone, mirrored, to its counterpart on the other side.",
+       "Mirror every change of a bone to its counterpart on the other side.",
        [](Editor& e) { e.transform_settings->x_mirror = !e.transform_settings->x_mirror; }, nullptr,
        [](const Editor& e) { return e.transform_settings->x_mirror; }},
       space_operator("space.global", "Global axes", "Align gizmos and axis locks with the axes of the world.",

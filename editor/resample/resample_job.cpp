@@ -72,7 +72,7 @@ void write_inputs(const Request& request, const ScratchFolder& folder, Progress&
   try {
     text = job.dump(1);
   } catch (const nlohmann::json::type_error&) {
-    throw Error("the name of the image's file is no text", request.image.string(),
+    throw Error("the image's file name is not valid UTF-8", request.image.string(),
                 "rename the file or its folder, or close the image");
   }
   write_file_atomically(folder / "job.json", text + "\n");

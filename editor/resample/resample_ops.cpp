@@ -134,7 +134,7 @@ class Flicker final : public Modal {
     editor.comparison.share = share;
   }
   std::vector<KeyHint> hints(const Editor&) const override {
-    return {{{std::string(name_of(key_))}, "Release to show the first side again"}};
+    return {{{std::string(name_of(key_))}, "Release to show the other result again"}};
   }
 
  private:

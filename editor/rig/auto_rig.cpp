@@ -123,7 +123,8 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
   if (sure > 0 && fitted.check.whole >= kMostlyInside) editor.messages.ok("Skeleton fitted", result, "view.console");
   else
     editor.messages.warn(
-        sure > 0 ? "Skeleton fitted, but it leaves the body" : "Skeleton placed, but every joint is uncertain", result);
+        sure > 0 ? "Skeleton fitted, but partly outside the body" : "Skeleton placed, but every joint is uncertain",
+        result);
 }
 
 void ask_auto_fit(Editor& editor) {

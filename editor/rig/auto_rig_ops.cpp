@@ -43,14 +43,13 @@ std::vector<Operator> rig_fit_operators() {
       {"rig.templates", "Templates...", icon::kRig, "Rig", "Add a ready-made skeleton, scaled to the tissue.",
        ask_template, needs_volume},
       {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig",
-       "Find the axis about which the selected bone's hinge bends without bones entering each other, "
-       "and show where bones still do.",
+       "Find the hinge axis about which the selected bone turns with the fewest collisions of bones, and show where "
+       "bones still collide.",
        start_joint_fit, needs_joint_in_tissue},
       shows_proposed("rig.joint_fit_before", "Collisions before the fit",
-                     "Show which bones enter each other when the joint turns about its current axis.", false),
+                     "Show where bones collide when the joint turns about its current axis.", false),
       shows_proposed("rig.joint_fit_after", "Collisions after the fit",
-                     "Show the fitted axis and where bones still enter each other when the joint turns about it.",
-                     true),
+                     "Show the fitted axis and where bones still collide when the joint turns about it.", true),
       {"rig.take_joint_fit", "Move the joint's axis", icon::kTick, "Rig", "Move the joint's axis to the fitted axis.",
        take_proposed_joint, needs_proposed_joint},
       {"rig.leave_joint_fit", "Leave the joint's axis", icon::kClose, "Rig",

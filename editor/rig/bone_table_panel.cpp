@@ -76,7 +76,7 @@ void draw_row(Editor& editor, Column& column, int index, const MappedLabel& row)
     tooltip(editor, top, name,
             voxels + " voxels follow " + followed(row, armature) + ", found by " +
                 std::string(to_string(row.found_by)) +
-                (row.is_sure ? "." : "; the rig has no bone that matches the name."));
+                (row.is_sure ? "." : "; no bone of the rig matches the tissue's name."));
   if (pressed.clicked) {
     select_tissue(editor, row.label, false);
     if (!row.bones.empty()) editor.selection.bone = row.bones[0], editor.selection.bones = {row.bones[0]};

@@ -53,7 +53,7 @@ void propose(Editor& editor, ProposedJoint proposed) {
                                 "The rig or the volume was changed meanwhile: start the fit again");
   if (proposed.fit.overlap_before == 0)
     return editor.messages.ok("Joint axis of " + proposed.bone,
-                              "The bones do not enter each other within the joint's range: the axis can stay");
+                              "The bones do not collide within the joint's range: the axis needs no change");
   editor.transform_settings->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
   editor.touch();
 }

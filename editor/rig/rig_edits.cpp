@@ -86,8 +86,8 @@ void warn_of_moved_targets(Editor& editor, const std::string& label, const Armat
   std::string names;
   for (std::size_t i = 0; i < std::min(moved.size(), kMostNamed); ++i) names += (i == 0 ? "" : ", ") + moved[i];
   if (moved.size() > kMostNamed) names += " and " + std::to_string(moved.size() - kMostNamed) + " more";
-  editor.messages.warn(label + ": the target of constraints moved",
-                       names + ". Look at their places in the Pose workspace");
+  editor.messages.warn(label + ": targets of constraints moved",
+                       names + ". Check their positions in the Pose workspace");
 }
 
 void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before) {

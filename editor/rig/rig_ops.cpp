@@ -80,7 +80,7 @@ void fill(Editor& editor) {
     const RigChange change = extrusion(editor);
     const glm::dvec3 to = editor.views->cross_hair;
     if (glm::distance(to, place_of(change.start, change.ends[0])) < 1e-6)
-      throw Error("the cross-hair stands on the joint", rig->bones[bones[0]].name,
+      throw Error("the cross-hair is at the joint", rig->bones[bones[0]].name,
                   "move it to where the bone should end: Shift and the right button");
     next = with_moved_ends(change.start, change.ends, [&](const glm::dvec3&) { return to; });
   } else {
@@ -173,7 +173,7 @@ void symmetrize(Editor& editor) {
   const std::vector<Bone>& all = editor.document().armature->bones;
   const std::vector<int> chosen = bones_chosen_last(editor);
   if (std::none_of(chosen.begin(), chosen.end(), [&](int bone) { return mirrored_name(all[bone].name).has_value(); }))
-    throw Error("a bone without a side has no other side", all[chosen.back()].name,
+    throw Error("the bone's name has no side", all[chosen.back()].name,
                 "give it a name with a side first, such as Arm.L or LeftArm");
   act_and_allow_redo(editor,
                      {choice_of("From", "The side that is copied to the other side as its mirror image.",
@@ -427,7 +427,7 @@ std::vector<Operator> rig_operators() {
        "Open a menu at the pointer in which you select what moved joints snap to.",
        [](Editor& e) { e.open_popup = "Snap"; }, needs_rig_workspace},
       {"rig.joints_to_bone", "Joint to bone middle", "", "Bone",
-       "Move each selected joint, at right angles to its bone, to the middle of the bone tissue around the joint.",
+       "Centre each selected joint in the bone tissue around it, by moving it at right angles to its bone.",
        joints_to_bone, needs_joint_in_volume},
       {"rig.joints_to_voxels", "Joint to voxel", "", "Bone",
        "Move the selected joints to the centres of the nearest voxels.", joints_to_voxels, needs_joint_in_volume},

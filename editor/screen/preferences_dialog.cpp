@@ -168,7 +168,7 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
   overlay("Cross-hair", "Show the cross-hair where the slices meet.", &Preferences::cross_hair,
           &Views::show_cross_hair);
   check(editor, column, "Soft shadows at rest",
-        "Compute shadows by rays as soon as nothing in the 3D view moves. Pictures and figures have them too.",
+        "Compute soft shadows by rays when nothing in the 3D view moves. Exported pictures and figures also have them.",
         preferences.fine_light);
   apply_light(editor);
 }

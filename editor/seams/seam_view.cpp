@@ -153,7 +153,7 @@ const std::vector<SeamPair>* counted_pairs(Editor& editor) {
 std::string why_no_seams(const Editor& editor) {
   const Document& document = editor.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
-  if (!document.armature) return "Import a rig first: its bone names tell where the limbs are";
+  if (!document.armature) return "Import a rig first: limbs are found by its bone names";
   if (!body_seams().has_limbs(document.armature)) return "No bone of the rig is named as an arm, leg or finger";
   return editor.seams->searching && editor.tasks.contains(*editor.seams->searching) ? "The search for seams is running"
                                                                                     : "";

@@ -9,7 +9,7 @@ namespace limber::editor {
 std::vector<Operator> seam_operators() {
   return {
       {"skin.find_seams", "Find seams", icon::kSearch, "Weights",
-       "Find the seams: voxel faces at which limbs touch but are not joined. Your own changes of seams are discarded.",
+       "Find the seams: voxel faces where limbs touch but are not connected. This discards your own changes of seams.",
        find_seams_again, why_no_seams},
       {"skin.seam_brush", "Seam brush", icon::kSeam, "Brush",
        "Cut a seam with a stroke, as deep as the brush's radius. Hold Ctrl to erase seams. Select any other brush to "

@@ -41,7 +41,7 @@ std::string why_no_comparison(const Editor& editor) {
   if (editor.document().results.empty()) return "Resample a pose first";
   const bool same =
       result_named(editor.document(), editor.comparison.a) == result_named(editor.document(), editor.comparison.b);
-  return same ? "Select two results: click one to make it B, Shift+click one to make it A" : "";
+  return same ? "Select two results: click a row for B, Shift+click a row for A" : "";
 }
 
 bool wiping(const Editor& editor) {

@@ -190,8 +190,8 @@ void ask_computation(Editor& editor) {
   };
   editor.open_dialog(make_form(
       {"Compute weights",
-       "Only the weights selected by Bones and Where change. The numbers are each tissue's relative stiffness: in "
-       "stiffer tissue, the weights of two bones blend over a shorter distance.",
+       "Changes only the weights selected by Bones and Where. In stiffer tissue, the weights of two bones blend over a "
+       "shorter distance.",
        "Compute",
        {choice_of("Method", "Heat: the smoothest weights. Geodesic: faster. Rigid: each voxel follows only one bone.",
                   {"Heat", "Geodesic", "Rigid"}),

@@ -59,7 +59,7 @@ void start_repairing_joint(Editor& editor) {
                    choose_layer(e, made->layers->layers.size() - 1);
                    e.messages.ok(kRepairing, gain_of(told->figures));
                  } else {
-                   e.messages.info(kRepairing, "No weights were found that are better: nothing has changed");
+                   e.messages.info(kRepairing, "No better weights were found: nothing was changed");
                  }
                  told->in = e.document().weights;
                  e.skin->painting->repaired_joint = told;

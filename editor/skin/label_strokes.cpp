@@ -68,12 +68,12 @@ void end_label_stroke(Editor& editor) {
   const auto running = editor.skin->painting->labels->running;
   if (editor.document().volume != running->stroke->before()) {
     drop_label_stroke(editor);
-    return editor.messages.warn(running->label, "The labels were changed meanwhile, and the stroke was dropped");
+    return editor.messages.warn(running->label, "The stroke was not applied: the labels were changed meanwhile");
   }
   const LabelChange change = running->stroke->empty() ? LabelChange{} : running->stroke->change();
   if (change.empty()) {
     drop_label_stroke(editor);
-    return editor.messages.info(running->label, "No voxel changed: see what the brush may paint over");
+    return editor.messages.info(running->label, "No voxel changed: check what the brush may paint over");
   }
   editor.skin->painting->labels->running.reset();
   show_painted(*editor.views, *running->stroke);

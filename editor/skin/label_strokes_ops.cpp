@@ -60,7 +60,7 @@ std::vector<Operator> label_brush_operators() {
   return {
       {"labels.brush", "Label brush", icon::kLabelBrush, "Labels",
        "Paint the selected tissue's labels, in slices and on the body. Hold Ctrl to erase them. Select any other brush "
-       "to paint weights again. Leads to the Skin workspace.",
+       "to paint weights again. Switches to the Skin workspace.",
        toggle_brush, needs_volume, [](const Editor& e) { return e.workspace == Workspace::Skin && brush_of(e).on; }},
       over("labels.over_all", "Over all", "Paint over every tissue and over air.", PaintOver::All),
       over("labels.over_air", "Over air", "Paint only where there is air.", PaintOver::Air),
@@ -71,7 +71,7 @@ std::vector<Operator> label_brush_operators() {
               "Erased voxels become the tissue or air around them.", Erased::Surroundings),
       erasing("labels.erase_to_air", "Erase to air", "Erased voxels become air.", Erased::Air),
       {"labels.flat", "One slice", "", "Labels",
-       "In slices, paint only the voxels of the slice. Otherwise the brush is a ball.",
+       "In slices, paint only the voxels of the slice. Off: the brush is a ball.",
        [](Editor& e) { brush_of(e).flat = !brush_of(e).flat; }, nullptr,
        [](const Editor& e) { return brush_of(e).flat; }},
       {"labels.in_range", "In a range of values", "", "Labels",

@@ -131,13 +131,12 @@ void end_stroke(Editor& editor) {
   drop_stroke(editor);
   if (!empty || lock < 0 || running->of == Painting::Running::Of::Mask) return;
   if (running->of == Painting::Running::Of::Shares && !is_locked(running->document, running->before->bones()[lock])) {
-    editor.messages.toast_error(
-        "The layer already covers this place completely",
-        "Normalize is off, so the layer's other bones keep their weights and leave none to paint",
-        "skin.normalize_unlocked");
+    editor.messages.toast_error("The layer's weights here already sum to 1",
+                                "Normalize is off, so strokes do not take weight from the layer's other bones",
+                                "skin.normalize_unlocked");
   } else {
-    editor.messages.toast_error(lock_message(running->bones, lock), "No unlocked bone can give or take weight here",
-                                "skin.unlock_all");
+    editor.messages.toast_error(lock_message(running->bones, lock),
+                                "No other unlocked bone can give or take weight here", "skin.unlock_all");
   }
 }
 
@@ -165,7 +164,7 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   const ViewPlace* view = hovered_view(editor);
   if (!view || !why_not_paint(editor).empty()) return;
   if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule)
-    return editor.messages.info("Paint", "A joint capsule paints bones: select another brush for the mask");
+    return editor.messages.info("Paint", "The joint capsule brush cannot paint masks: select another brush");
   auto running = std::make_shared<Painting::Running>();
   running->document = editor.document();
   running->tissue = parted_tissue(editor);

@@ -214,8 +214,7 @@ std::vector<Operator> paint_operators() {
                   Normalize::All),
       leaving_normalizing(),
       {"skin.relative_to_locks", "Relative to locks", "", "Brush",
-       "Strokes that add, subtract, set or multiply treat the weight that locked bones leave free as 1: a value of 0.5 "
-       "sets half of it.",
+       "Values count relative to the weight that locked bones leave free: 0.5 sets half of that weight.",
        [](Editor& e) { e.skin->painting->relative_to_locks = !e.skin->painting->relative_to_locks; }, nullptr,
        [](const Editor& e) { return e.skin->painting->relative_to_locks; }},
       {"skin.accumulate", "Accumulate", "", "Brush", "Let a stroke act again each time it passes over the same tissue.",

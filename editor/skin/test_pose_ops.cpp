@@ -27,8 +27,7 @@ std::string needs_bend(const Editor& editor) {
 std::vector<Operator> test_pose_operators() {
   return {
       {"skin.posed", "Posed", icon::kPose, "Test pose",
-       "Switch between the body at rest and its test pose: the project's pose, or one joint bent. Brushes work in "
-       "both.",
+       "Switch between the rest pose and the test pose: the project's pose, or one bent joint. Brushes work in both.",
        toggle_test_pose, needs_weights, [](const Editor& e) { return e.trial->posed; }},
       {"skin.bend_by_wheel", "Bend by wheel", "", "Test pose",
        "Bend the active bone in the test pose by a step of the mouse wheel.",

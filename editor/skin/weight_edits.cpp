@@ -72,7 +72,7 @@ bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& oper
   editor.skin->painting->unmatched = std::move(outcome.unmatched);
   if (edit.changed == 0) {
     if (!lock.empty())
-      editor.messages.toast_error(lock, "No unlocked bone can give or take weight here", "skin.unlock_all");
+      editor.messages.toast_error(lock, "No other unlocked bone can give or take weight here", "skin.unlock_all");
     else if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
     else editor.messages.info(operation.label, "No weight needed to change");
     return false;

@@ -117,16 +117,16 @@ std::vector<Operator> layer_operators() {
        "Merge the active layer into the layer or base below it. The combined weights do not change.", merge_down,
        needs_layer},
       {"skin.layer_mask", "Paint mask", icon::kMask, "Layers",
-       "Paint where the active layer covers the layers below, instead of weights. The Add brush covers them, Subtract "
-       "reveals them.",
+       "Paint the active layer's mask instead of weights: where the layer covers the layers below. The Add brush "
+       "covers them, Subtract reveals them.",
        [](Editor& e) { e.skin->painting->mask = !e.skin->painting->mask; }, needs_layer,
        [](const Editor& e) { return e.skin->painting->mask && active_layer(e).has_value(); }},
       {"skin.layer_cover", "Cover everywhere", "", "Layers",
-       "Let the active layer cover the layers below in the whole body. Where it covered nothing, it copies their "
-       "weights.",
+       "Fill the active layer's mask: it covers the layers below in the whole body. Where it covered nothing, it "
+       "copies their weights.",
        [](Editor& e) { cover(e, 1, "Cover all by "); }, needs_layer},
       {"skin.layer_uncover", "Clear mask", "", "Layers",
-       "Let the active layer cover nothing. This erases everything painted on it.",
+       "Clear the active layer's mask: it covers nothing. This erases everything painted on it.",
        [](Editor& e) { cover(e, 0, "Clear mask of "); }, needs_layer},
   };
 }

@@ -97,37 +97,37 @@ void repair_problem(Editor& editor, int index) {
   const auto found = editor.skin->painting->problems;
   const WeightProblem& problem = found->problems[static_cast<std::size_t>(index)];
   const std::string label = "Repair " + describe(problem, *found->armature);
-  start_task(editor, label,
-             [found, index, label, of = editor.document(), tissue = parted_tissue(editor),
-              edited = layer_to_edit(editor), scope = scope_of(editor)](Progress& progress) -> Finish {
-               progress.update("weights", 0);
-               const WeightEdit edit = repaired({*of.volume, *tissue, *of.tissues, *of.armature}, *edited.weights,
-                                                found->problems[static_cast<std::size_t>(index)], scope);
-               const auto made =
-                   edit.changed > 0
-                       ? std::optional(edited_layers(edited, std::make_shared<const SkinWeights>(edit.weights)))
-                       : std::nullopt;
-               const auto first_lock = std::find(scope.locked.begin(), scope.locked.end(), 1);
-               const int lock = edit.blocked_by >= 0               ? edit.blocked_by
-                                : first_lock != scope.locked.end() ? static_cast<int>(first_lock - scope.locked.begin())
-                                                                   : -1;
-               return [=](Editor& e) {
-                 if (!made && lock >= 0)
-                   return e.messages.toast_error(lock_message(*of.armature, lock),
-                                                 "No unlocked bone can give or take weight here", "skin.unlock_all");
-                 if (!made) return e.messages.info(label, "No weight needed to change");
-                 const bool fresh = !problems_stale(e);
-                 commit_weights(e, label, edited, *made);
-                 if (e.skin->painting->problems != found) return;
-                 // Mark this problem as repaired, but keep it in the list, so that the other problems keep their
-                 // indices.
-                 auto next = std::make_shared<FoundProblems>(*found);
-                 next->repaired[static_cast<std::size_t>(index)] = true;
-                 if (fresh) next->in = e.document().weights;
-                 e.skin->painting->problems = next;
-                 e.touch();
-               };
-             });
+  start_task(
+      editor, label,
+      [found, index, label, of = editor.document(), tissue = parted_tissue(editor), edited = layer_to_edit(editor),
+       scope = scope_of(editor)](Progress& progress) -> Finish {
+        progress.update("weights", 0);
+        const WeightEdit edit = repaired({*of.volume, *tissue, *of.tissues, *of.armature}, *edited.weights,
+                                         found->problems[static_cast<std::size_t>(index)], scope);
+        const auto made = edit.changed > 0
+                              ? std::optional(edited_layers(edited, std::make_shared<const SkinWeights>(edit.weights)))
+                              : std::nullopt;
+        const auto first_lock = std::find(scope.locked.begin(), scope.locked.end(), 1);
+        const int lock = edit.blocked_by >= 0               ? edit.blocked_by
+                         : first_lock != scope.locked.end() ? static_cast<int>(first_lock - scope.locked.begin())
+                                                            : -1;
+        return [=](Editor& e) {
+          if (!made && lock >= 0)
+            return e.messages.toast_error(lock_message(*of.armature, lock),
+                                          "No other unlocked bone can give or take weight here", "skin.unlock_all");
+          if (!made) return e.messages.info(label, "No weight needed to change");
+          const bool fresh = !problems_stale(e);
+          commit_weights(e, label, edited, *made);
+          if (e.skin->painting->problems != found) return;
+          // Mark this problem as repaired, but keep it in the list, so that the other problems keep their
+          // indices.
+          auto next = std::make_shared<FoundProblems>(*found);
+          next->repaired[static_cast<std::size_t>(index)] = true;
+          if (fresh) next->in = e.document().weights;
+          e.skin->painting->problems = next;
+          e.touch();
+        };
+      });
 }
 
 const char* name_of(WeightProblem::Kind kind) {

@@ -58,8 +58,8 @@ void step(Editor& editor, int by) {
 std::vector<Operator> weight_problem_operators() {
   return {
       {"skin.find_problems", "Find problems", icon::kSearch, "Weights",
-       "Find tissue that no bone reaches, isolated islands of weight, mixes of distant bones, bone tissue that bends, "
-       "and abrupt changes.",
+       "Find tissue that no bone reaches, isolated islands of weight, voxels that follow distant bones, bone tissue "
+       "that bends, and abrupt changes.",
        start_finding_problems, needs_weights},
       {"skin.next_problem", "Next problem", icon::kWarning, "Weights",
        "Select the next problem of the weights and move the views to it. Searches for problems first if needed.",

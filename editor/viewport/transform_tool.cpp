@@ -126,7 +126,7 @@ std::vector<FormField> TransformTool::fields_of_way(const glm::dvec3& way) const
   for (int axis = 0; axis < 3; ++axis)
     fields.push_back(number_of(kAxisNames[axis], "The distance to move along this axis.", along[axis], -kFarthest,
                                kFarthest, "%.2f", "mm"));
-  fields.push_back(choice_of("Axes", "The coordinate system of the axes.", {"Global", "Local", "Parent", "View"},
+  fields.push_back(choice_of("Axes", "The coordinate system of X, Y and Z.", {"Global", "Local", "Parent", "View"},
                              static_cast<int>(space)));
   return fields;
 }
@@ -140,7 +140,7 @@ std::vector<FormField> TransformTool::fields_of_axis() const {
               "Axis",
               "The axis to turn about or to scale along. None: turn about the line of sight, or scale along all axes.",
               {"None", "X", "Y", "Z"}, lock_.axis + 1),
-          choice_of("Axes", "The coordinate system of the axes.", {"Global", "Local", "Parent", "View"},
+          choice_of("Axes", "The coordinate system of X, Y and Z.", {"Global", "Local", "Parent", "View"},
                     static_cast<int>(lock_.space))};
 }
 

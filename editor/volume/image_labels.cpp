@@ -40,7 +40,7 @@ std::string size_and_loss(const Editor& editor) {
 std::string outcome(const Editor& editor, const Fields& fields) {
   const CtThresholds t = thresholds_of(fields);
   if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
-    throw Error("the thresholds must rise", "from body over fat and soft tissue to bone", "raise the higher one");
+    throw Error("the thresholds must be in ascending order", "body, fat, soft tissue, bone", "raise the higher one");
   return size_and_loss(editor);
 }
 
@@ -98,12 +98,13 @@ void ask_for_labels(Editor& editor) {
   };
   editor.open_dialog(make_form(
       {"Labels from CT",
-       "Tell tissues apart by their density. The table and blankets are left out. Bones that touch become one label.",
+       "Separates tissues by thresholds (Hounsfield units). Leaves out the table and blankets. Bones that touch become "
+       "one label.",
        "Make labels",
-       {field("Bone from", "Voxels from this density on are bone.", usual.bone),
-        field("Soft tissue from", "Voxels from this density on, up to bone, are soft tissue.", usual.soft),
-        field("Fat from", "Voxels from this density on, up to soft tissue, are fat.", usual.fat),
-        field("Body from", "Voxels below this density are air or lung.", usual.body),
+       {field("Bone from", "Voxels from this value up are bone.", usual.bone),
+        field("Soft tissue from", "Voxels from this value up to bone are soft tissue.", usual.soft),
+        field("Fat from", "Voxels from this value up to soft tissue are fat.", usual.fat),
+        field("Body from", "Voxels below this value are air or lung.", usual.body),
         number_of("Skin", "The thickness of the skin, at least one voxel.", usual.skin_mm, 0, 10, "%.1f", "mm")},
        outcome,
        [](Editor& e, const Fields& fields) {
@@ -118,11 +119,11 @@ void ask_for_body(Editor& editor) {
   const GreyLevels& image = image_of(editor);
   editor.open_dialog(make_form(
       {"Body from image",
-       "Tell the body from its background by a threshold that the image's own histogram proposes. Paint bones "
+       "Separates the body from the background by a threshold, which the image's histogram suggests. Paint bones "
        "afterwards.",
        "Make labels",
        {number_of("Body from",
-                  "Voxels from this value on are body, and so is what they enclose in an axial slice: erase air "
+                  "Voxels from this value up, and everything they enclose in an axial slice, become body: erase air "
                   "that clasped arms or crossed legs enclose.",
                   body_threshold(image), image.least, image.most(), "%.4g"),
         number_of("Skin", "The thickness of the skin, at least one voxel.", 2, 0, 10, "%.1f", "mm")},

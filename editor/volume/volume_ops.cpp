@@ -142,7 +142,7 @@ void ask_merge(Editor& editor) {
   labels.push_back(0);
   const auto outcome = [](const Editor&, const Fields& fields) {
     if (fields[0].chosen == fields[1].chosen)
-      throw Error("a tissue cannot become itself", fields[0].choices[fields[0].chosen], "select another one");
+      throw Error("both tissues are the same", fields[0].choices[fields[0].chosen], "select another one");
     if (fields[0].chosen + 1 == std::ssize(fields[0].choices))
       throw Error("air cannot become tissue", "Merge", "select the tissue to merge");
     return "Every voxel of " + fields[0].choices[fields[0].chosen] + " becomes " + fields[1].choices[fields[1].chosen] +

@@ -146,7 +146,7 @@ TEST_CASE("measure tool: a slice's girth is that of the ball's cut, and a skin's
   const std::size_t before = measured(test.editor->document()).size();
   click_at(test, ViewId::Axial, {44, -46, 0});
   CHECK(measured(test.editor->document()).size() == before);
-  CHECK(test.editor->messages.toasts.back().line == "There is no point of the body under the pointer");
+  CHECK(test.editor->messages.toasts.back().line == "The pointer is not on the body");
   test.play("expect error none");
 }
 

@@ -81,7 +81,7 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   CHECK(test.shown().get() == test.volume(1));
   test.play("key-down F");
   CHECK(test.shown().get() == test.volume(0));
-  test.play("expect \"text:Release to show the first side again\"\n key-up F");
+  test.play("expect \"text:Release to show the other result again\"\n key-up F");
   CHECK(test.shown().get() == test.volume(1));
 
   test.play("key 4\n expect \"text:A  One\"\n expect \"text:B  Two\"\n wait-idle");

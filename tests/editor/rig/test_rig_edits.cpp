@@ -602,5 +602,5 @@ TEST_CASE("rigging: an edit that moves the target bone of a constraint says so, 
   CHECK(warnings().find("Import same.json") == std::string::npos);
   import_file(*test.editor, FileKind::Rig, folder / "other.json");
   test.play("wait-job\n wait-idle");
-  CHECK(warnings().find("Import other.json: the target of constraints moved") != std::string::npos);
+  CHECK(warnings().find("Import other.json: targets of constraints moved") != std::string::npos);
 }

@@ -159,7 +159,7 @@ TEST_CASE(
   stroke(test, dab(test));
   CHECK(test.steps() == steps);
   REQUIRE(test.editor->messages.toasts.size() == 1);
-  CHECK(test.editor->messages.toasts[0].line == "The layer already covers this place completely");
+  CHECK(test.editor->messages.toasts[0].line == "The layer's weights here already sum to 1");
   // The base has nothing below it, so weights are normalized at once.
   choose_layer(*test.editor, std::nullopt);
   CHECK(normalize_of(*test.editor) == Normalize::Unlocked);
