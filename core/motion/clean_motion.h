@@ -10,11 +10,11 @@ namespace limber {
 
 struct CleanedMotion {
   std::vector<Pose> poses;
-  std::vector<Plant> plants;  // the feet that were found to stand, then the holds
+  std::vector<Plant> plants;  // plants of the feet that were found to stand, followed by the given holds
 };
 
-// Returns the poses in which each hold keeps its limb at its position and, if wanted, each foot stays in place while it
-// stands. A foot that a hold keeps is not planted as well.
+// Returns the poses in which each limb that has a hold stays at the hold's position. With `plants_feet`, each foot also
+// stays in place while it stands, unless a hold moves this foot.
 //   limbs  from planted_limbs()
 //   rate   frames per second
 //   ease   seconds over which a limb moves to its position before the hold, and back after it

@@ -13,8 +13,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kMostFrame = 1 << 28;  // largest frame number that a project can hold
-constexpr double kMostFrames = 1e6;     // upper limit on the frames of a motion that is slowed down
+// Largest frame number that a project can hold; a clip that would need a larger one is refused.
+constexpr double kMostFrame = 1 << 28;
+constexpr double kMostFrames = 1e6;  // a motion that would become longer than this, frames, is refused
 
 void require_speed(double factor) {
   if (!(factor >= kSlowest && factor <= kFastest))
@@ -52,7 +53,8 @@ void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress
   const int most = std::max(0, clip.motion->frame_count - 1);
   clip.first = std::clamp(static_cast<int>(std::round(clip.first * ratio)), 0, most);
   clip.last = std::clamp(static_cast<int>(std::round(clip.last * ratio)), clip.first, most);
-  if (plays_to_end) clip.range_end = clip.end();  // corrects the rounding, which may differ by one frame
+  // The end of the range was rounded separately, so it may differ from clip.end() by one frame.
+  if (plays_to_end) clip.range_end = clip.end();
 }
 
 }  // namespace

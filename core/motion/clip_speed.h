@@ -7,7 +7,7 @@
 
 namespace limber {
 
-constexpr double kSlowest = 0.05, kFastest = 20;  // limits of the factor by which a clip is played faster
+constexpr double kSlowest = 0.05, kFastest = 20;  // smallest and largest factor of at_speed(); others throw Error
 
 // Returns the clip resampled to another rate, in frames per second. Keys, markers and the playing range get new frame
 // numbers, so that they stay at the same time.

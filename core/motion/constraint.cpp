@@ -78,8 +78,8 @@ Constraint mirror_image(const Constraint& constraint, const Bone& bone, const Bo
   mirrored.rotation = plane.rotation(constraint.rotation);
   const glm::dmat3 own = rest_axes(bone), other = glm::transpose(rest_axes(counterpart));
   for (int axis = 0; axis < 3; ++axis) {
-    // Mirroring negates a rotation vector's direction. The limits of this axis then belong to the axis of the
-    // counterpart that is most nearly parallel to the mirrored vector.
+    // A mirror reverses the sense of a rotation, so the rotation vector is reflected and then negated. The limits of
+    // this axis are given to that axis of the counterpart which is most nearly parallel to the result.
     const glm::dvec3 seen = other * -plane.direction(own[axis]);
     const int along = largest(seen);
     mirrored.axes[along] = constraint.axes[axis];

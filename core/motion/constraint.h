@@ -38,9 +38,8 @@ struct Constraint {
   bool on = true;
   double weight = 1;  // used if the weight has no keys, [0, 1]
   std::string bone;   // the bone that is constrained
-  // The target is a bone or a position. If `target` is empty, `place` is a position in the world; else it is fixed to
-  // the bone `target`. Either is given in world coordinates, mm; one that is fixed to a bone, as it lies in the rest
-  // pose.
+  // The target is a bone, or a position in world coordinates, mm. If `target` is empty, the position `place` is fixed
+  // in the world; else it is fixed to the bone `target`, and `place` is where it lies in the rest pose.
   std::string target;
   glm::dvec3 place{0};
 
@@ -66,8 +65,9 @@ struct Constraints {
   bool operator==(const Constraints&) const = default;
 };
 
-constexpr std::size_t kMostConstraints = 4096;  // upper limit for one clip; far more than a rig has bones
-constexpr double kFarthestPlace = 1e7;          // largest coordinate of a position that a project can hold, mm
+constexpr std::size_t kMostConstraints = 4096;  // a project whose clip has more constraints is refused as damaged
+// A project that has a larger coordinate of a target position, mm, is refused as damaged.
+constexpr double kFarthestPlace = 1e7;
 
 // Returns the weight of a constraint at a frame, [0, 1]: from the keys of the weight, or the constraint's constant
 // weight if there are none.

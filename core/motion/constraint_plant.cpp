@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Plant: a hand or foot keeps its position in the world or on another bone, and if wanted its orientation. The two long
 // bones of the limb turn to make this possible, by the law of cosines: the elbow or knee bends in the plane in which it
-// is already bent. If the limb is too short or too long for the position, it ends as near to it as possible.
+// is already bent. If the limb is too short or too long to reach the position, its end comes as near to the position as
+// possible.
 #include <algorithm>
 #include <cmath>
 

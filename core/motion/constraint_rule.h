@@ -33,7 +33,8 @@ struct ConstraintRule {
   std::string description;  // a sentence that the user sees
   ConstraintTarget target = {};  // kind of target that the constraint needs; a position may be fixed to a bone
 
-  // Returns the bones that the constraint turns, in no order. Throws Error if the rig lacks the bones for it.
+  // Returns the bones that the constraint turns, in no order. Throws Error if the rig lacks a bone that the constraint
+  // needs.
   std::vector<int> (*turned)(const ConstraintOnRig& on_rig, const Armature& armature) = nullptr;
   // Turns the bones of turned() so that the constraint holds.
   void (*solve)(const ConstraintOnRig& on_rig, PosedRig& rig) = nullptr;

@@ -18,7 +18,7 @@ glm::dquat about(int axis, double angle) {
   return q;
 }
 
-// The axes about which the three angles turn, in the parent's frame.
+// Returns the axes about which the angles x, y and z turn, as columns, in the parent's frame.
 glm::dmat3 axes_of(const glm::dvec3& angles) {
   const double cy = std::cos(angles.y), sy = std::sin(angles.y), cz = std::cos(angles.z), sz = std::sin(angles.z);
   return {{cz * cy, sz * cy, -sy}, {-sz, cz, 0}, {0, 0, 1}};

@@ -16,7 +16,8 @@ namespace {
 constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
 // A limb rests if it moves less than this distance, mm, in kShortestStance and stays this near to one position.
 constexpr double kRest = 2;
-constexpr double kHeld = 0.3;            // mm; the same limit for a limb that moves slowly before and after it rests
+// Limit that replaces kRest, mm, to find the rest of a limb that drifts slowly before or after it.
+constexpr double kHeld = 0.3;
 constexpr double kLowest = 0.02;         // quantile of a point's heights that is taken as the height of the ground
 constexpr double kShortestStance = 0.1;  // seconds; shorter stances are ignored
 constexpr double kLongestGap = 0.05;     // seconds; a shorter interruption does not end a stance
@@ -65,8 +66,8 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
 // before or after.
 std::vector<std::array<int, 2>> still_spans(const std::vector<glm::dvec3>& places, const std::array<int, 2>& within,
                                             int window, double near) {
-  // One side suffices, since at the first frame of a rest the point is still only afterwards, and at the last only
-  // before.
+  // It suffices that the point is still on one side in time. At the first frame of a rest it is still only towards
+  // later frames, at the last frame only towards earlier ones.
   const auto is_still = [&](int f) {
     const auto stays_to = [&](int g) {
       return g >= 0 && g < std::ssize(places) && glm::distance(places[f], places[g]) < near;
@@ -94,7 +95,8 @@ std::optional<Plant> rest_in(const std::vector<glm::dvec3>& places, const std::a
   const auto is_there = [&](int f) { return glm::distance(places[f], place) <= near; };
   while (from <= to && !is_there(from)) ++from;
   while (from <= to && !is_there(to)) --to;
-  // A limb that needs more than `window` frames to arrive or to leave drifts.
+  // In the frames of the span outside from .. to the limb arrives or leaves. If either takes more than `window` frames,
+  // the limb drifts and does not rest.
   bool stays = to - from >= window && from - span[0] <= window && span[1] - to <= window;
   for (int f = from; f <= to; ++f) stays = stays && is_there(f);
   if (!stays) return {};

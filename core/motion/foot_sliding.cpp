@@ -30,7 +30,8 @@ constexpr int kMostRounds = 40;
 constexpr double kShortestStance = 0.1;       // seconds; a shorter stance is ignored
 constexpr double kMaySlide = 1.01;            // allowed slide of the body's foot, as a multiple of the source's slide
 constexpr double kMayExceed[] = {0.25, 0.6};  // further allowed slide, mm: of the ankle, of the toes
-constexpr double kMayExceedMoving = 3;        // factor on kMayExceed for stances in which the foot need not be still
+// Factor on kMayExceed for stances that are found with the full limits of speed and height.
+constexpr double kMayExceedMoving = 3;
 constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;  // limits of the factor by which one round changes an urge
 // Regularization of the rotations of thigh and shank that move the ankle (turns_of_leg), as a share of the summed
 // squared lengths of thigh and shank. kMayMiss is for horizontal movement, kMayRise for vertical. The larger the share,
@@ -200,8 +201,8 @@ bool solve_within_limits(const std::vector<FootTrack>& legs, double frame_time, 
   return all_may;
 }
 
-// Returns by how many times its allowed excess the worst stance slides; above 1, a foot slides too far. Raises the
-// weights of stances that slide too far, and lowers the others.
+// Returns the excess of the worst stance, as a multiple of the excess that is allowed for it; above 1, a foot slides
+// too far. Raises the weights of stances whose excess is too large, and lowers the others.
 double urge_stances(const std::vector<FootTrack>& legs, const std::vector<Stance>& stances, const FootMending& mending,
                     Urges& urges) {
   double worst = 0;

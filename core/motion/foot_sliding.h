@@ -47,6 +47,7 @@ struct TurnsOfLeg {
   double most() const { return std::max(glm::length(thigh), glm::length(shank)); }
 };
 //   thigh, shank  vectors from hip to knee and from knee to ankle, mm
+//   ankle_aside   wanted displacement of the ankle along the ground, mm
 TurnsOfLeg turns_of_leg(const glm::dvec3& thigh, const glm::dvec3& shank, const glm::dvec2& ankle_aside);
 
 // Computes the corrections that keep the feet of one or two legs from sliding. If `along_ground` is false, only the

@@ -34,8 +34,10 @@ double apart(const Plant& a, const Plant& b) { return std::hypot(a.place.x - b.p
 // slides, so its stance could not be found there.
 class Stances {
  public:
-  //   middle  the last frame of the cross-fade in which the first take's plants are used
-  //   ease    frames over which a foot moves to its position and away from it
+  //   first, second  plants of the feet of each take, in frames of that take
+  //   fade_first     frame of the first take at which the cross-fade begins
+  //   middle         last frame of the cross-fade in which the first take's plants are used
+  //   ease           frames over which a foot moves to its position and away from it
   Stances(const Armature& armature, const std::vector<PlantedLimb>& limbs, const std::vector<Plant>& first,
           std::vector<Plant> second, int fade_first, int middle, int ease) {
     for (Plant& plant : second) plant.first += fade_first, plant.last += fade_first;
@@ -48,7 +50,7 @@ class Stances {
         return same_point(other, b) && other.first < b.first;
       });
       if (!is_first || b.first > middle + 1 + ease) continue;
-      const Plant* a = nullptr;  // the first take's latest plant of the same point
+      const Plant* a = nullptr;  // the latest plant of the first take that is of the same foot and point as `b`
       for (const Plant& plant : before_)
         if (same_point(plant, b) && (!a || plant.last > a->last)) a = &plant;
       if (!a || a->last < middle - ease) continue;

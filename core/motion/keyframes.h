@@ -63,8 +63,10 @@ void set_root_shape(Keys& keys, int frame, const KeyShape& shape);
 // Multiplies all tangents by a factor, for example when the number of frames per second changes.
 void scale_tangents(Keys& keys, double factor);
 
-// ---- Keys Sets keys of `bones` at a frame, with the rotations that the bones have in the pose. If a root bone is
-// among them, the body's position is keyed too. An existing key keeps its shape. A new key gets clamped handles and the
+// ---- Keys
+
+// Sets keys of `bones` at a frame, with the rotations that the bones have in the pose. If a root bone is among them,
+// the body's position is keyed too. An existing key keeps its shape. A new key gets clamped handles and the
 // interpolation of the key before it, or of the key after it if there is none before.
 void insert_key(Keys& keys, const Armature& armature, const Pose& pose, const std::vector<int>& bones, int frame);
 // Deletes the keys of the bones at a frame. Returns false if there were no such keys.

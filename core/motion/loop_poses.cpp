@@ -87,8 +87,9 @@ std::vector<Pose> closed(const Armature& armature, std::vector<Pose> poses, cons
     Pose &end = poses[last - step], &start = poses[step];
     for (std::size_t b = 0; b < end.rotation.size(); ++b) {
       const Lack lack = seam.bone(b);
-      // The first frames need the opposite difference of values. Their difference of speeds keeps its sign, since the
-      // time also counts from the seam.
+      // The frames after the seam need the opposite correction of values. Their correction of speeds keeps its sign,
+      // because it is reversed twice: the difference is opposite, and the distance from the seam grows forwards instead
+      // of backwards in time.
       const glm::dvec3 ahead = lack.at(share, frames), behind = Lack{-lack.way, lack.speed}.at(share, frames);
       end.rotation[b] = glm::normalize(turned_by(ahead) * end.rotation[b]);
       start.rotation[b] = glm::normalize(turned_by(b == root ? back * behind : behind) * start.rotation[b]);

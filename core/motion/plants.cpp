@@ -15,11 +15,12 @@ namespace limber {
 
 namespace {
 
-constexpr int kLongestEase = 2000;  // upper limit of the ease, frames
+constexpr int kLongestEase = 2000;  // an ease of more frames is cut to this number
 // Largest distance from hip to ankle as a share of the leg's length. It is below 1 so that the knee stays slightly bent
 // and its direction defined.
 constexpr double kStretch = 0.999;
-// Largest distance that the body may sink so that a foot reaches its position, as a share of the leg's length.
+// A body sinks at most by this share of a leg's length so that the foot reaches its position; further, the foot stays
+// above the position.
 constexpr double kDeepest = 0.15;
 
 glm::dvec3 joint_of(const PosedRig& rig, const PlantedLimb& limb) {
@@ -61,8 +62,8 @@ void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature
   rig.turn_by(limb.upper, shortest_turn(joint_of(rig, limb) - root, target - root));
 }
 
-// Returns the axis about which a limb bends at rest: the axis of its joint's limits or, without limits, the axis about
-// which a knee bends backwards and an elbow forwards.
+// Returns the axis about which a limb bends at rest. It is the axis of the hinge limits of the limb's knee or elbow or,
+// without these limits, the axis about which a knee bends backwards and an elbow forwards.
 glm::dvec3 hinge_of(const PlantedLimb& limb, const Armature& armature, const glm::dvec3& back) {
   const JointLimits& limits = armature.bones[limb.lower].limits;
   if (limits.type == JointLimits::Type::Hinge && glm::length(limits.axis) > 0) return glm::normalize(limits.axis);
@@ -99,7 +100,8 @@ class Planter {
   // Returns how far the body should move in a frame, mm: the weighted mean of the displacements of its planted feet. If
   // the body moves with its feet, the legs change their shape less.
   glm::dvec3 carrying(const Pose& pose, int frame) const {
-    constexpr double kOfFree = 0.1;  // weight of not moving the body, for the legs without plants
+    // Weight of the displacement zero in the mean, so that one planted foot does not move the body fully.
+    constexpr double kOfFree = 0.1;
     const PosedRig rig(armature_, pose);
     glm::dvec3 sum(0);
     double weights = kOfFree;
@@ -107,8 +109,8 @@ class Planter {
       if (!limbs_[l].is_leg || !is_pulled(l, frame)) continue;
       const double share =
           std::max(pull_of(rig, l, PlantPoint::Joint, frame).share, pull_of(rig, l, PlantPoint::Tip, frame).share);
-      // The displacement of a plant that eases in or out is already multiplied by its share, so it is divided by it
-      // here.
+      // The displacement of a plant that eases in or out is already multiplied by its share. The division by `share`
+      // reverses this.
       sum += share * (target_of(rig, l, frame) - joint_of(rig, limbs_[l])) / std::max(share, 0.05);
       weights += share;
     }
@@ -160,9 +162,9 @@ class Planter {
       return plant.limb == static_cast<int>(limb) && share_of(plant, frame, ease_) > 0;
     });
   }
-  // Returns the position that a plant wants for its point in a frame. In frames outside of the plant, this is the
-  // original path of the point, shifted by the offset at the plant's nearest frame, so that a foot that comes down is
-  // not pulled to the ground early.
+  // Returns the position that a plant wants for its point in a frame. In a frame outside of the plant, this is the
+  // point's original position, shifted by as much as the plant shifts the point in its nearest frame, so that a foot
+  // that comes down is not pulled to the ground early.
   glm::dvec3 goal_of(const Plant& plant, int frame) const {
     const std::vector<glm::dvec3>& track = tracks_[plant.limb][static_cast<int>(plant.point)];
     return plant.place + track[frame] - track[std::clamp(frame, plant.first, plant.last)];
@@ -270,8 +272,8 @@ std::vector<PlantedLimb> planted_limbs(const Armature& armature) {
         return bone >= 0;
       };
       if (!hangs_on(limb.lower, limb.upper)) continue;
-      // If a foot is not a descendant of the shank (as with control bones for inverse kinematics), the leg cannot move
-      // it.
+      // If a foot is not a descendant of the shank (as with control bones for inverse kinematics), turning the leg does
+      // not move the foot.
       if (limb.end >= 0 && (!hangs_on(limb.end, limb.lower) ||
                             !(glm::distance(armature.bones[limb.end].head, armature.bones[limb.end].tail) > 0)))
         limb.end = -1;

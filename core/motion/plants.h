@@ -59,8 +59,9 @@ std::vector<Plant> plants_of_feet(const Armature& armature, const std::vector<Pl
 std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                                   const std::vector<Pose>& poses, double rate, Progress& progress = no_progress());
 
-// Returns those of `rests` in which a limb is held by the world. A hand that also keeps still relative to the trunk
-// hangs idle; it is held only if it moves relative to the trunk during the rest or at its ends.
+// Returns those of `rests` in which the limb is fixed to something in the world (the ground, a handrail). A hand that
+// also keeps still relative to the trunk only hangs, so its rest is left out, unless the hand moves relative to the
+// trunk during the rest or at its ends.
 //   rests  from plants_at_rest()
 std::vector<Plant> held_by_world(const std::vector<Plant>& rests, const Armature& armature,
                                  const std::vector<PlantedLimb>& limbs, const std::vector<Pose>& poses, double rate,

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kSteps = 3;  // steps of the Gauss-Newton method: a fourth step would change speeds by less than a percent
 constexpr int kNear = 3;   // number of keys on either side of a removed key whose speeds are fitted again
-// Weight that keeps a key's speed near the difference of frames if there are no frames between two keys.
+// Weight of a small term in the fit that pulls a key's speed towards the central difference of the frames. It defines
+// the speed where there are no frames between two keys.
 constexpr double kPull = 1e-3;
 
 double size_of_error(const glm::dquat& wanted, const glm::dquat& value) {
@@ -102,9 +103,9 @@ class Spline {
     return any;
   }
 
-  // Returns the weight of a frame in the fit. Frames with a smaller allowed error weigh more, so that the neighbouring
-  // spans do not bend theirs. The frames with the largest allowed error weigh 1, so that kPull stays small beside all
-  // of them.
+  // Returns the weight of a frame in the fit. Frames with a smaller allowed error have larger weights, so that frames
+  // with a larger allowed error cannot bend the curve there. The smallest weight is 1, so that kPull stays small beside
+  // all weights.
   double weight_of(int frame) const { return (most_ / allowed_[frame]) * (most_ / allowed_[frame]); }
 
   // Fits the speeds of the keys `low` to `high` to the frames of the adjacent spans. A change of a key's speed moves

@@ -16,8 +16,8 @@
 namespace limber {
 
 struct ReduceSettings {
-  double degrees = 0.5;  // largest error of a bone's rotation
-  double mm = 1;         // largest error of the body's shift
+  double degrees = 0.5;  // largest allowed error of a bone's rotation
+  double mm = 1;         // largest allowed error of the body's shift
 };
 
 struct ReducedKeys {
@@ -36,8 +36,9 @@ ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& p
 
 // The largest errors that are allowed at each frame; all are positive.
 struct AllowedErrors {
-  std::vector<std::vector<double>> degrees;  // degrees; one list for each bone, with one value for each frame
-  std::vector<double> mm;                    // allowed error of the body's shift at each frame, mm
+  // Allowed errors of rotations, degrees; one list for each bone, one value for each frame.
+  std::vector<std::vector<double>> degrees;
+  std::vector<double> mm;  // allowed error of the body's shift at each frame, mm
 };
 AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, const ReduceSettings& settings);
 
@@ -46,7 +47,7 @@ template <class Value>
 struct ReducedTrack {
   std::map<int, Value> keys;
   KeyShapes shapes;
-  double error = 0;  // largest distance from the recorded values
+  double error = 0;  // largest distance from the recorded values, degrees for a bone, mm for the shift
 };
 
 // Fits keys to the same poses several times. A bone whose allowed errors have not changed is not fitted again.
@@ -55,7 +56,7 @@ class KeyFitter {
   // Keeps references to the rig and to the poses. The poses belong to the frames `start`, `start` + 1, ...
   KeyFitter(const Armature& armature, const std::vector<Pose>& poses, int start);
 
-  // Returns the keys within these errors. Throws Cancelled when the user stops it.
+  // Returns keys whose errors are nowhere larger than `allowed`. Throws Cancelled when the user stops it.
   ReducedKeys fitted(const AllowedErrors& allowed, Progress& progress);
 
  private:

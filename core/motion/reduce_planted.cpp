@@ -11,9 +11,10 @@ namespace limber {
 
 namespace {
 
-constexpr int kMostRounds = 12;          // upper limit; each round reduces the allowed errors by at least a third
-constexpr double kSmallestAngle = 1e-4;  // degrees; smallest allowed error of a bone: it moves a foot by microns
-constexpr double kSmallestShift = 1e-3;  // mm; smallest allowed error of the body's shift
+constexpr int kMostRounds = 12;  // after so many rounds the keys are returned even if a plant is still not kept
+// The allowed error of a bone, degrees, is not lowered below this value, which moves a foot by microns.
+constexpr double kSmallestAngle = 1e-4;
+constexpr double kSmallestShift = 1e-3;  // mm; the allowed error of the body's shift is not lowered further
 
 // Returns the poses that the keys give at the frames `start` to `start` + `count` - 1.
 std::vector<Pose> poses_of_keys(const Armature& armature, const Keys& keys, int start, std::size_t count,

@@ -26,6 +26,7 @@ constexpr RestStance kRestStances[] = {RestStance::AsItLies, RestStance::TPose, 
 const char* word_of(RestStance stance);
 // Returns the stance that a word names ("T", "A", "anatomical", "file"), in upper or lower case. "supine" also names
 // the anatomical stance. Throws Error for any other word.
+//   where  names the source of the word in the error message
 RestStance stance_of_word(const std::string& word, const std::string& where);
 
 // Returns the unit direction of a body part in this stance, in the body's axes (left, back, up). Returns nothing where

@@ -11,7 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kAlike = 1e-3;    // largest distance between a joint and its bone's head, as a share of the rig's size
+// The skeletons differ if a joint is further from its bone's head than this share of the rig's size.
+constexpr double kAlike = 1e-3;
 constexpr double kInPlace = 0.01;  // mm; smaller differences of size and position between motion and rig are ignored
 
 // Returns the rest position of each bone's joint, in LPS axes, in the order of the bones. Returns nothing if a bone has

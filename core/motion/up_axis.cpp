@@ -15,7 +15,7 @@ constexpr int kMostFrames = 200;  // a motion with more frames is examined at 20
 // Shares of the examined frames. The z axis is up if the body stands along z in at least the share kMany of the frames
 // and along y in less than the share kFew.
 constexpr double kMany = 0.5, kFew = 0.1;
-// Largest movement of a travelling body's root along the up axis, as a share of its movement along the ground.
+// An axis counts as up if the root moves along it by less than this share of its movement along the other one (y or z).
 constexpr double kFlat = 0.2;
 
 std::optional<glm::dvec3> mean_of(const Skeleton& skeleton, BodyPart part) {

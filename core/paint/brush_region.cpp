@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-// Upper limit on the distance from the centre of a geodesic dab to the nearest tissue voxel, in voxels along each axis.
+// A geodesic dab starts from the tissue voxel nearest to its centre. If this voxel is more than so many voxels away
+// along an axis, the dab touches nothing.
 constexpr int kMostBeside = 2;
 
 // Returns the number of set bits. It does not use the processor's instruction, because the program must run on the few
@@ -66,8 +67,7 @@ void set_range(std::uint64_t* row, int begin, int end) {
   if (begin < end) row[begin >> 6] |= (std::uint64_t{1} << (end - begin)) - 1;
 }
 
-// Returns a mask for word number `word` of a row of bits. In the mask, the bits at the row's positions up to `end` are
-// set.
+// Returns word number `word` of a row of bits in which the bits at the positions 0 to `end`, both included, are set.
 std::uint64_t up_to(int end, int word) {
   const int left = end - word * 64;
   return left < 0 ? 0 : left >= 63 ? ~std::uint64_t{0} : (std::uint64_t{2} << left) - 1;
@@ -145,7 +145,8 @@ bool BrushReach::place_window(double radius, bool grown) {
   size_ = glm::ivec3(high) - low_ + 1;
   for (int axis = 0; axis < 3; ++axis) {
     squared_[axis].resize(size_[axis] + 2 * kBrick);
-    // The lists extend one brick beyond the window on both sides, since bricks at its rim extend beyond it.
+    // The lists in squared_ extend one brick beyond the window on both sides, since bricks at the rim of the window
+    // extend beyond it.
     for (int i = -kBrick; i < size_[axis] + kBrick; ++i) {
       const double way = (low_[axis] + i - centre_[axis]) * volume_.grid.spacing[axis];
       squared_[axis][i + kBrick] = static_cast<float>(way * way);
@@ -647,8 +648,9 @@ void BrushReach::offer(const glm::ivec3& cell, float distance, float before, con
   if (distance + 1e-5f * distance >= far_distance_[rank]) return;
   far_distance_[rank] = distance;
   far_corner_[rank] = {before, glm::i16vec3(corner)};
-  // A voxel's path can be shorter than the path of the voxel from which it is reached, if the last bend is nearer to
-  // it. Such a voxel is added to the bucket that is being processed, since earlier buckets are not processed again.
+  // The path to this voxel can be shorter than the path to the voxel from which it is reached, since its last bend may
+  // be nearer to it. Such a voxel is added to the bucket that is being processed, since earlier buckets are not
+  // processed again.
   bucket_[std::max(static_cast<std::size_t>(distance * per_bucket_), this_bucket_)].push_back(
       {distance, rank, glm::i16vec3(cell)});
 }

@@ -82,8 +82,8 @@ class BrushReach {
  private:
   using Mask = std::array<std::uint64_t, 8>;  // one bit for each voxel of a brick, as in TissueVoxels::Brick::mask
   struct Corner {
-    float before;       // length of the path from the dab's centre to the corner, mm
-    glm::i16vec3 cell;  // the corner's voxel, relative to low_
+    float before;       // length of the path from the dab's centre to this corner, mm
+    glm::i16vec3 cell;  // voxel of the corner, relative to low_
   };
   struct Front {
     float distance;
@@ -139,7 +139,7 @@ class BrushReach {
   double radius_ = 0;
   glm::ivec3 low_{0}, size_{0}, start_{0};
   std::array<std::vector<float>, 3> squared_;  // squared distance of each position from the centre along each axis, mm2
-  std::vector<Span> ball_, grown_ball_;        // x range of the ball, or a larger ball, in each row of the window
+  std::vector<Span> ball_, grown_ball_;        // x range of the dab's ball, and of a slightly larger ball, in each row
   std::vector<int> bricks_;                    // indices of the bricks that have tissue in the window
   const Seams* seams_ = nullptr;               // the tissue's seams if one is near the window, else null
 

@@ -222,8 +222,8 @@ Stroke::Work::Side Stroke::Work::side_of(std::vector<int> bones, const std::opti
   return side;
 }
 
-// Selects the fallback bone, which gets weight taken from the painted bone, for when all bones connected in the bone
-// tree are locked. It is the unlocked bone with the most weight where the stroke begins.
+// If all bones that are connected to the painted bone in the bone tree are locked, selects a fallback bone, which gets
+// the weight that is taken from the painted bone: the unlocked bone with the most weight where the stroke begins.
 void Stroke::Work::find_nearby(const Reached& reached) {
   ready_ = true;
   const std::vector<int>& bones = sides_[0].bones;

@@ -45,7 +45,8 @@ class JointCapsuleSide final : public BrushSide {
  private:
   const int child_;
   int parent_ = -1;
-  glm::dvec3 along_{0};  // change of `at` in change() from one voxel to the next along each axis
+  // Change of the child bone's share, before smoothing, from one voxel to the next along each axis.
+  glm::dvec3 along_{0};
   double at_origin_ = 0;
 };
 
