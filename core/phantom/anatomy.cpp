@@ -14,8 +14,8 @@ namespace {
 constexpr double kSkinThickness = 1.8;  // thickness of the skin (dermis and epidermis) of an adult's limb, mm
 // A point becomes cartilage if the sum of its distances to two bones is less than this, mm.
 constexpr double kJointGap = 5;
-constexpr double kMuscleReach = 7;  // largest distance of a point that becomes muscle from the muscle's shape, mm
-constexpr double kMostFat = 40;     // upper limit of the fat's thickness (Flesh::fat), mm
+constexpr double kMuscleReach = 7;  // a point below the fat that is further than this from every muscle is fat, mm
+constexpr double kMostFat = 40;     // no part of the flesh has a thicker layer of fat (Flesh::fat), mm
 constexpr int kBlock = 8;           // edge of the blocks in which the volume is filled, voxels
 constexpr int kMargin = 3;          // width of the air around the body, voxels
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 30;
@@ -190,7 +190,7 @@ void close_layers(LabelVolume& volume, const std::vector<std::uint8_t>& part) {
     return touches(i, around, is(kAir)) || touches(i, around, is(kNail)) ? kSkin : kLabelCount;
   });
 
-  // Of two bones that touch, the voxels at the contact become cartilage in the bone that was added later.
+  // Where two bones touch, the touching voxels of the bone that was added later become cartilage.
   const auto is_bone = [&](std::int64_t i) {
     return voxels[i] == kCorticalBone || voxels[i] == kCancellousBone || voxels[i] == kMarrow;
   };

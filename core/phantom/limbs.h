@@ -17,7 +17,7 @@ struct LimbPlan {
   int flesh_parent = -1;
   int rig_parent = -1;
   double bend_degrees = 0;       // bend of the elbow or knee at rest
-  double thinnest_radius = 0.5;  // lower limit of the radii of vessels, nerves and tendons, mm
+  double thinnest_radius = 0.5;  // vessels, nerves and tendons get at least this radius, mm
 };
 
 // Adds an arm from the humerus to the finger tips. The forearm is half pronated: the palm faces the thigh.

@@ -30,7 +30,7 @@
 //                     macOS: _NSGetExecutablePath instead of /proc/self/exe; names end in .so as well.
 //   memory            Windows: GlobalMemoryStatusEx and the limit of the job object. macOS: host_statistics64.
 //   memory_pages      Windows: VirtualAlloc, which reserves before it commits, so zeros of a large grid must be
-//                     committed page by page. macOS: no MADV_HUGEPAGE and no MAP_NORESERVE, which is its usual way.
+//                     committed page by page. macOS: no MADV_HUGEPAGE, and no MAP_NORESERVE, as it never reserves.
 //   give_back_pages   Windows: VirtualAlloc with MEM_RESET. macOS: MADV_FREE.
 //   large_blocks      Windows, macOS: the same, without effect: only glibc has the settings.
 //   host              Windows: GetComputerNameEx, RtlGetVersion, the registry's name of the processor. macOS: sysctl.

@@ -16,24 +16,29 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180;
 
-constexpr double kUprightLean = 7.5 * kDegree;  // a body with axes this near to the world's axes counts as aligned
+// If the body's axes are this near to world axes, the world axes are used instead.
+constexpr double kUprightLean = 7.5 * kDegree;
 // Largest bend of a knee, and largest angle between leg and trunk seen from the side, at which the direction of the
 // legs is used to find the body's upright axis.
 constexpr double kStraightKnee = 20 * kDegree;
 constexpr double kLegsInLine = 25 * kDegree;
-constexpr double kKneeAside = 5 * kDegree;   // largest sideways bend of a healthy knee (varus, valgus) [Hsu 1990]
-constexpr double kElbowAside = 8 * kDegree;  // largest sideways bend of an elbow, about half of the carrying angle
+// A knee bends at most this far sideways (varus, valgus); the rest is a turn of the thigh [Hsu 1990].
+constexpr double kKneeAside = 5 * kDegree;
+// An elbow bends at most this far sideways (half of the carrying angle); the rest is a turn of the arm.
+constexpr double kElbowAside = 8 * kDegree;
 constexpr double kHyperextension = 15 * kDegree;
-// Range in which a foot points outwards (positive) relative to its knee [Staheli 1985].
+// Range in which a foot points outwards (positive) relative to its knee [Staheli 1985]. A heading beyond it is taken as
+// a turn of the thigh.
 constexpr double kToeOut[] = {-5 * kDegree, 25 * kDegree};
-// Range of the forearm's pronation, radians; 0: palm forward.
+// Range of the forearm's pronation, radians; 0: palm forward. A pronation beyond it is taken as a turn of the upper
+// arm.
 constexpr double kPronation[] = {-10 * kDegree, 175 * kDegree};
 constexpr double kSoleSlope = 23 * kDegree;   // slope from the toes up to the ankle, with the sole on the ground
 constexpr double kToeSlope = 8 * kDegree;     // slope from the toes' tips up to their base, with the sole on the ground
 constexpr double kBackwards = 110 * kDegree;  // a foot turned further than this from forward points backwards
 constexpr double kSteepFoot = 75 * kDegree;   // a foot that points down more steeply than this has no heading
-// Angle between upper arm and hanging, used if the hand does not show where its palm faces. In an arm raised further
-// the thumb is assumed to point forward, in a lower arm the palm.
+// The pronation is assumed if the hand does not show where its palm faces. If the upper arm is raised from hanging by
+// more than this angle, the thumb is assumed to point forward, else the palm.
 constexpr double kRaisedArm = 22.5 * kDegree;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);

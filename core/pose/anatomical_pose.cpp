@@ -168,13 +168,15 @@ class Posing {
     return above * world * frame.anatomical_from_rest;
   }
 
-  // Returns the bone's world rotation with the joint's rotation replaced by a flexion of its hinge, radians.
+  // Returns a bone's world rotation with a flexion of its hinge, radians, in place of the joint's rotation.
+  //   now  the bone's world rotation if the joint keeps its rotation
   glm::dquat hinged(int bone, const glm::dquat& now, double flexion, const AnatomicalHinge& hinge) const {
     return now * glm::conjugate(base_.rotation[static_cast<std::size_t>(bone)]) *
            about(hinge.axis, flexion - hinge.at_rest);
   }
 
   // Returns the world rotation of a finger's bone. An angle that is not requested keeps its value.
+  //   now      the bone's world rotation if the joint keeps its rotation
   //   segment  index of the bone's flexion in JointMotions
   glm::dquat finger_turn(int bone, const glm::dquat& now, const JointMotions& motions, std::size_t segment,
                          const AnatomicalHinge& hinge) const {

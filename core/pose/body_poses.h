@@ -27,6 +27,7 @@ std::span<const BodyPose> body_poses();
 
 // Finds a named pose of the body. Upper and lower case are equal; "_", "-" and blanks are ignored. Throws Error for an
 // unknown name, and lists the known ones.
+//   where  names the source of the pose's name in the error message
 const BodyPose& require_body_pose(const std::string& name, const std::string& where);
 
 JointAngles angles_of(const BodyPose& pose);

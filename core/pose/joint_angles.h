@@ -69,9 +69,10 @@ using JointAngles = std::map<SidedJoint, JointMotions>;
 // Adds a request such as "left hip flexion=90" to `angles`, and replaces an earlier angle of the same motion. Words may
 // be in upper or lower case; a plural or "both" means both sides. Throws Error for an unknown joint or motion or a bad
 // number, and lists the known words.
+//   where  names the source of the request in the error message
 void add_joint_request(JointAngles& angles, const std::string& request, const std::string& where);
 
-// Adds an angle, degrees, for a request that is given without its number: "left hip flexion".
+// Adds an angle, degrees, for a request `asked` that has no number: "left hip flexion".
 void add_joint_angle(JointAngles& angles, const std::string& asked, double degrees, const std::string& where);
 
 // Returns the joint's name for messages: "left hip", "neck".

@@ -15,9 +15,9 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Upper limit of a pose file's size in bytes. Even a file with rotations of 4096 bones is far smaller.
+// A pose file of more bytes is refused. Even a file with rotations of 4096 bones is far smaller.
 constexpr std::uint64_t kMostBytes = 64 << 20;
-// Upper limit of a number in a pose file, mm or degrees. No body moves by 1000 km.
+// A pose file with a larger number, mm or degrees, is refused. No body moves by 1000 km.
 constexpr double kLargest = 1e9;
 
 std::vector<double> numbers(const Json& value, size_t count, const char* key, const std::string& where) {

@@ -19,8 +19,9 @@ namespace {
 enum : Label { kAir = 0, kSkin, kFat, kSoft, kLung, kGas, kBone };
 
 constexpr double kThin = 3;            // half of the smallest thickness of a body, mm; thinner things are removed
-constexpr double kSmallestBody = 1e4;  // volume of the smallest body, or part of a body, mm3
-constexpr double kLeastShare = 0.02;   // smallest part of a body, as a share of the largest part
+constexpr double kSmallestBody = 1e4;  // volume of the smallest body, mm3; smaller components are removed
+// Smallest part of a body, as a share of the largest part; smaller parts are removed.
+constexpr double kLeastShare = 0.02;
 constexpr double kSmallestBone = 150;  // volume of the smallest bone, mm3; smaller specks are noise
 constexpr double kLargestMarrow =
     1.5e5;  // mm3; larger cavities in bone, such as that of a closed skull, contain no marrow

@@ -11,8 +11,9 @@ namespace limber {
 
 namespace {
 
-constexpr double kCovered = 0.99;  // lower limit of the share of the body's surface voxels that have the skin's label
-constexpr double kThin = 0.4;      // lower limit of the share of skin voxels at the surface: a sheet of 2 to 3 voxels
+constexpr double kCovered = 0.99;  // a skin must have at least this share of the body's surface voxels
+// A skin must have at least this share of its voxels at the surface, as a sheet of 2 to 3 voxels has.
+constexpr double kThin = 0.4;
 
 // Counts, for each label, the voxels that share a face with the air around the body.
 std::map<Label, std::int64_t> at_surface(const LabelVolume& volume) {

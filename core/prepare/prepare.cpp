@@ -110,7 +110,7 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
     throw Error("this is no orientation", code, "name three axes by L or R, P or A, S or I, for example LPS or RAS");
 
   const Grid& grid = volume.grid;
-  // For each new axis, the index of the old axis.
+  // For each new axis, the index of the old axis that becomes it.
   const std::array<int, 3> old_axis = nearest_axes(grid.direction, wanted);
   Grid turned = grid;
   AxisMap map{};

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
-constexpr double kLargestSpacing = 1e6;  // upper limit of the spacing, mm; volumes that are read have the same limit
+constexpr double kLargestSpacing = 1e6;  // a larger spacing, mm, is refused, as it is in volumes that are read
 // Labels whose shares of a voxel's volume differ by less than this have equal shares: the shares are sums of rounded
 // products.
 constexpr double kTie = 1e-9;

@@ -130,7 +130,7 @@ struct GoneOver {
   std::map<std::string, std::string> names;  // old name -> new name
 
   std::string now(const std::string& bone) const { return names.contains(bone) ? names.at(bone) : bone; }
-  // Returns whether a removed bone had the name that a mirrored bone takes.
+  // Returns whether `bone` is the name of a removed bone that a mirrored bone takes.
   bool is_left_over(const std::string& bone) const {
     return !names.contains(bone) &&
            std::any_of(names.begin(), names.end(), [&](const auto& name) { return name.second == bone; });

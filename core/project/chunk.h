@@ -30,7 +30,7 @@ using ChunkSet = std::unordered_set<ChunkHash, ChunkHash::Hasher>;
 
 ChunkHash hash_of(std::string_view chunk);
 
-// Upper limit on the size of an unpacked chunk, bytes. A reader may have to allocate it at once.
+// A chunk that unpacks to more bytes is refused. A reader may have to allocate the whole chunk at once.
 constexpr std::size_t kLargestChunk = std::size_t{16} << 20;
 
 class ChunkSink {

@@ -13,8 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFrame = 1 << 28;  // largest frame number in a project
-constexpr int kLongestChain = 4096;           // largest number of bones in a chain; a rig has no more bones
+constexpr std::int64_t kMostFrame = 1 << 28;  // a larger frame number is refused
+constexpr int kLongestChain = 4096;           // a longer chain of bones is refused; a rig has no more bones
 constexpr std::size_t kFewestBytes = 138;     // size of a stored constraint with empty names
 constexpr double kWidestLimit = 2 * std::numbers::pi;
 

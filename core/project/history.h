@@ -46,16 +46,17 @@ class History {
 
   bool can_undo() const { return position_ > 0; }
   bool can_redo() const { return position_ + 1 < std::ssize(steps_); }
-  bool undo();  // false when there is nothing to undo
+  bool undo();  // returns false when there is nothing to undo
   bool redo();
-  void jump(std::int64_t step);  // step in [0, #steps)
+  void jump(std::int64_t step);  // makes the step with this index current, [0, number of steps)
 
   // The steps, oldest first; position() is the index of the current one. The documents of other steps may be without
   // their volume.
   const std::vector<Step>& steps() const { return steps_; }
   std::int64_t position() const { return position_; }
 
-  // Marks the state with this revision as saved. It may no longer be the current state when a save ends.
+  // Marks the state with this revision as saved. When a save ends, later edits may already have made another state
+  // current.
   void mark_saved(std::int64_t revision) { saved_ = revision; }
   void mark_unsaved() { saved_ = -1; }  // the current state counts as unsaved too, for example after a recovery
   bool unsaved() const { return revision() != saved_; }

@@ -52,7 +52,8 @@ struct SpareChunks {
   ChunkSource* source = nullptr;
 };
 
-// Writes a new file, completely or not at all, in place of any file at `path`. Throws Error when it cannot.
+// Writes a new file, completely or not at all, in place of any file at `path`. Throws Error when the file cannot be
+// written.
 SaveMark create_project(const Project& project, const Path& path, DocumentWriter& writer,
                         Progress& progress = no_progress(), const SpareChunks& spare = {});
 
