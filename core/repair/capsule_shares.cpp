@@ -11,7 +11,7 @@ namespace {
 // Half width, mm, of the slab around the joint in which the limb's thickness is measured. Only tissue that the field
 // may change counts.
 constexpr double kSlab = 20;
-constexpr double kLeastThickness = 5;  // lower limit of the limb's thickness, mm
+constexpr double kLeastThickness = 5;  // a thinner limb counts as this thick, mm
 
 double smooth_rise(double t) {
   t = std::clamp(t, 0.0, 1.0);

@@ -10,13 +10,13 @@
 namespace limber {
 
 struct CapsuleWidths {
-  double flexor = 40, extensor = 40;  // lengths over which the share rises from 0 to 1, mm
+  double flexor = 40, extensor = 40;  // lengths over which the share rises from 0 to 1 on each side, mm
 };
 
 class CapsuleShape {
  public:
   CapsuleShape(const WeightedBody& body, const JointField& field, const JointMotion& motion);
-  // Returns the values of the field's nodes.
+  // Returns the share of a capsule with these widths at each node of the field.
   std::vector<double> shares(const CapsuleWidths& widths) const;
 
  private:

@@ -21,7 +21,8 @@ constexpr double kCellEdge = 8;  // mm
 constexpr double kBoneFade = 8;  // mm
 // Distances from the joint, as shares of a bone's length, at which the mask begins to fall and at which it becomes 0.
 constexpr double kReachBegin = 0.6, kReachEnd = 0.95;
-// Weight of the joint's own bones and their neighbours, between which the mask rises from 0 to 1 in a voxel.
+// In a voxel, the mask rises from 0 to 1 as the weight of the joint's own bones and their neighbours rises from
+// kOtherPart to kOwnPart.
 constexpr double kOtherPart = 0.3, kOwnPart = 0.8;
 constexpr int kGrain = 16;  // bricks per block of a parallel loop
 

@@ -49,7 +49,7 @@ Extent extent_of(const WeightedBody& body, const JointField& field, const AxisFr
   return extent;
 }
 
-// Follows one circle and appends the gaps on it.
+// Walks along one circle about the joint's axis, and appends the gaps (runs of air between tissue) on it.
 class CircleWalk {
  public:
   CircleWalk(const WeightedBody& body, const JointField& field, const std::vector<FleshClass>& classes)

@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-// Largest angle between two turns, degrees; tissue volumes change smoothly between them.
+// Largest angle between successive turns, degrees. Tissue volumes change smoothly from one turn to the next.
 constexpr double kLargestStep = 22.5;
 constexpr double kLeastTurn = 5;  // smallest turn, degrees; a smaller one changes hardly any voxel
 // Limits of the turns, degrees from rest: with a given range, without one, and for swings of ball joints.

@@ -83,7 +83,7 @@ WeightEdit with_shares(const WeightedBody& body, const SkinWeights& weights, con
              [&](const WeightRules& rules, Influence& influence, std::int64_t index, const glm::ivec3& voxel) {
                const FieldPoint point = field.point(index, voxel);
                if (point.piece < 0 || point.mask == 0) return WeightChange{};
-               // Locked bones keep their weights; the other bones share the rest.
+               // Moving bones that are locked keep their weights; the other moving bones get the rest of the share.
                int held = 0;
                for (int i = 0; i < 4; ++i)
                  if (is_moving[influence.bone[i]] && rules.is_locked(influence.bone[i])) held += influence.weight[i];

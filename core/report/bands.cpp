@@ -12,8 +12,8 @@
 namespace limber {
 
 namespace {
-// Two posed neighbours count as neighbours at rest if they were closer there than this, in voxel edges of the posed
-// grid.
+// Two neighbours in the posed volume count as neighbours at rest if their distance at rest is at most so many voxel
+// edges of the posed grid.
 constexpr double kNeighbours = 3;
 // Weight of the distance from a bone at rest, mm, relative to the error of its motion, mm, in bone_that_carries().
 constexpr double kShareOfDistance = 0.05;

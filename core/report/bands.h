@@ -22,7 +22,9 @@ namespace limber {
 struct BandLimits {
   double stretch = 2;      // least stretch of a band, as a multiple of the length at rest
   double joint_reach = 5;  // a joint's reach, within which tissue may stretch, as a multiple of the joint's depth
-  double off_arc = 0.25;   // largest distance from the joint's arc, as a fraction of the joint's reach
+  // Stretched tissue counts as a band if its distance from a joint's arc is more than this fraction of the joint's
+  // reach.
+  double off_arc = 0.25;
   std::int64_t least_voxels = 50;  // size of the smallest band, in voxels: smaller ones may be due to rounding
 };
 

@@ -15,7 +15,7 @@ class DisplacementView {
   DisplacementView(const TiledVectors& tiles) : tiles_(tiles.empty() ? nullptr : &tiles) {}
 
   bool empty() const { return !rows_ && !tiles_; }
-  // Returns the displacement of a voxel of the posed volume, whose grid is `grid`. It must not be empty.
+  // Returns the displacement of a voxel of the posed volume, whose grid is `grid`. The view must not be empty.
   const glm::vec3& at(const Grid& grid, const glm::ivec3& voxel) const {
     return tiles_ ? tiles_->at(voxel) : rows_[grid.index(voxel)];
   }

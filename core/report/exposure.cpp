@@ -155,8 +155,8 @@ Exposure measure_exposure(const JudgedPose& pose, const AirAround& air) {
 std::optional<WorstPlace> largest_air_pocket(const JudgedPose& pose, const AirAround& air) {
   const Grid& grid = pose.posed.grid;
   const AffineTransform to_rest = voxel_from_world(pose.rest.grid);
-  // Returns true if an enclosed air voxel of the pose was enclosed at rest too. Air has no displacement, so that of the
-  // tissue beside the voxel tells where the voxel was at rest.
+  // Returns true if an enclosed air voxel of the pose was enclosed at rest too. Air has no displacement, so the
+  // displacement of the tissue beside the voxel tells where the voxel was at rest.
   const auto was_enclosed = [&](const glm::ivec3& v) {
     for (const glm::ivec3& face : kFaces) {
       const glm::ivec3 beside = v + face;

@@ -160,6 +160,7 @@ double percent_change(double before, double after) { return before > 0 ? 100 * (
 // Returns the number of components of a label with at least kSmallest voxels, minus `before`, but at least 0.
 // Components with a small gap between them count as connected, since such gaps are no tears: a thin part at another
 // position on the grid may get a gap of one voxel, and a gap that one thick slice bridged at rest may become visible.
+//   touching  number of such components if only voxels that touch count as connected
 int torn_parts(const LabelVolume& after, Label label, int touching, int before) {
   if (touching <= before) return 0;
   std::vector<std::int64_t> voxels;

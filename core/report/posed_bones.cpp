@@ -119,6 +119,7 @@ std::size_t followed_bone(const MovedVoxels& voxels, const std::vector<RigidTran
 // Judges one bone of the body (the voxels of a label on one side of the body) by the motions of the rig bones that its
 // name allows.
 //   single  true: the label names one bone, which must move rigidly
+//   within  largest distance, mm, of a voxel from where its rig bone moves it; at a larger distance the voxel is wrong
 WholeBone judge(const MovedVoxels& voxels, const std::vector<int>& allowed, bool single, const JudgedPose& pose,
                 double within) {
   WholeBone bone;
@@ -204,8 +205,8 @@ std::vector<LimbDirection> limb_directions(const JudgedPose& pose, const std::ve
   return limbs;
 }
 
-// Judges each bone that a label names, on each side of the body. Adds its voxels to `of_rig_bone` at the rig bone that
-// it belongs to.
+// Judges each bone that a label names, on each side of the body. If the label names a single bone, the bone's voxels
+// are added to the entry of `of_rig_bone` for the rig bone that the bone belongs to.
 std::vector<WholeBone> judge_named(const JudgedPose& pose, const std::map<Label, LabelBones>& labels,
                                    const RestBone& rest, const std::vector<BoneVoxel>& bone,
                                    std::vector<MovedVoxels>& of_rig_bone) {

@@ -32,7 +32,7 @@ struct DifferingSide {
   bool operator==(const DifferingSide&) const = default;
 };
 
-// Compares the tissue voxels of `volume` with `from`.
+// Returns which tissue voxels of `volume` have another label in `from`, and their numbers.
 //   tissue  the tissue voxels of `volume`
 DifferingSide differing(const LabelVolume& volume, const TissueVoxels& tissue, const LabelVolume& from);
 

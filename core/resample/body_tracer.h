@@ -17,7 +17,6 @@ class BodyTracer {
   // Keeps references to all arguments.
   //   tets      nullptr: posed without finite elements
   //   priority  by label: where tissues overlap, the tissue with the higher priority is kept
-  //   priority  priority of each label's tissue
   //   output    voxels of the posed volume on the output lattice; tissue beyond them is left out
   //   nearest   true: bone is painted where the nearest voxel at rest is bone, without interpolation
   BodyTracer(const PosedLattice& lattice, const RigidBones& bones, const PosedTets* tets, const TissueDepth* depth,

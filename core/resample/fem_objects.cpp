@@ -25,15 +25,16 @@ constexpr double kFar = 10000;  // distance of waiting objects from their target
 constexpr double kDegreesPerEdge = 22.5;
 // Factor on the solver's tolerance when objects press: forces react more strongly to it than shapes do.
 constexpr double kTight = 0.02;
-constexpr double kForceTolerance = 0.01;  // largest relative deviation from the requested force
-constexpr int kForceTries = 20;           // largest number of solves to reach the requested force
+// The search ends when the force differs from the requested one by at most this share of the requested one.
+constexpr double kForceTolerance = 0.01;
+constexpr int kForceTries = 20;  // largest number of solves to reach the requested force
 // ForceSearch counts a larger excess of force as this multiple of the requested force.
 constexpr double kMostOff = 4;
 constexpr int kRounds = 4;           // largest number of times that the forces of all objects are searched
 constexpr double kStuck = 0.02;      // an object that moved less than this is stuck, mm
 constexpr double kFirstMove = 1;     // motion of an object from the first try to the second, mm
 constexpr double kDeepest = 50;      // largest distance by which an object may move beyond its target position, mm
-constexpr double kMostPoints = 4e6;  // upper limit on the number of sample points on an object
+constexpr double kMostPoints = 4e6;  // an object that needs more sample points is refused
 constexpr double kNearGap = 2;       // largest gap between skin and object that is reported, mm
 
 Eigen::RowVector3d row_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
@@ -75,7 +76,8 @@ int pieces_of(const TriangleMesh& mesh, const glm::ivec3& f, double reach_mm) {
 }
 
 // Adds sample points on a triangle to a sweep, each with its motion per mm that the object moves away.
-//   ways  for each possible direction of approach, the motions of the mesh's vertices per mm
+//   ways      for each possible direction of approach, the motions of the mesh's vertices per mm
+//   reach_mm  upper limit on the distance between sample points
 void add_points(const TriangleMesh& mesh, const glm::ivec3& f, const std::vector<std::vector<glm::dvec3>>& ways,
                 double reach_mm, ObjectSweep& sweep) {
   const int pieces = pieces_of(mesh, f, reach_mm);

@@ -85,7 +85,7 @@ class FemObjects {
  private:
   struct Way {
     std::vector<glm::dvec3> of_vertex;  // motion of each vertex per mm that the object moves away
-    // Distance from the target position at which the object does not touch the body, mm.
+    // Distance from the target position at which the object does not touch the body, mm. Its approach starts there.
     double clear_mm = 0;
   };
   std::vector<Way> ways_to(const FemObject& object) const;

@@ -43,8 +43,8 @@ constexpr double kRim = 2.5;
 constexpr double kJoint = 2;
 // Distance between two bones in a pose below which both are part of a joint there.
 constexpr double kClosing = 1;
-// Upper limit on the distance of a bone's node from its exact position, mm. For coarse tets the limit is larger,
-// because they follow a bone's shape only roughly.
+// If a bone's node is further than this from its exact position, mm, a step of the solve fails. For coarse tets the
+// limit is larger, because they follow a bone's shape only roughly.
 constexpr double kDrift = 2;
 // Gravity grows over as many steps as a rotation by this angle takes, degrees.
 constexpr double kSagging = 45;

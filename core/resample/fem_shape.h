@@ -49,7 +49,7 @@ class FemSequence {
   std::shared_ptr<const FemShape> next(Progress& progress = no_progress());
 
  private:
-  // Solves the same pose with larger tets. Returns the estimated error of `shape`.
+  // Solves the pose of `shape` a second time, with larger tets, and returns the estimated error of `shape`.
   FemError error_of(const FemShape& shape, Progress& progress);
 
   const SkinWeights& weights_;

@@ -239,7 +239,7 @@ class PosedVoxels {
   }
 
   void forget_corners_below(int z) const {
-    const bool fills_again = settings_.mass_exact || (mends_ && has_tets_);  // soft_borders() needs the corners
+    const bool fills_again = settings_.mass_exact || (mends_ && has_tets_);  // soft_borders() needs these corners later
     if (!fills_again) lattice_.forget_corners_below(z);
   }
 

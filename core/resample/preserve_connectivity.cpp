@@ -130,8 +130,8 @@ class Mending {
     return from;
   }
 
-  // Shrinks those components of bone tissue to below 50 voxels that have fewer than 50 at rest and gained some by
-  // resampling.
+  // Shrinks components of bone tissue that have 50 voxels or more only because of resampling, and fewer at rest: they
+  // get fewer than 50.
   void trim(Label label, const std::vector<Part>& parts, std::int64_t too_many) {
     for (size_t i = 0; i + 1 < parts.size() && too_many > 0 && parts[i].voxels < kSmallestPart + kSmallestKept; ++i) {
       const auto from = sources(label, parts[i].component);
@@ -177,7 +177,7 @@ class Mending {
     return found;
   }
 
-  // Enlarges those components to 50 voxels that have 50 or more at rest and lost some of them by resampling.
+  // Enlarges components that have fewer than 50 voxels only because of resampling, and 50 or more at rest: they get 50.
   void grow(Label label, const std::vector<Part>& parts, std::int64_t too_few) {
     find_stretches(label);
     std::set<int> found;

@@ -25,6 +25,7 @@ class RestPoints {
 
   //   output  voxels of the posed volume on the output lattice
   //   room    upper limit on the number of stored rest points, 12 bytes each
+  //   trace   is called by at() for rest points that are not stored
   RestPoints(const VoxelRange& output, std::int64_t room, Trace trace);
 
   // Stores the rest points of one tile if there is room. Several threads may call it for different tiles.
