@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 constexpr int kMostBones = 4096;
 
-// Upper limit of the coordinates of a position, mm (1000 km). No body is larger.
+// A rig in which a coordinate of a position is larger than this, mm (1000 km), is refused.
 constexpr double kFarthestMm = 1e9;
 // Returns true if the coordinates of a position are within kFarthestMm. Returns false for NaN.
 bool near_enough(const glm::dvec3& v) {

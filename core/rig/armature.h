@@ -55,6 +55,7 @@ void check_armature(const Armature& armature, const std::string& where);
 
 // Sorts bones so that parents come before children, and adapts their parent indices. Does not change an order that
 // already fulfils this. Throws Error if a parent is not an index into `bones`, or if a bone is its own ancestor.
+//   where  names the file in the error's message
 Armature parents_first(std::vector<Bone> bones, const std::string& where);
 
 // Returns the bone's own axes in the rest pose, with Blender's definition [vec_roll_to_mat3]: columns x, y, z, with y

@@ -26,8 +26,8 @@ constexpr double kRoughly = 1e-3;  // replaces kNoProgress in a search that only
 // of a bone's tail from its target.
 constexpr double kPoleWeight = 0.1;
 constexpr int kRestartsBeyondReach = 6;
-// The smallest gain for which the pose found by a restart replaces the best pose so far, which it may differ from a
-// lot: it must be nearer to the target by this share of the chain's length.
+// The pose that a restart finds may differ a lot from the best pose so far. It replaces the best pose only if it is
+// nearer to the target by at least this share of the chain's length.
 constexpr double kWorthAJump = 1e-4;
 
 double between(std::mt19937& random, double low, double high) { return low + (high - low) * (random() / 4294967296.0); }

@@ -282,7 +282,9 @@ glm::dmat4 parent_from_node(const Json& node, const std::string& where) {
 
 size_t size_of(const Json& gltf, const char* list) { return gltf.contains(list) ? gltf[list].size() : 0; }
 
-// Returns the number that a property refers to, or -1 without the property. Throws Error if `list` has no such element.
+// Returns the index that the property `key` of `object` contains, or -1 without the property. Throws Error if `list`
+// has no element with this index.
+//   what  names the property in the message
 std::int64_t reference(const Json& gltf, const Json& object, const char* key, const char* list, const std::string& what,
                        const std::string& where) {
   if (!object.contains(key)) return -1;

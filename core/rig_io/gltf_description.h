@@ -33,9 +33,9 @@ struct GltfDescription {
   };
   struct Accessor {
     std::int64_t view = -1;
-    std::uint64_t offset = 0, count = 0;  // glTF's name of the element type: SCALAR, VEC3 ...
+    std::uint64_t offset = 0, count = 0;  // offset in the view, bytes; number of elements
     std::int64_t component = 0;           // glTF's number for the type of a component [glTF 2.0, 3.6.2.2]
-    std::string type;                     // SCALAR, VEC3 ...
+    std::string type;                     // glTF's name of the element type: SCALAR, VEC3 ...
     bool is_sparse = false;
   };
   struct View {
@@ -55,7 +55,7 @@ struct GltfDescription {
   std::vector<Buffer> buffers;
   std::vector<std::vector<std::uint64_t>> skins;  // joints of each skin; not checked to be indices of nodes
   std::size_t animations = 0;
-  std::string_view binary;  // the binary chunk of a .glb, a part of the parsed bytes; empty without
+  std::string_view binary;  // the binary chunk of a .glb, a part of the parsed bytes; empty if there is none
 };
 
 // Parses the bytes of a glTF file. Throws Error if a property is wrong or missing, and names this property.
@@ -63,7 +63,8 @@ struct GltfDescription {
 //   where      names the file in error messages
 GltfDescription parse_gltf_description(const std::string& bytes, bool is_binary, const std::string& where);
 
-// Throws Error if `what` refers to an element that `list`, which has `size` elements, does not have.
+// Throws Error if `index` is not less than `size`, the number of elements of `list`.
+//   what  names the property that has the index, in the message
 void check_gltf_index(std::uint64_t index, std::size_t size, const std::string& what, const char* list,
                       const std::string& where);
 

@@ -117,9 +117,9 @@ class CheapestCut {
     return depth;
   }
 
-  // Returns the cost of cutting through each voxel of the band_. The cost falls with the depth inside a sheet (skin and
-  // connective tissue), so that the cut follows the sheet's middle. In a bridge the cost falls
-  // with the third power of the depth, because a bridge is short.
+  // Returns the cost of cutting through each voxel of the band. The cost falls with the depth inside a sheet (skin and
+  // connective tissue), so that the cut follows the sheet's middle. In a bridge the cost falls with the third power of
+  // the depth, because a bridge is short.
   std::vector<double> costs() const {
     const std::vector<float> in_sheet = depth_in_sheets([&](std::size_t n) { return is_sheet(kind_of(n)); });
     const std::vector<float> in_bridge = depth_in_sheets([&](std::size_t n) { return band_.is_bridge[n] != 0; });

@@ -107,7 +107,7 @@ class SeamFinder {
       if (!label.empty()) label[place] = volume_.at(v);
       bone_[place] = held_by_[place];
       distance[place] = held_by_[place] == kSoft ? std::numeric_limits<float>::infinity() : 0;
-      return held_by_[place];  // kSoft is TissueFront::kNoSource
+      return held_by_[place];  // kSoft, which equals TissueFront::kNoSource, if no bone holds the voxel
     });
     front.spread(
         distance,
