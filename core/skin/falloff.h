@@ -21,7 +21,8 @@ class Falloff {
   // [Fritsch & Carlson 1980]. It is constant before the first point and behind the last. At least one point is needed.
   explicit Falloff(std::span<const glm::dvec2> points);
 
-  //   share  distance from the centre as a share of the radius, [0, 1]
+  // Returns the strength at a distance from the centre.
+  //   share  the distance as a share of the radius, [0, 1]
   float operator()(float share) const {
     const float at = share * kSteps;
     const int step = at < kSteps - 1 ? static_cast<int>(at) : kSteps - 1;

@@ -12,6 +12,7 @@ namespace limber {
 
 class WeightsAround {
  public:
+  // Unpacks the influences of a brick and of the voxels that touch it.
   //   chunk  a function that returns the InfluenceView of the brick with a given index
   template <class ChunkOf>
   WeightsAround(const TissueVoxels& tissue, int brick, const ChunkOf& chunk) {

@@ -31,6 +31,7 @@ class SkinWeights {
   const std::vector<std::string>& bones() const { return bones_; }
   std::int64_t size() const { return size_; }
 
+  // Returns the influences of a brick.
   //   brick  index in TissueVoxels::bricks()
   const Chunk& chunk(std::int64_t brick) const { return *chunks_[brick]; }
   // Returns a brick's chunk. Copies of weights share a chunk until it is replaced in one of them, so equal pointers

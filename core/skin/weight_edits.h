@@ -52,6 +52,8 @@ TissueRegion region_of_bone(const SkinWeights& weights, const TissueVoxels& tiss
 // ---- edits. In each edit, several `bones` are treated as one bone with the sum of their weights.
 
 enum class Flood { Add, Subtract, Set, Multiply };
+// Changes the sum of the weights of `bones` in every voxel of the scope: adds `value`, subtracts it, sets the sum to it
+// or multiplies the sum by it.
 //   value   for Add, Subtract and Set: [0, 1]; for Multiply: a factor of 0 or more
 //   amount  how far weights move towards the new weight, [0, 1]
 WeightEdit flooded(const WeightedBody& body, const SkinWeights& weights, std::span<const int> bones, Flood kind,
@@ -116,7 +118,8 @@ struct TransferSource {
   const Armature& armature;
   const SkinWeights& weights;
 };
-// Throws Error if the two rigs have no bone name in common.
+// Replaces the weights in the voxels of the scope by those that `from` has at the same positions. Throws Error if the
+// two rigs have no bone name in common.
 TransferEdit transferred(const WeightedBody& body, const SkinWeights& weights, const TransferSource& from,
                          const EditScope& scope = {}, Progress& progress = no_progress());
 

@@ -105,7 +105,7 @@ Range range_of(const LineChart& chart) {
   return range;
 }
 
-// Moves labels that would overlap apart vertically, and keeps their order. They are the labels at the right ends of a
+// Moves overlapping labels apart vertically without changing their order. They are the labels at the right ends of a
 // chart's lines. Takes the wanted y coordinates and returns the new ones.
 std::vector<double> spread(std::vector<double> wanted, double low, double high) {
   std::vector<std::size_t> order(wanted.size());
@@ -159,7 +159,8 @@ std::string svg_of(const LineChart& chart) {
       svg += line(left, y_of(tick), right, y_of(tick), "grid") +
              label(left - 6, y_of(tick) + 4, number(tick), "tick", "end");
   } else {
-    const double step = tick_step(range.high - range.low, 7);  // 7: range_of() rounds 5 steps up to 7 at most
+    // There are at most 7 parts between ticks: range_of() has 5 parts, and its rounding adds at most one at each end.
+    const double step = tick_step(range.high - range.low, 7);
     for (int i = 0; range.low + i * step <= range.high + step * 1e-6; ++i) {
       const double tick = range.low + i * step;
       const bool is_zero = std::abs(tick) < step * 1e-6;
@@ -174,7 +175,8 @@ std::string svg_of(const LineChart& chart) {
   double written_to = -INFINITY;
   for (std::size_t place = 0; place < chart.places.size(); ++place) {
     const double half = kLetter * double(chart.places[place].size()) / 2;
-    if (x_of(place) - half < written_to && room < 2 * half) continue;  // leaves out a label that would overlap the last
+    // Leaves out a label that would overlap the one before.
+    if (x_of(place) - half < written_to && room < 2 * half) continue;
     written_to = x_of(place) + half + 4;
     svg += label(x_of(place), bottom + 17, chart.places[place], "tick", "middle");
   }

@@ -9,12 +9,13 @@
 
 namespace limber {
 
-// Returns {"schema": "limber-study/1", "version", "commit", "sources", "study": {...}, "cells": [{"spacing_mm", "pose",
-// "method", "key",
-//          "cpu_seconds", ..., "repeats"?: {"cpu_seconds": [...], "wall_seconds": [...]},
-//           "gates": [{"id", "name", "passed"?, "figure"?, "worst"?}],
-//           "label_gates": [{"label", "name", "voxels", "volume_change_percent", "passed"}],
-//          "report": limber-report/1} | {..., "failure"}]}
+// Returns the JSON text
+//   {"schema": "limber-study/1", "version", "commit", "sources", "study": {...}, "cells": [
+//     {"spacing_mm", "pose", "method", "key", "cpu_seconds", ...,
+//      "repeats"?: {"cpu_seconds": [...], "wall_seconds": [...]},
+//      "gates": [{"id", "name", "passed"?, "figure"?, "worst"?}],
+//      "label_gates": [{"label", "name", "voxels", "volume_change_percent", "passed"}],
+//      "report": limber-report/1} | {..., "failure"}]}
 //   commit  the commit that the program was built from; "": unknown
 std::string cells_json(const Study& study, const std::vector<CellResult>& cells, const std::string& commit);
 

@@ -40,7 +40,7 @@ struct TissueMatch {
 // Returns the row whose name or synonym has the most words, all of which occur in the tissue's name. Among equal rows,
 // one of the tissue's kind wins, then the first row. If no name matches, returns the first row of the tissue's kind.
 TissueMatch match_tissue(const Tissue& tissue, std::span<const TissueNames> rows);
-// Finds the row like the overload above, in a table of `rows` rows. names(i) returns the names of row i.
+// Returns the row that the other match_tissue() finds, for a table of `rows` rows. names(i) returns the names of row i.
 TissueMatch match_tissue(const Tissue& tissue, std::size_t rows,
                          const std::function<const TissueNames&(std::size_t)>& names);
 

@@ -20,7 +20,7 @@ struct KindDefaults {
   std::uint32_t colour;  // 0xRRGGBB
   double young_modulus;  // kPa, 3 times the shear modulus that the finite elements use; bone is far stiffer than flesh
   double poisson_ratio;
-  int priority;  // see Tissue::priority; highest for bone, lower for thin and stiff tissues, lowest for skin
+  int priority;  // where tissues overlap, the one with the higher priority is kept: bone above all, skin below all
 };
 constexpr std::uint32_t kByLabel = 0xffffffff;  // stands for a colour that is computed from the label
 // Initial colour, stiffness and priority of each tissue kind, in the order of TissueKind.

@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 constexpr std::size_t kMostFiles = 100000;
-// Upper limit on the difference between a slice gap and the mean gap, as a share of the mean gap. Slice positions are
-// rounded decimal text, so equal gaps differ slightly.
+// A series is refused if a gap between slices differs from the mean gap by more than this share of the mean gap. Slice
+// positions are rounded decimal text, so equal gaps differ slightly.
 constexpr double kEvenGaps = 0.02;
 // Upper limit on the number of bytes into which one byte of a compressed slice can unpack.
 constexpr std::int64_t kCodecMost = 4000;

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 constexpr std::uint64_t kMostBytes = 64 << 20;
-constexpr double kFurthest = 1e6;  // upper limit on the absolute value of a coordinate, mm
+constexpr double kFurthest = 1e6;  // a coordinate with a larger absolute value, mm, is refused
 }  // namespace
 
 std::vector<Landmark> read_landmarks(const Path& path) {

@@ -12,7 +12,8 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kLongestHeader = 16 << 20;  // bytes; enough for thousands of segments with long tags
+// A longer header, bytes, is refused; this is enough for thousands of segments.
+constexpr std::size_t kLongestHeader = 16 << 20;
 
 struct NrrdText {
   std::map<std::string, std::string, std::less<>> fields;  // names in lower case without spaces: "spacedirections"

@@ -25,8 +25,9 @@ using Clock = std::chrono::steady_clock;
 constexpr int kAskMilliseconds = 20;  // milliseconds between two checks whether the user has cancelled
 // Requested size of the pipe's buffer, bytes: the largest that the kernel usually grants.
 constexpr int kPipeBytes = 1 << 20;
-constexpr std::uint64_t kLongestMessage = 64 << 20;  // bytes; enough for a header with all its keys
-constexpr int kNotLoaded = 127;                      // exit code of a process that lacks a shared library
+// A longer message, bytes, is refused; this is enough for a header with all its keys.
+constexpr std::uint64_t kLongestMessage = 64 << 20;
+constexpr int kNotLoaded = 127;  // exit code of a process that lacks a shared library
 constexpr const char* kHarmful = "it is damaged or malicious; export or download it again";
 
 // Converts the text of an Error, "what: where: what to do", back to an Error.
@@ -157,7 +158,9 @@ class Conversation {
   Error out_of_memory() const { return {"the file's reader exceeded its memory limit", parsed_, kHarmful}; }
 
  private:
-  // Call this function after each wait for the reader, with false when nothing arrived during the wait.
+  // Throws Cancelled if the user has cancelled, and Error if the reader hangs (watch()). Call this after each wait for
+  // the reader.
+  //   arrived  false: nothing arrived during the wait
   void on_wait(bool arrived) {
     if (progress_.cancelled()) throw Cancelled();
     if (!arrived) watch();
