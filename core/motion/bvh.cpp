@@ -16,8 +16,8 @@ namespace limber {
 namespace {
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
 constexpr int kMostJoints = 4096;
-// Upper limit of a number's magnitude in a file (file units or degrees). No real position or angle is larger, and the
-// limit's square still fits single precision.
+// A file with a number of larger magnitude (file units or degrees) is refused. No real position or angle is larger, and
+// the limit's square still fits single precision.
 constexpr double kLargest = 1e15;
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }

@@ -66,7 +66,7 @@ struct Constraints {
 };
 
 constexpr std::size_t kMostConstraints = 4096;  // a project whose clip has more constraints is refused as damaged
-// A project that has a larger coordinate of a target position, mm, is refused as damaged.
+// When a project is read, coordinates of target positions are cut to this magnitude, mm.
 constexpr double kFarthestPlace = 1e7;
 
 // Returns the weight of a constraint at a frame, [0, 1]: from the keys of the weight, or the constraint's constant

@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::array<int, 3> kOrder = {2, 1, 0};  // order of the rotations: z, y, x
+constexpr std::array<int, 3> kOrder = {2, 1, 0};  // axes of the rotations in the product Rz Ry Rx
 constexpr double kLocked = 1e-6;                  // |cos y| below this counts as gimbal lock
 
 glm::dquat about(int axis, double angle) {

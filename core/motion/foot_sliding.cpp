@@ -19,7 +19,7 @@ constexpr double kLifted = 60;
 // The body's height is corrected in each frame by the weighted mean of what the two feet need. A foot's weight is from
 // 0 (lifted) to 1 (standing), plus this number, so that the sum of the weights is never 0.
 constexpr double kInTheAir = 0.02;
-constexpr double kOfToes = 0.2;  // weight of sliding toes, relative to a sliding ankle
+constexpr double kOfToes = 0.2;  // factor on the cost of sliding toes, relative to a sliding ankle
 // Costs of correcting a foot's position. For comparison: a still foot that slides at 1 mm/s costs 1 / kStill^2 per
 // second.
 constexpr double kGiven = 1e-6;   // cost of the size of a correction, per mm^2 and second
@@ -32,7 +32,8 @@ constexpr double kMaySlide = 1.01;            // allowed slide of the body's foo
 constexpr double kMayExceed[] = {0.25, 0.6};  // further allowed slide, mm: of the ankle, of the toes
 // Factor on kMayExceed for stances that are found with the full limits of speed and height.
 constexpr double kMayExceedMoving = 3;
-constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;  // limits of the factor by which one round changes an urge
+// In one round, an urge is multiplied by a factor within these limits.
+constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;
 // Regularization of the rotations of thigh and shank that move the ankle (turns_of_leg), as a share of the summed
 // squared lengths of thigh and shank. kMayMiss is for horizontal movement, kMayRise for vertical. The larger the share,
 // the further the ankle may end from its target.

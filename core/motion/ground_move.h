@@ -7,7 +7,7 @@
 namespace limber {
 
 struct GroundMove {
-  double turn = 0;            // radians about the vertical (z)
+  double turn = 0;            // angle about the vertical (z), radians
   glm::dvec3 from{0}, to{0};  // the point about which the body turns, and the position to which this point moves, mm
 
   glm::dquat rotation() const { return glm::angleAxis(turn, glm::dvec3(0, 0, 1)); }

@@ -23,7 +23,7 @@
 
 namespace limber {
 
-// Limits of what a project file may hold: of the body's shift, mm, and of a tangent's components, per frame.
+// When a project is read, these values are cut to a limit: the body's shift, mm, and a tangent's components, per frame.
 constexpr double kFarthestShift = 1e7, kSteepestTangent = 1e6;
 
 // Returns the rotation vector of a unit quaternion, with an angle in [0, 2 pi). The vectors of q and -q have opposite

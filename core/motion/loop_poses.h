@@ -16,7 +16,7 @@ struct LoopSettings {
 };
 
 struct LoopedPoses {
-  std::vector<Pose> poses;  // repeats * (n - 1) + 1 for a take of n poses
+  std::vector<Pose> poses;  // the repeats: repeats * (n - 1) + 1 poses for a take of n poses
   // The largest rotation of a bone from the last pose of the take to its first pose, degrees, and the name of that
   // bone. Closing the seam removes this gap.
   double gap_degrees = 0;

@@ -163,7 +163,7 @@ Motion motion_of_poses(const Armature& armature, int frames, double rate, const 
     for (std::size_t j = 0; j < motion.joints.size(); ++j) {
       const BvhJoint& joint = motion.joints[j];
       const glm::dquat& turn = posed[bone_of[j]].rotation;
-      wanted[j] = {turn.w, turn.x, turn.z, -turn.y};  // the bone's rotation, in BVH axes
+      wanted[j] = {turn.w, turn.x, turn.z, -turn.y};  // rotation of the bone in the world, in BVH axes
       // A joint's rotation is computed relative to the rounded rotation that the file holds for its parent, so that
       // rounding errors do not add up from joint to joint.
       const glm::dquat above = joint.parent < 0 ? glm::dquat(1, 0, 0, 0) : written[joint.parent];

@@ -16,8 +16,8 @@ namespace limber {
 namespace {
 
 constexpr int kLongestEase = 2000;  // an ease of more frames is cut to this number
-// Largest distance from hip to ankle as a share of the leg's length. It is below 1 so that the knee stays slightly bent
-// and its direction defined.
+// A limb is stretched at most to this share of its length, so that its knee or elbow stays slightly bent and the
+// direction of the bend is defined.
 constexpr double kStretch = 0.999;
 // A body sinks at most by this share of a leg's length so that the foot reaches its position; further, the foot stays
 // above the position.
@@ -46,7 +46,7 @@ Lengths lengths_of(const PlantedLimb& limb, const Armature& armature) {
 
 // Bends and turns the limb's two long bones so that its joint comes to `target`, or as near to it as the limb reaches.
 void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature, const glm::dvec3& target) {
-  constexpr double kOfHinge = 0.1;  // weight of the hinge relative to the plane in which the limb is already bent
+  constexpr double kOfHinge = 0.1;  // small weight of the hinge against the axis about which the limb is bent
   const Lengths length = lengths_of(limb, armature);
   const glm::dvec3 root = rig.head(limb.upper), upper = rig.head(limb.lower) - root,
                    lower = joint_of(rig, limb) - rig.head(limb.lower);

@@ -11,7 +11,8 @@ Clip recorded(const Clip& source, Motion motion, int start) {
   Clip clip = clip_of(std::make_shared<const Motion>(std::move(motion)), source.name, start);
   clip.rate = source.rate;
   clip.markers = source.markers;
-  clip.retarget.travel = Travel::Free;  // the motion's skeleton is the rig's own
+  // The body travels as in the motion, since the motion's skeleton is the rig's own.
+  clip.retarget.travel = Travel::Free;
   return clip;
 }
 

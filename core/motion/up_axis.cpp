@@ -10,7 +10,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kClear = 0.8;    // cosine of 37 degrees, the largest angle between a standing body and the up axis
+// Cosine of 37 degrees; a body stands along an axis if its angle to the axis is smaller.
+constexpr double kClear = 0.8;
 constexpr int kMostFrames = 200;  // a motion with more frames is examined at 200 to 400 of them, to save time
 // Shares of the examined frames. The z axis is up if the body stands along z in at least the share kMany of the frames
 // and along y in less than the share kFew.

@@ -11,8 +11,7 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr float kFar = std::numeric_limits<float>::infinity();
-// A geodesic dab starts from the tissue voxel nearest to its centre. If this voxel is more than so many voxels away
-// along an axis, the dab touches nothing.
+// A geodesic dab whose centre is more than this many voxels from tissue along an axis touches nothing.
 constexpr int kMostBeside = 2;
 
 // Returns the number of set bits. It does not use the processor's instruction, because the program must run on the few
@@ -145,8 +144,7 @@ bool BrushReach::place_window(double radius, bool grown) {
   size_ = glm::ivec3(high) - low_ + 1;
   for (int axis = 0; axis < 3; ++axis) {
     squared_[axis].resize(size_[axis] + 2 * kBrick);
-    // The lists in squared_ extend one brick beyond the window on both sides, since bricks at the rim of the window
-    // extend beyond it.
+    // The lists in squared_ extend one brick beyond the window, since bricks at the window's rim do so too.
     for (int i = -kBrick; i < size_[axis] + kBrick; ++i) {
       const double way = (low_[axis] + i - centre_[axis]) * volume_.grid.spacing[axis];
       squared_[axis][i + kBrick] = static_cast<float>(way * way);

@@ -28,10 +28,10 @@ namespace limber {
 // Indices of those brushes in the table that other code refers to. In the formulas, `w` is the weight of the painted
 // bones, and `cover` is the dab's strength at the voxel, [0, 1].
 enum class BrushKind {
-  Add,           // w + cover
-  Subtract,      // w - cover
-  Set,           // w + (value - w) * cover
-  Multiply,      // w + (w * value - w) * cover
+  Add,           // changes the weight w to w + cover
+  Subtract,      // changes the weight w to w - cover
+  Set,           // changes the weight w to w + (value - w) * cover
+  Multiply,      // changes the weight w to w + (w * value - w) * cover
   Smooth,        // moves weights towards the mean around the voxel, weighted by a Gaussian 0.45 radii wide
   Sharpen,       // moves weights away from the mean that Smooth uses
   Average,       // moves weights towards the mean over all voxels of the dab
@@ -41,7 +41,7 @@ enum class BrushKind {
 
 struct Brush {
   BrushKind kind = BrushKind::Add;
-  double radius = 10;   // mm
+  double radius = 10;   // radius of the brush, mm
   double strength = 1;  // cover at the dab's centre, [0, 1]
   double value = 1;     // Set: new weight, [0, 1]; Multiply: factor, at least 0
   Falloff falloff;
@@ -67,7 +67,7 @@ struct BrushView {
 // One dab, as a brush receives it.
 struct DabView {
   const Reached& reached;
-  glm::dvec3 centre;  // world, mm
+  glm::dvec3 centre;  // centre of the dab, world, mm
   glm::dvec3 way;     // vector from the last dab's centre to this one's, mm; 0 for the first dab
   float strength;     // cover at the dab's centre, [0, 1]
 };
@@ -98,7 +98,7 @@ class BrushSide {
 struct BrushRule {
   BrushKind kind = {};      // the brush's index in the table
   std::string id;           // for example "add"; the brush's operator is then "skin.brush_add"
-  std::string name;         // for example "Add"
+  std::string name;         // name that the user sees, for example "Add"
   std::string description;  // explanation for the user
   bool takes_value = false;
   bool looks_around = false;

@@ -11,7 +11,7 @@ namespace {
 struct Row {
   Label label;
   const char* name;
-  std::uint32_t colour;  // 0xRRGGBB
+  std::uint32_t colour;  // sRGB colour, 0xRRGGBB
   TissueKind kind;
   double density, young_modulus, poisson_ratio;
   // A tissue with a higher priority wins where two tissues overlap. Hard tissue wins over soft, inner over outer.

@@ -26,7 +26,7 @@ struct ProgramEnd {
   bool by_signal() const { return signal != 0; }
   bool was_killed() const;          // true if kill() ended it, or the system for lack of memory
   bool took_too_much_time() const;  // true if it exceeded its limit of processor time
-  std::string signal_text() const;  // for example "Segmentation fault"
+  std::string signal_text() const;  // returns the signal's name, for example "Segmentation fault"
 };
 
 // A program that this process started. The program is the leader of its own process group. So Ctrl+C at the terminal

@@ -16,6 +16,6 @@ bool has_avx2();  // whether the processor has the instruction set AVX2
 
 std::string host_name();         // the machine's name in its network
 std::string processor_name();    // the processor's model, or "unknown processor"
-std::int64_t physical_memory();  // bytes
+std::int64_t physical_memory();  // size of the machine's memory, bytes
 
 }  // namespace limber

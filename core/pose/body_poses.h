@@ -14,7 +14,7 @@
 namespace limber {
 
 struct BodyPose {
-  std::string_view name;         // for example "sit"
+  std::string_view name;         // name of the pose, for example "sit"
   std::string_view description;  // a full sentence for the user
   // Joint requests such as "hips flexion=90" (joint_angles.h), separated by semicolons. In a pose of the whole body,
   // shoulders, elbows, forearms, wrists, hips, knees and ankles without a request take the anatomical position. Spine,

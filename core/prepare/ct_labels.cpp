@@ -22,10 +22,11 @@ constexpr double kThin = 3;            // half of the smallest thickness of a bo
 constexpr double kSmallestBody = 1e4;  // volume of the smallest body, mm3; smaller components are removed
 // Smallest part of a body, as a share of the largest part; smaller parts are removed.
 constexpr double kLeastShare = 0.02;
-constexpr double kSmallestBone = 150;  // volume of the smallest bone, mm3; smaller specks are noise
+// Volume of the smallest bone, mm3; smaller specks are noise and get no bone label.
+constexpr double kSmallestBone = 150;
 constexpr double kLargestMarrow =
     1.5e5;  // mm3; larger cavities in bone, such as that of a closed skull, contain no marrow
-constexpr double kSmallestLung = 5e4;  // volume of the smallest lung, mm3
+constexpr double kSmallestLung = 5e4;  // volume of the smallest lung, mm3; smaller regions are not labelled as lung
 constexpr double kPureAir = -950;      // Hounsfield units; lungs are denser than this, gas in the bowel is not
 
 using Mask = std::vector<std::uint8_t>;

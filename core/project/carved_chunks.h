@@ -59,7 +59,8 @@ class CarvedChunks final : public ChunkSource {
   std::int64_t size_ = 0, page_bytes_ = 8192;
   // Payload bytes that may still be read. They are limited because the rows of a hostile file may share pages.
   std::int64_t bytes_left_ = 0;
-  std::unordered_map<ChunkHash, std::vector<Cell>, ChunkHash::Hasher> cells_;  // one row per hash after keep_whole()
+  // Rows by hash; keep_whole() leaves one for each hash.
+  std::unordered_map<ChunkHash, std::vector<Cell>, ChunkHash::Hasher> cells_;
   std::vector<ChunkHash> latest_first_;
   std::map<std::string, std::string> states_;
   std::vector<std::unique_ptr<ChunkSource>> others_;

@@ -13,7 +13,7 @@
 namespace limber {
 
 namespace {
-constexpr int kQuick = 1, kDense = 3;  // zstd compression levels
+constexpr int kQuick = 1, kDense = 3;  // zstd levels of Packing::Quick and Packing::Dense
 
 struct NotANode {};
 

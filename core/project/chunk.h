@@ -58,7 +58,7 @@ struct Node {
   std::string bytes;
 };
 std::string to_chunk(const Node& node);
-std::optional<Node> to_node(std::string_view chunk);  // nothing when the chunk is not a node
+std::optional<Node> to_node(std::string_view chunk);  // returns nothing when the chunk is not a node
 
 // Adds the chunk `root`, and every chunk that it names directly or indirectly, to `reached`. Returns false when one of
 // the nodes among them is missing or damaged.

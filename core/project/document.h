@@ -34,7 +34,7 @@ struct SolvedMesh;
 // The display of one tissue. A label without an entry is visible and opaque.
 struct TissueLook {
   bool visible = true;
-  float opacity = 1;  // [0, 1], in the X-ray and tissue displays
+  float opacity = 1;  // opacity in the X-ray and tissue displays, [0, 1]
 
   bool operator==(const TissueLook&) const = default;
 };
@@ -76,9 +76,9 @@ struct Overlap {
 // has other parts by now, the result is stale.
 struct Result {
   std::string name;    // unique among the document's results
-  std::string method;  // "lbs", "dqs", "fem", "fem-contact"
+  std::string method;  // method that made the result: "lbs", "dqs", "fem", "fem-contact"
   std::shared_ptr<const LabelVolume> volume;
-  std::string report;  // limber-report/1, JSON
+  std::string report;  // report on the result, JSON of the schema limber-report/1
   std::shared_ptr<const LabelVolume> from_volume;
   std::shared_ptr<const TissueTable> from_tissues;
   std::shared_ptr<const Armature> from_armature;
@@ -110,7 +110,7 @@ struct Document {
   std::shared_ptr<const WeightLayers> layers;  // `weights` is the blend of these layers; null: no layers
   std::shared_ptr<const Seams> seams;  // seams edited by the user (empty: none); null: seams are found automatically
   std::shared_ptr<const BoneMap> bone_map;  // the rig bones that the user assigned to labels; null: none assigned
-  std::shared_ptr<const Measurements> measurements;  // null: none
+  std::shared_ptr<const Measurements> measurements;  // the user's measurements; null: none
 
   const Clip* shown_clip() const { return clips.empty() ? nullptr : clips[static_cast<std::size_t>(clip)].get(); }
 

@@ -206,7 +206,7 @@ void get(ByteReader& in, BoneMap& map) {
 }
 
 void get(ByteReader& in, Measurements& measurements) {
-  constexpr double kFarthest = 1e6;  // largest coordinate that is accepted, mm
+  constexpr double kFarthest = 1e6;  // a measured point this far from the origin or further, mm, is refused
   measurements.resize(in.count(13));
   std::set<std::string> names;
   for (Measurement& one : measurements) {

@@ -19,7 +19,7 @@ namespace limber {
 
 class History {
  public:
-  static constexpr std::int64_t kDefaultLimit = std::int64_t{1} << 30;  // bytes
+  static constexpr std::int64_t kDefaultLimit = std::int64_t{1} << 30;  // limit on the memory of all steps, bytes
 
   struct Step {
     std::string label;  // the edit that made the document, such as "Paint weights"

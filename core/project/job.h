@@ -33,11 +33,11 @@ enum class JobState { Queued, Running, Stopping, Done, Failed, Cancelled };
 
 struct JobStatus {
   int id = 0;
-  std::string label;  // such as "Diffuse heat"; also the label of its edit in the history
+  std::string label;  // name of the job, such as "Diffuse heat"; also the label of its edit in the history
   JobState state = JobState::Queued;
-  std::string stage;                   // such as "weights"; empty before the first stage
+  std::string stage;                   // the running stage, such as "weights"; empty before the first stage
   double fraction = 0;                 // finished fraction of the stage, [0, 1]
-  double seconds = 0;                  // running time of the job
+  double seconds = 0;                  // running time of the job, seconds
   std::optional<double> seconds_left;  // estimated time until the stage ends; empty: no estimate yet
   std::string message;                 // why the job failed
 

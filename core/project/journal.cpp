@@ -117,7 +117,8 @@ void JournalWriter::write(const Document& document, const std::string& label, Do
   try {
     file_->sync();
   } catch (...) {
-    broken_ = true;  // it is unknown which bytes are on the disk
+    // The journal cannot be continued, since it is unknown which of these bytes are on the disk.
+    broken_ = true;
     throw;
   }
 }

@@ -35,7 +35,7 @@ class JournalWriter final : public ChunkSink {
     std::optional<SaveMark> base;
     ChunkSet base_chunks;
     bool replace = true;
-    const Document* document = nullptr;  // the first edit, if any
+    const Document* document = nullptr;  // the first edit to write; null: none
     std::string label;
   };
   JournalWriter(Start start, DocumentWriter& writer, const OpenLog& open = open_log);
@@ -63,7 +63,7 @@ class JournalReader final : public ChunkSource {
   struct Edit {
     ChunkHash root;
     std::string label;
-    std::int64_t time;  // seconds since 1970
+    std::int64_t time;  // time of the edit, seconds since 1970
   };
   // Throws Error when the journal cannot be read or is not a journal.
   explicit JournalReader(const Path& path);

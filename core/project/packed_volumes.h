@@ -59,7 +59,7 @@ class PackedVolumes {
   bool has_volume_left(std::int64_t step, std::int64_t first) const;
   bool has_volume_right(std::int64_t step, std::int64_t end) const;
 
-  std::vector<Link> links_;                    // one for each step
+  std::vector<Link> links_;                    // for each step, the link to the step before
   std::vector<std::optional<Packed>> packed_;  // one for each step; empty: the step's document has its volume
 };
 

@@ -32,7 +32,7 @@ struct SaveMark {
 struct Project {
   Document document;
   std::string editor;     // the editor's state, JSON; 16 MB at most
-  std::string thumbnail;  // PNG; 16 MB at most
+  std::string thumbnail;  // picture of the project, PNG; 16 MB at most
   SaveMark mark;
   std::vector<std::string> warnings;  // parts that were left out when reading
 };

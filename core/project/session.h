@@ -41,7 +41,7 @@ struct SessionSettings {
 
 struct SessionStatus {
   bool kept = true;     // true: every document handed to keep() is on the disk
-  std::string message;  // what is wrong, "" when nothing is
+  std::string message;  // message for the user that says what is wrong; "" when nothing is
 };
 
 class Session {

@@ -16,7 +16,7 @@ namespace limber {
 
 // Classes of tissues. The volumes of the first three are preserved.
 enum class FleshClass : std::uint8_t { Skin, Fat, Muscle, Other };
-constexpr int kFleshClasses = 3;  // number of classes except Other
+constexpr int kFleshClasses = 3;  // Skin, Fat and Muscle, whose volumes are preserved
 // Returns the class of each label.
 std::vector<FleshClass> flesh_classes(const TissueTable& tissues);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 // Largest angle between successive turns, degrees. Tissue volumes change smoothly from one turn to the next.
 constexpr double kLargestStep = 22.5;
-constexpr double kLeastTurn = 5;  // smallest turn, degrees; a smaller one changes hardly any voxel
+constexpr double kLeastTurn = 5;  // degrees; a smaller turn is left out, since it changes hardly any voxel
 // Limits of the turns, degrees from rest: with a given range, without one, and for swings of ball joints.
 constexpr double kWidestRange = 170, kWidestDefault = 120, kWidestSwing = 60;
 

@@ -11,7 +11,7 @@ namespace limber {
 
 struct JointTurn {
   glm::dvec3 axis{0};  // unit axis through the joint, world at rest
-  double angle = 0;    // radians, not zero
+  double angle = 0;    // angle of the turn, radians; not zero
 };
 
 struct JointMotion {

@@ -26,8 +26,8 @@ class TurnTable {
 
   // The functions at a share w, [0, 1], and their derivatives with respect to w.
   struct Values {
-    float volume, away, about;        // |z|^2, Re(k), Im(k)
-    float volume_w, away_w, about_w;  // their derivatives
+    float volume, away, about;        // the functions |z|^2, Re(k) and Im(k) in the formula of det F
+    float volume_w, away_w, about_w;  // derivatives of volume, away and about with respect to w
   };
   Values at(float w) const {
     const float place = w * kSteps;

@@ -16,9 +16,9 @@ constexpr float kLeastVolume = 0.25f;
 // Factors of the terms of the total, chosen on the Bender arm. Smaller factors of the last three would lower the volume
 // changes at +90 degrees to 1 %, but leave ripples on the skin and bulge the upper arm.
 constexpr double kFold = 1, kOverlap = 0.5;
-constexpr double kLocal = 0.5;   // factor of the squared volume change of single voxels
-constexpr double kShear = 0.02;  // factor of the squared shear
-constexpr double kBend = 6;  // factor of the squared bend of the field, measured as a change of strain over one cell
+constexpr double kLocal = 0.5;   // factor of this term: squared volume change of single voxels
+constexpr double kShear = 0.02;  // factor of this term: squared shear
+constexpr double kBend = 6;      // factor of this term: squared bend of the field, as the change of strain over a cell
 // Half width, in percent, of the range around 0 in which |x| is replaced by a smooth function, since the minimizer
 // needs a continuous derivative.
 constexpr double kRounding = 0.2;
@@ -152,7 +152,7 @@ class VolumeModel::Work {
   int turn_count_;
   std::vector<TurnTable> tables_;
   std::vector<Axis> axes_;
-  std::vector<Sample> samples_;            // sorted by cell
+  std::vector<Sample> samples_;            // the voxels that are summed, sorted by cell
   std::vector<std::int32_t> piece_begin_;  // index of each cell's first sample, then the number of samples
   // Columns: unit axes of the volume; and the inverse of this matrix.
   glm::mat3 axes_of_volume_{1}, volume_from_world_{1};

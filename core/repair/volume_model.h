@@ -36,7 +36,7 @@ class VolumeModel {
   struct Value {
     double total = 0;                 // the value that is minimized
     std::vector<FleshChange> change;  // predicted volume change in each turn, %
-    double folded = 0, overlap = 0;   // means over the turns, % of the tissue
+    double folded = 0, overlap = 0;   // folded and overlapping tissue: means over the turns, % of the tissue
   };
   // Evaluates the model.
   //   nodes     values of the field's nodes, [0, 1]

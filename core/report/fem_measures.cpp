@@ -18,7 +18,7 @@ namespace limber {
 namespace {
 
 constexpr float kInfinite = std::numeric_limits<float>::infinity(), kNone = std::numeric_limits<float>::quiet_NaN();
-constexpr int kSticksOut = 2;  // largest distance from the mesh, in voxels, at which a voxel gets a neighbour's tet
+constexpr int kSticksOut = 2;  // a voxel at most this many voxels outside the mesh gets a neighbour's tet
 
 Eigen::Matrix3d edges(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, std::int64_t t) {
   Eigen::Matrix3d columns;

@@ -18,8 +18,8 @@ struct JudgedPose {
   const LabelVolume& rest;
   const LabelVolume& posed;            // has the same labels as `rest`
   const TissueTable& tissues;          // the tissues of both volumes
-  DisplacementView displacement{};     // empty: unknown
-  const Armature* armature = nullptr;  // nullptr: no rig
+  DisplacementView displacement{};     // displacement of each posed voxel; empty: unknown
+  const Armature* armature = nullptr;  // the rig; nullptr: none
   std::vector<RigidTransform> asked;   // #bones: motions from rest to the pose that the user requested
   // #bones: motions that were used. They differ from `asked` if the rig's joints were fitted or a solve ended early.
   std::vector<RigidTransform> applied;

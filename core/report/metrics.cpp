@@ -13,8 +13,8 @@
 namespace limber {
 
 namespace {
-constexpr double kSameVoxel = 0.01;  // largest relative difference of two voxel volumes that count as equal
-constexpr int kSmallest = 50;        // size in voxels of the smallest connected component that counts
+constexpr double kSameVoxel = 0.01;  // two voxel volumes count as equal if their relative difference is smaller
+constexpr int kSmallest = 50;        // connected components of fewer voxels are not counted
 constexpr int kLabels = std::numeric_limits<Label>::max() + 1;
 
 // Union-find over voxel runs: each set holds connected runs. The root of a set holds the set's number of voxels and its

@@ -15,7 +15,7 @@
 namespace limber {
 
 namespace {
-constexpr std::size_t kFewest = 30;  // least number of voxels from which a limb's direction is measured
+constexpr std::size_t kFewest = 30;  // a limb of which fewer voxels are found gets no measured direction
 // Begin and end of a bone's shaft (its middle, away from the joints), as fractions of the rig bone's length.
 constexpr double kShaftBegin = 0.25, kShaftEnd = 0.75;
 constexpr double kShaftRadius = 0.15;  // radius of the shaft, as a fraction of the rig bone's length

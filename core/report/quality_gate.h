@@ -11,9 +11,9 @@ namespace limber {
 
 struct QualityLimits {
   double tissue_percent = 1;
-  std::int64_t least_voxels = 5000;  // least voxels of a judged tissue: resampling changes smaller ones by up to 2 %
+  std::int64_t least_voxels = 5000;  // smaller tissues are not judged, in voxels: resampling changes them by up to 2 %
   double bone_residual_mm = 0.05;   // largest deviation of a bone from a rigid motion: 1/40 of the edge of a 2 mm voxel
-  double skin_share_percent = 0.2;  // largest loss of skin, in percent of the surface
+  double skin_share_percent = 0.2;  // largest allowed loss of skin, in percent of the surface
   double joint_excess_degrees = 0.1;
   // Limits of the body gates:
   double wrong_bone_percent = 0.1;  // largest percentage of a bone's voxels that may follow a wrong rig bone
@@ -21,7 +21,7 @@ struct QualityLimits {
   double exposed_percent = 0.1;  // largest percentage of the posed surface that may be newly exposed
   double trapped_voxels = 50;
   double organ_percent = 10;
-  double lost_percent = 50;  // least percentage of a label's volume that must be left
+  double lost_percent = 50;  // a label must keep at least this percentage of its volume
   std::int64_t least_organ_voxels = 200;
   double body_percent = 2;
   double limb_percent = 5;  // replaces body_percent if the body is a single limb, where a bent joint is a large part
@@ -31,13 +31,13 @@ enum class GateState { Passed, Failed, NotMeasured };
 
 struct QualityGate {
   std::string id;    // one of the ids in quality_gates.h
-  std::string name;  // "Each tissue within 1 %"
+  std::string name;  // name that the user sees: "Each tissue within 1 %"
   GateState state = GateState::NotMeasured;
-  std::string figure;    // "-0.30 %", "3 286 voxels"; empty where nothing was measured
+  std::string figure;    // measured figure: "-0.30 %", "3 286 voxels"; empty where nothing was measured
   std::string worst;     // the tissue or bone with the worst figure; empty: none
   std::string meaning;   // a sentence that says what is measured
   std::string sentence;  // a sentence with the measured figure, or with the reason for which nothing was measured
-  std::string limit;     // "at most 0.1 %"
+  std::string limit;     // limit of the figure: "at most 0.1 %"
   bool strict = false;   // true: a command with --strict fails if this gate fails
 };
 std::string_view to_string(GateState state);  // returns "passed", "failed" or "not checked"

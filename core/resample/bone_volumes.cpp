@@ -31,7 +31,7 @@ using Counts = std::map<Label, std::int64_t>;
 
 // A voxel near the border of its tissue, and the tissues that may take it.
 struct Contested {
-  std::int64_t at;  // index in the posed volume
+  std::int64_t at;  // index of the voxel in the posed volume
   std::array<Label, kAsked> label;
   std::array<float, kAsked> membership;  // membership of each tissue in `label`, in descending order
   int count;                             // number of tissues in `label`; 0: the voxel keeps its tissue

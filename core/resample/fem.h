@@ -38,8 +38,8 @@ struct Fem {
   bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
   std::vector<FemObject> objects;  // rigid objects that press on the posed body; `contact` must be true
   glm::dvec3 gravity{0};           // acceleration of gravity, m/s2, in the world
-  std::function<void(const TissueModel&)> on_mesh;  // called before the first iteration
-  std::function<void(const SolveStep&)> on_step;    // called after every iteration
+  std::function<void(const TissueModel&)> on_mesh;  // is called with the mesh before the first iteration
+  std::function<void(const SolveStep&)> on_step;    // is called with the present state after every iteration
 };
 
 // Size and quality of the tet mesh, at rest and posed.

@@ -20,10 +20,10 @@ struct Grid;
 
 // Estimated distance between the solved positions and the exact solution, for the flesh that bends.
 struct FemError {
-  double rms_mm = 0;      // root mean square over the volume of this flesh
-  double most_mm = 0;     // 95th percentile over the volume of this flesh
-  double largest_mm = 0;  // largest value at the centre of any tet
-  glm::dvec3 place{0};    // posed position of that tet's centre, world, mm
+  double rms_mm = 0;      // root mean square of the distance over the volume of this flesh
+  double most_mm = 0;     // 95th percentile of the distance over the volume of this flesh
+  double largest_mm = 0;  // largest distance at the centre of any tet
+  glm::dvec3 place{0};    // posed position of the tet centre with the largest distance, world, mm
   double coarse_tet_mm = 0;
   std::string unknown;  // why there is no estimate; empty: there is one
 };

@@ -33,9 +33,9 @@ constexpr double kMostOff = 4;
 constexpr int kRounds = 4;           // largest number of times that the forces of all objects are searched
 constexpr double kStuck = 0.02;      // an object that moved less than this is stuck, mm
 constexpr double kFirstMove = 1;     // motion of an object from the first try to the second, mm
-constexpr double kDeepest = 50;      // largest distance by which an object may move beyond its target position, mm
+constexpr double kDeepest = 50;      // an object moves at most this far beyond its target position, mm
 constexpr double kMostPoints = 4e6;  // an object that needs more sample points is refused
-constexpr double kNearGap = 2;       // largest gap between skin and object that is reported, mm
+constexpr double kNearGap = 2;       // a larger gap between skin and object, mm, is not reported
 
 Eigen::RowVector3d row_of(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 glm::dvec3 vec_of(const Eigen::RowVector3d& v) { return {v[0], v[1], v[2]}; }

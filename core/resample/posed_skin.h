@@ -13,7 +13,7 @@ namespace limber {
 
 // A posed voxel of soft tissue or bone that may touch air in the pose, although it is covered at rest (SkinAtRest).
 struct UnderSkin {
-  std::int64_t at;  // index in the posed volume
+  std::int64_t at;  // index of the voxel in the posed volume
   Label skin;       // label of the skin that touches the tissue at rest; 0: none does
 };
 
@@ -28,7 +28,7 @@ std::ptrdiff_t drop_covered(const LabelView& posed, std::vector<UnderSkin>& unde
 // A posed voxel of skin that does not touch air. A fine body has millions of them, so they are stored in 12 bytes.
 struct InnerSkin {
   float depth;                         // distance to the nearest air at rest, mm
-  std::array<std::uint16_t, 3> voxel;  // x, y, z in the posed volume
+  std::array<std::uint16_t, 3> voxel;  // position of the voxel in the posed volume
 };
 
 // Closes holes in the skin: a flesh voxel that touches air but lies under skin at rest becomes skin. Skin gets holes

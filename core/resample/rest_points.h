@@ -36,7 +36,7 @@ class RestPoints {
 
  private:
   struct Row {
-    std::uint64_t has_tissue = 0;  // bit x: voxel x of the row has tissue
+    std::uint64_t has_tissue = 0;  // bit x is 1 if voxel x of the row has tissue
     // Index in points_ of the row's first tissue voxel. The row's other tissue voxels follow along x.
     std::int64_t first = 0;
   };

@@ -25,7 +25,7 @@ namespace limber {
 
 // A possible move: a change of the label of one voxel at a border between tissues.
 struct BorderMove {
-  std::int64_t at;  // index in the posed volume
+  std::int64_t at;  // index of the voxel in the posed volume
   Label from, to;   // the voxel's label before and after the move: soft tissue or air (0)
   float cost;       // membership of `from` minus membership of `to`, [0, 1]
 };

@@ -41,7 +41,7 @@ struct Armature {
   std::vector<Bone> bones;
 
   bool operator==(const Armature&) const = default;
-  std::optional<int> find(std::string_view name) const;  // index of the bone with exactly this name
+  std::optional<int> find(std::string_view name) const;  // returns the index of the bone with exactly this name
 };
 
 // Returns the index of the bone with this name. Throws Error if there is none; the message lists names of the rig's

@@ -16,8 +16,8 @@ namespace limber {
 
 namespace {
 
-constexpr int kSteps = 80;            // upper limit of the steps of one search
-constexpr double kLongestStep = 0.6;  // largest change of a parameter in one step, radians
+constexpr int kSteps = 80;            // a search ends after at most this many steps
+constexpr double kLongestStep = 0.6;  // a step that changes a parameter by more, radians, is shortened
 constexpr double kAtLimit = 1e-10;    // a parameter within this distance of its limit counts as at the limit, radians
 // A search ends at a step that reduces the squared distance from the targets by a smaller share than this.
 constexpr double kNoProgress = 1e-6;

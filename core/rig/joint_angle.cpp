@@ -9,7 +9,8 @@ namespace limber {
 namespace {
 
 constexpr double kShown = 0.05;  // degrees; smaller angles are not mentioned, since texts show one decimal
-constexpr double kAcross = 0.5;  // cosine of 60 degrees, the largest angle between rotation axis and hinge axis
+// Cosine of 60 degrees: at a larger angle to the hinge axis, a rotation axis gets no reading.
+constexpr double kAcross = 0.5;
 
 }  // namespace
 

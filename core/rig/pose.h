@@ -16,7 +16,7 @@ namespace limber {
 
 struct Pose {
   std::vector<glm::dquat> rotation;  // one unit quaternion per bone
-  glm::dvec3 root_translation{0};    // in mm, applied to every root bone
+  glm::dvec3 root_translation{0};    // shift of every root bone, mm
   // One translation per bone, mm, for joints that glide. Its axes are the world's axes at rest, rotated with the parent
   // bone. Empty: no joint glides. Only glide_joints() (core/resample/glide_joints.h) sets translations; poses in files,
   // documents and clips have none.

@@ -22,13 +22,13 @@ struct GltfDescription {
     std::string name;
     int parent = -1;
     std::int64_t mesh = -1;
-    glm::dmat4 world_from_node{1};  // metres, Y up
+    glm::dmat4 world_from_node{1};  // transform from the node to glTF's world, metres, Y up
     // True: the default scene shows the node. That is the first scene if none is named; without scenes, all nodes are
     // shown.
     bool is_in_scene = false;
   };
   struct Primitive {
-    std::int64_t positions = -1, indices = -1;  // indices of accessors
+    std::int64_t positions = -1, indices = -1;  // accessors of the positions and of the indices; -1: none
     std::int64_t mode = 4;                      // 4: triangles, 5: strip, 6: fan [glTF 2.0, 5.24.4]
   };
   struct Accessor {

@@ -13,8 +13,8 @@
 namespace limber {
 
 struct RigTemplate {
-  std::string name;   // such as "adult", for the command line
-  std::string label;  // such as "Adult body", for the user interface
+  std::string name;   // name on the command line, such as "adult"
+  std::string label;  // name in the user interface, such as "Adult body"
   std::string about;
 };
 

@@ -22,7 +22,7 @@ namespace limber {
 struct SeamBand {
   struct Node {
     glm::ivec3 voxel;
-    std::int64_t place;  // index among the tissue voxels
+    std::int64_t place;  // index of the voxel among the tissue voxels
     float way;           // length of the path through tissue to the nearest face where the limbs meet, mm
   };
   // The side of the cut on which a voxel lies: with the limb, or with the part of the body that the limb touches

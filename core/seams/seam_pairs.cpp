@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kEnd = 8;  // largest distance over which settle_ends() copies the bones of a face, voxels
+constexpr double kEnd = 8;  // voxels; a face gets the bones of another face only from at most this far away
 
 const char* word_for(BodyPart part) {
   switch (part) {

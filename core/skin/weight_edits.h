@@ -60,7 +60,7 @@ WeightEdit flooded(const WeightedBody& body, const SkinWeights& weights, std::sp
                    double value, double amount = 1, const EditScope& scope = {});
 
 struct Gradient {
-  glm::dvec3 from{0}, to{0};  // world, mm; must differ
+  glm::dvec3 from{0}, to{0};  // ends of the gradient, world, mm; must differ
   // If true, the gradient is a function of the distance from `from`, and it ends at the distance of `to`. If false, it
   // runs along the line from `from` to `to`.
   bool radial = false;

@@ -23,7 +23,7 @@ struct WeightLayer {
 
   std::string name;
   bool visible = true;
-  double opacity = 1;  // [0, 1]
+  double opacity = 1;  // opacity of the layer, [0, 1]
   SkinWeights weights;
   std::vector<std::shared_ptr<const Mask>> mask;  // mask of each brick; null: the layer covers nothing there
 

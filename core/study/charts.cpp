@@ -14,9 +14,10 @@ namespace limber {
 
 namespace {
 
-constexpr double kLetter = 6.2;          // approximate width of a letter in text of 11 px, px
-constexpr double kLineHeight = 14;       // smallest distance between the baselines of two labels, px
-constexpr int kBar = 22, kWidest = 940;  // px: width of a bar, so that its value fits above it; width limit of a chart
+constexpr double kLetter = 6.2;     // approximate width of a letter in text of 11 px, px
+constexpr double kLineHeight = 14;  // baselines of labels are at least this far apart, px
+// Width of a bar, so that its value fits above it, and largest width of a chart, px.
+constexpr int kBar = 22, kWidest = 940;
 
 std::string px(double value) { return fixed(value, 1); }
 

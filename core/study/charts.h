@@ -20,7 +20,7 @@ struct Series {
 };
 
 struct LineChart {
-  std::string title, unit;          // unit of the y axis: "%", "s"
+  std::string title, unit;          // title of the chart; unit of its y axis: "%", "s"
   std::vector<std::string> places;  // the labels along the x axis
   std::vector<double> positions;    // x value of each label in `places`; empty: the labels are evenly spaced
   std::string x_unit;

@@ -23,7 +23,7 @@ struct ReportFacts {
   std::optional<RatingResult> rating;
   bool of_session = false;  // true: results of an editor session, with wall-clock times and no cell folders
 };
-std::string date_text();  // the present time: "2025-03-07 14:05"
+std::string date_text();  // returns the present time: "2025-03-07 14:05"
 
 std::string html_report(const Study& study, const std::vector<CellResult>& cells, const StudyFigures& figures,
                         const ReportFacts& facts);

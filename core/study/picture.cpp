@@ -129,7 +129,8 @@ std::string png_of(const Picture& picture) {
   }
   deflater.end();
   const std::string header =
-      big_endian(picture.size.x) + big_endian(picture.size.y) + std::string("\x08\x02\0\0\0", 5);  // 8 bits, RGB
+      // 8 bits per channel, RGB.
+      big_endian(picture.size.x) + big_endian(picture.size.y) + std::string("\x08\x02\0\0\0", 5);
   return "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) + chunk("IDAT", packed) + chunk("IEND", "");
 }
 

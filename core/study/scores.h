@@ -16,7 +16,7 @@ namespace limber {
 struct RaterScores {
   struct Score {
     int order = 0;  // position at which the rater saw the picture, from 1
-    int score = 0;  // from 1 to 5
+    int score = 0;  // the rater's score, from 1 to 5
     std::string remark;
   };
   Path file;

@@ -14,7 +14,7 @@ namespace limber {
 struct Spread {
   double median = 0, least = 0, most = 0;
 };
-std::optional<Spread> spread_of(std::vector<double> values);  // nothing if there are no values
+std::optional<Spread> spread_of(std::vector<double> values);  // returns nothing if there are no values
 
 // The times of one technique at one spacing, over its bent poses; over all poses if none is bent.
 struct TechniqueTime {

@@ -63,7 +63,7 @@ struct TissueMaterial {
   Label label = 0;
   double file_value = 0;
   std::string name;
-  double density = 0;  // kg/m3
+  double density = 0;  // density of the tissue, kg/m3
   std::string density_source;
   Dielectric dielectric;
   std::string row;         // name of the row of tissues.csv or of the user's table that the tissue matches

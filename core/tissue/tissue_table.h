@@ -66,7 +66,7 @@ struct TissueTable {
   // arm".
   std::string source;
 
-  const Tissue* find(Label label) const;  // nullptr: the table has no entry
+  const Tissue* find(Label label) const;  // returns nullptr if the table has no entry
   Tissue* find(Label label);
   const Tissue* find_file_value(double value) const;
   // Returns the kind of each label from 0 to 65535; Unknown for labels without an entry in the table.
@@ -77,7 +77,7 @@ struct TissueTable {
 class FileValueIndex {
  public:
   explicit FileValueIndex(const TissueTable& table);
-  const Tissue* find(double value) const;  // nullptr: the table has no entry
+  const Tissue* find(double value) const;  // returns nullptr if the table has no entry
 
  private:
   std::unordered_map<double, const Tissue*> by_value_;

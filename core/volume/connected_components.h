@@ -14,8 +14,8 @@ namespace limber {
 struct Components {
   struct Run {
     std::int32_t begin, end;  // the run's voxels: begin <= x < end
-    Label label;              // never air
-    std::int32_t component;   // index into `voxels`
+    Label label;              // label of the run; never air
+    std::int32_t component;   // component that contains the run, as an index into `voxels`
   };
   std::vector<Run> runs;                // in the order of rows
   std::vector<std::int64_t> first_run;  // #rows + 1: index of the first run of row y + size.y * z

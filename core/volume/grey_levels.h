@@ -17,7 +17,7 @@ struct GreyLevels {
 
   Grid grid;
   double least = 0, step = 1;         // the value of level L is least + step * L
-  std::vector<std::uint16_t> levels;  // grid.voxel_count(), x fastest
+  std::vector<std::uint16_t> levels;  // levels of the grid.voxel_count() voxels, x fastest
   // The least and the largest level of each block of voxels and of the voxels beside it, x fastest. So no value that is
   // interpolated between the voxel centres of a block is outside the block's range.
   std::vector<std::array<std::uint16_t, 2>> ranges;

@@ -20,7 +20,7 @@ using RowSet = std::vector<std::uint8_t>;
 
 struct LabelVolume {
   Grid grid;
-  ZeroedVector<Label> voxels;  // grid.voxel_count(), x fastest
+  ZeroedVector<Label> voxels;  // labels of the grid.voxel_count() voxels, x fastest
 
   Label at(const glm::ivec3& v) const { return voxels[grid.index(v)]; }
   Label& at(const glm::ivec3& v) { return voxels[grid.index(v)]; }

@@ -23,7 +23,7 @@ class TissueVoxels {
   static constexpr int kBrick = 8;
 
   struct Brick {
-    glm::ivec3 corner;   // lowest voxel
+    glm::ivec3 corner;   // lowest voxel of the brick
     std::int64_t first;  // index of the brick's first tissue voxel in the list of all tissue voxels
     // Marks tissue voxels: one word per z slice, in which bit x + 8 y is voxel (x, y).
     std::array<std::uint64_t, 8> mask;

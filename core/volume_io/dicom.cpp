@@ -28,7 +28,7 @@ constexpr std::int64_t kCodecMost = 4000;
 constexpr std::size_t kCodecMemory = 64 << 20;
 
 struct Slice {
-  std::size_t index = 0;  // index in VolumeLocation::headers
+  std::size_t index = 0;  // index of the slice's file in VolumeLocation::headers
   Path path;
   std::string series;
   int rows = 0, columns = 0;

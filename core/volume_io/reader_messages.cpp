@@ -78,7 +78,7 @@ void put(ByteWriter& out, const TissueTable& table) {
 }
 
 TissueTable table_of(ByteReader& in) {
-  constexpr std::size_t kLeastBytes = 50;  // size of the smallest encoded tissue, which has no name, bytes
+  constexpr std::size_t kLeastBytes = 50;  // bytes of the smallest encoded tissue, one without a name
   TissueTable table;
   table.source = in.text();
   table.tissues.resize(in.count(kLeastBytes));

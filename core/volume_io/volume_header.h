@@ -20,9 +20,11 @@ namespace limber {
 
 enum class VoxelType : std::uint8_t { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 
-int size_of(VoxelType type);                                           // returns the size of a voxel in bytes
-std::string_view to_string(VoxelType type);                            // returns "uint8" ... "float64"
-std::optional<VoxelType> voxel_type_from_text(std::string_view text);  // inverse of to_string()
+int size_of(VoxelType type);  // returns the size of a voxel in bytes
+// Returns the name of the type: "uint8" ... "float64".
+std::string_view to_string(VoxelType type);
+// Inverse of to_string(); nothing for any other text.
+std::optional<VoxelType> voxel_type_from_text(std::string_view text);
 
 // Calls body(T{}), where T is the C++ type of a voxel, and returns its result.
 template <class Body>

@@ -25,8 +25,9 @@ namespace limber {
 
 // Format and voxel type of the file that was read, so that a result can be written in the same way.
 struct FileType {
-  std::string format;      // "NRRD", "MetaImage", "NIfTI-1", "NIfTI-2", "VTK image", "DICOM", "Virtual Family"
-  std::string voxel_type;  // "uint8" ... "int64", "float32", "float64"
+  // Name of the format: "NRRD", "MetaImage", "NIfTI-1", "NIfTI-2", "VTK image", "DICOM", "Virtual Family".
+  std::string format;
+  std::string voxel_type;  // type of the voxels: "uint8" ... "int64", "float32", "float64"
   bool compressed = false;
 };
 

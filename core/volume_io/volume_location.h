@@ -18,7 +18,7 @@ namespace limber {
 // An open file that can be read. It is a regular file, not a folder, pipe or device.
 class PlainFile {
  public:
-  explicit PlainFile(const Path& path);  // throws Error
+  explicit PlainFile(const Path& path);  // opens the file; throws Error if it cannot be read
   PlainFile(OpenFile file, std::int64_t size) : file_(std::move(file)), size_(size) {}
 
   const OpenFile& file() const { return file_; }
@@ -55,7 +55,7 @@ class VolumeFiles {
   virtual ~VolumeFiles() = default;
   const VolumeLocation& location() const { return location_; }
 
-  virtual PlainFile open_header(std::size_t index) = 0;  // throws Error
+  virtual PlainFile open_header(std::size_t index) = 0;  // opens headers[index], or throws Error
   // Throws Error when a data file is missing or, after symbolic links are resolved, lies outside the header's folder.
   virtual void check_data(const std::vector<std::string>& names) = 0;
   virtual PlainFile open_data(const std::string& name) = 0;  // throws Error as check_data() does
