@@ -33,7 +33,7 @@ struct BvhJoint {
   std::string name;
   int parent = -1;
   glm::dvec3 offset{0};
-  std::vector<BvhChannel> channels;  // 0 to 6, in file order; rotations multiply in this order
+  std::vector<BvhChannel> channels;  // the joint's 0 to 6 channels in file order; rotations multiply in this order
   int first_channel = 0;             // column of the joint's first channel in a frame's row
   std::optional<glm::dvec3> end_site;
 
@@ -45,7 +45,7 @@ struct Motion {
   int channel_count = 0;
   int frame_count = 0;
   double frame_time = 1.0 / 30;  // seconds
-  std::vector<float> values;     // frame_count x channel_count, degrees and file units
+  std::vector<float> values;     // one row of channel_count values for each frame, degrees and file units
   std::vector<std::string> warnings;
 };
 

@@ -17,7 +17,8 @@ namespace limber {
 struct ConstraintOnRig {
   const Constraint& constraint;
   int bone = 0;
-  int target = -1;  // -1: the target is a position in the world, or this kind of constraint has no target
+  // Index of the target bone; -1: the target is a position in the world, or this kind of constraint has no target.
+  int target = -1;
   // For plants: the two long bones of the limb. If the bone's name tells no limb, the two bones above the bone. `hinge`
   // is the axis about which the limb bends at rest, in world axes, or zero.
   int upper = -1, lower = -1;

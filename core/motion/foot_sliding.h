@@ -46,6 +46,7 @@ struct TurnsOfLeg {
   glm::dvec3 thigh, shank;
   double most() const { return std::max(glm::length(thigh), glm::length(shank)); }
 };
+// Returns the rotations of thigh and shank that move the ankle by `ankle_aside`.
 //   thigh, shank  vectors from hip to knee and from knee to ankle, mm
 //   ankle_aside   wanted displacement of the ankle along the ground, mm
 TurnsOfLeg turns_of_leg(const glm::dvec3& thigh, const glm::dvec3& shank, const glm::dvec2& ankle_aside);

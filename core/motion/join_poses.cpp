@@ -34,6 +34,7 @@ double apart(const Plant& a, const Plant& b) { return std::hypot(a.place.x - b.p
 // slides, so its stance could not be found there.
 class Stances {
  public:
+  // Finds the stances that overlap the cross-fade.
   //   first, second  plants of the feet of each take, in frames of that take
   //   fade_first     frame of the first take at which the cross-fade begins
   //   middle         last frame of the cross-fade in which the first take's plants are used

@@ -15,7 +15,7 @@ struct JoinSettings {
 };
 
 struct JoinedPoses {
-  std::vector<Pose> poses;    // number of poses: those of both takes minus those of the cross-fade
+  std::vector<Pose> poses;    // the joined poses: as many as both takes have, minus those of the cross-fade
   int fade_first = 0;         // frame at which the cross-fade, and the second take, begins
   std::vector<Plant> plants;  // plants of the feet that are kept in place
   // Largest distance, mm, that a foot slides because it stands in both takes at positions too far apart to be joined.

@@ -81,6 +81,7 @@ void set_weight_interpolation(Keys& keys, const std::string& constraint, Interpo
 // Delete, move or copy all keys at the given frames, with their shapes. A key moved onto a frame that has a key
 // replaces it.
 void delete_keys(Keys& keys, const std::set<int>& frames);
+// Move or copy keys to other frames.
 //   frame_of  for each frame whose keys are moved or copied, the new frame; keys at other frames stay
 void move_keys(Keys& keys, const std::map<int, int>& frame_of);
 void copy_keys(Keys& keys, const std::map<int, int>& frame_of);

@@ -42,6 +42,7 @@ using Curve = std::vector<SplineKey>;
 template <class Value>
 class Spline {
  public:
+  // Makes a spline without keys; fitted() adds them.
   //   recorded  the values at frames 0, 1, ...
   //   allowed   the largest error at each frame
   Spline(const std::vector<Value>& recorded, const std::vector<double>& allowed, Progress& progress)

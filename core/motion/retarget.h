@@ -49,7 +49,8 @@ struct RetargetMap {
 
     bool operator==(const Source&) const = default;
   };
-  std::map<std::string, Source> sources;  // keyed by the name of the bone; bones without an entry follow their parents
+  // The source of each bone, by the bone's name. Bones without an entry follow their parents.
+  std::map<std::string, Source> sources;
   RestStances stances;
 
   bool operator==(const RetargetMap&) const = default;

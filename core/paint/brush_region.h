@@ -38,10 +38,12 @@ enum class BrushDepth {
 struct BrushFilter {
   LabelSet labels;  // labels of the tissues that may change; empty: all
   struct Box {
-    glm::dvec3 low, high;  // voxel coordinates, as in ClipBox; only voxels with their centre inside may change
+    // Lowest and highest corner in voxel coordinates, as in ClipBox. Only voxels whose centre is inside may change.
+    glm::dvec3 low, high;
   };
   struct Plane {
-    glm::dvec3 point, normal;  // world, mm; voxels on the side to which the normal points may not change
+    // A point of the plane and its normal, world, mm. Voxels on the side to which the normal points may not change.
+    glm::dvec3 point, normal;
   };
   std::optional<Box> box;
   std::optional<Plane> plane;

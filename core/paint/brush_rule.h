@@ -48,7 +48,8 @@ struct Brush {
   double spacing = 0.25;    // distance between successive dabs, as a share of the radius
   bool accumulate = false;  // false: a stroke changes each voxel once, by its largest cover of all dabs
   BrushDistance distance = BrushDistance::Geodesic;
-  bool all_bones = true;  // for brushes that read other voxels: true: all bones change; false: only the painted bones
+  // For brushes that read other voxels. True: they change all bones; false: only the painted bones.
+  bool all_bones = true;
   // For JointCapsule: length over which the child bone's share rises from 0 to 1 (smoothstep), mm. The joint is at its
   // middle.
   double blend_mm = 20;

@@ -12,7 +12,7 @@ struct SystemName {
 };
 SystemName system_name();
 
-bool has_avx2();  // whether the processor has the instruction set AVX2
+bool has_avx2();  // returns true if the processor has the instruction set AVX2
 
 std::string host_name();         // the machine's name in its network
 std::string processor_name();    // the processor's model, or "unknown processor"

@@ -41,8 +41,8 @@ class Handle {
 };
 
 enum class Opening {
-  Read,       // an existing file; opening does not wait for a writer of a pipe
-  Folder,     // an existing folder, to be locked or flushed to the disk
+  Read,       // reads an existing file; opening does not wait for a writer of a pipe
+  Folder,     // opens an existing folder, to lock it or to flush it to the disk
   Overwrite,  // writes only; an existing file is emptied
   New,        // reads and writes; fails when the name exists, even as a link
   NewLog,     // like New, but each write appends to the file

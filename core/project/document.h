@@ -67,7 +67,8 @@ struct Visibility {
 
 // Voxels of a resampled volume that the pose fills twice, as ascending voxel indices.
 struct Overlap {
-  std::vector<std::int64_t> tissue, bones;  // filled by two tissue regions not adjacent at rest; filled by two bones
+  // Voxels that two tissue regions fill that are not adjacent at rest; voxels that two bones fill.
+  std::vector<std::int64_t> tissue, bones;
 
   bool operator==(const Overlap&) const = default;
 };
@@ -98,7 +99,8 @@ struct Document {
   std::shared_ptr<const FileType> volume_type;  // the format of the file that the volume was read from
   std::shared_ptr<const Armature> armature;
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const Pose> pose;  // at first the clip's pose at `frame`; the user may change it
+  // The shown pose: at first the clip's pose at `frame`, which the user may change.
+  std::shared_ptr<const Pose> pose;
   std::shared_ptr<const Visibility> visibility;
   std::vector<std::shared_ptr<const Result>> results;
   std::vector<std::shared_ptr<const Clip>> clips;

@@ -151,8 +151,9 @@ inline std::uint8_t packed_reference(const Clip& clip) {
                                    static_cast<int>(clip.map.stances.rig) << 4);
 }
 
-constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;  // size limit of a leaf of voxels or long text, bytes
+// Size of the leaves of voxels or long text, bytes. The last leaf may be smaller.
+constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;
 constexpr std::int64_t kGroupBricks = 32;  // number of weight bricks whose influences fill one leaf, 256 KB at most
-constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // largest part stored in its node itself, bytes
+constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // a larger part, bytes, goes into leaves
 
 }  // namespace limber

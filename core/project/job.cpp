@@ -21,9 +21,10 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kChangeInterval = std::chrono::milliseconds(50);
-constexpr int kLongAtOnce = 1;           // number of long jobs that run together; each uses all cores
-constexpr double kFirstEstimate = 0.5;   // seconds that a stage runs before its end is estimated: early guesses vary
-constexpr double kLeastFraction = 0.02;  // finished share of a stage before its end is estimated: early guesses vary
+constexpr int kLongAtOnce = 1;  // number of long jobs that run together; each uses all cores
+// Seconds; the end of a stage is estimated only after this time: early guesses vary.
+constexpr double kFirstEstimate = 0.5;
+constexpr double kLeastFraction = 0.02;  // the end of a stage is estimated only after this share: early guesses vary
 constexpr double kPatience = 0.1;        // seconds for which a cancelled job that still runs keeps the next job waiting
 constexpr double kFarewell = 1;          // seconds that the destructor of Jobs waits for running jobs to end
 

@@ -60,7 +60,7 @@ class PackedVolumes {
   bool has_volume_right(std::int64_t step, std::int64_t end) const;
 
   std::vector<Link> links_;                    // for each step, the link to the step before
-  std::vector<std::optional<Packed>> packed_;  // one for each step; empty: the step's document has its volume
+  std::vector<std::optional<Packed>> packed_;  // for each step, its packed volume; empty: not packed
 };
 
 }  // namespace limber

@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kPairs = 12;  // number of pairs of differences that approximate the Hessian
+constexpr int kPairs = 12;  // number of latest steps from which the Hessian is approximated
 // Share of the decrease predicted by the slope that a step must reach (Armijo condition).
 constexpr double kArmijo = 1e-4;
 constexpr int kMostHalvings = 12;

@@ -50,7 +50,7 @@ struct TurnedJoint {
 std::vector<TurnedJoint> turned_joints(const Armature& rig, const Pose& pose);
 
 struct Report {
-  std::string method;  // "lbs", "dqs", "fem"; empty when two volumes were only compared
+  std::string method;  // method of posing: "lbs", "dqs", "fem"; empty when two volumes were only compared
   std::map<std::string, SettingValue> settings;
   std::vector<InputFile> inputs;
   std::vector<TurnedJoint> joints;

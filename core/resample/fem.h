@@ -65,8 +65,8 @@ struct SolveParameters {
   double tet_mm = 0, finest_tet_mm = 0;            // edge length of the tets, and of the smallest tets around joints
   double step_degrees = 0;                         // largest rotation of any joint in one step
   double step_tolerance_mm = 0, tolerance_mm = 0;  // tolerances of the steps and of the final pose (fem/solve_pose.h)
-  double joint_mm = 0;               // a bone's ends within this distance of another bone belong to the joint
-  std::optional<double> contact_mm;  // distance below which skin is pushed apart; none: no contact
+  double joint_mm = 0;                             // a bone's ends this near to another bone belong to the joint, mm
+  std::optional<double> contact_mm;                // distance below which skin is pushed apart; none: no contact
 };
 
 struct SolveReport {

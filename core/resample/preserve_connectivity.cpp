@@ -50,6 +50,7 @@ std::map<Label, std::vector<Part>> large_parts(const Components& components) {
 
 class Mending {
  public:
+  // Prepares the repair; run() changes the labels of `posed`.
   //   tissue  the posed tissues, from which voxels may be taken; may be the same volume as `posed`
   Mending(LabelEdit posed, Components of_posed, const LabelView& rest, const Components& of_rest,
           const LabelView& tissue, const LabelSet& soft, const RestPoint& rest_point)

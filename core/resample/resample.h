@@ -78,16 +78,16 @@ struct DeformReport {
     double rigid_residual_mm = 0;
     std::int64_t voxels = 0;  // number of posed voxels of bone tissue of this rig bone
   };
-  std::vector<BoneResidual> bones;              // rig bones with posed bone tissue
-  std::optional<SettledFlesh::Report> settled;  // only with mixed blending; none: the pose bends nothing
+  std::vector<BoneResidual> bones;              // one entry for each rig bone with posed bone tissue
+  std::optional<SettledFlesh::Report> settled;  // set only by mixed blending; none: the pose bends nothing
   // Number of voxels that each organ gained (positive) or lost (negative) to keep its volume (organ_volumes.h), by
   // label.
   std::map<Label, std::int64_t> kept_organs;
   std::optional<MassExactReport> mass_exact;
-  std::optional<MeshReport> mesh;                     // only with finite elements, and only where something bends
-  std::optional<SolveReport> solve;                   // only with finite elements, and only where something bends
-  std::vector<ObjectReport> objects;                  // only with finite elements and objects
-  std::optional<double> seconds_mesh, seconds_solve;  // only with finite elements, and only where something bends
+  std::optional<MeshReport> mesh;                     // the mesh; none: no finite elements, or nothing bends
+  std::optional<SolveReport> solve;                   // the solve; none: no finite elements, or nothing bends
+  std::vector<ObjectReport> objects;                  // one entry for each object that presses on the body
+  std::optional<double> seconds_mesh, seconds_solve;  // times; none: no finite elements, or nothing bends
   double seconds_deform = 0, seconds_rasterize = 0;
 };
 

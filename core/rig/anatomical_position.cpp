@@ -11,7 +11,8 @@ namespace {
 // An angle about a hinge is read only if the unit direction of each bone has at least this component across the hinge's
 // axis; a bone along the axis shows no angle.
 constexpr double kTells = 0.3;
-constexpr double kAskew = std::numbers::pi / 6;  // bend of toes, foot, neck or head that counts as straight, radians
+// Radians; toes, feet, necks and heads that are bent by at most this count as straight.
+constexpr double kAskew = std::numbers::pi / 6;
 
 glm::dvec3 direction(const Bone& bone) {
   const glm::dvec3 along = bone.tail - bone.head;

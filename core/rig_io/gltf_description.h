@@ -29,7 +29,7 @@ struct GltfDescription {
   };
   struct Primitive {
     std::int64_t positions = -1, indices = -1;  // accessors of the positions and of the indices; -1: none
-    std::int64_t mode = 4;                      // 4: triangles, 5: strip, 6: fan [glTF 2.0, 5.24.4]
+    std::int64_t mode = 4;                      // the kind of primitive: 4 triangles, 5 strip, 6 fan [glTF 2.0, 5.24.4]
   };
   struct Accessor {
     std::int64_t view = -1;
@@ -40,11 +40,12 @@ struct GltfDescription {
   };
   struct View {
     std::int64_t buffer = -1;
-    std::uint64_t offset = 0, bytes = 0, stride = 0;  // stride 0: the elements follow one another without gaps
+    // Position and length in the buffer; distance between elements, bytes, 0: they follow one another without gaps.
+    std::uint64_t offset = 0, bytes = 0, stride = 0;
   };
   struct Buffer {
     std::uint64_t bytes = 0;
-    std::string uri;  // empty: the data are in the binary chunk of a .glb
+    std::string uri;  // name of the data's file; empty: the data are in the binary chunk of a .glb
   };
 
   std::vector<Node> nodes;

@@ -24,7 +24,7 @@ namespace limber {
 
 struct ArmatureFile {
   Armature armature;
-  std::string format;  // "Limber JSON", "Bender VTK", "Bender ARM", "BVH", "glTF"
+  std::string format;  // name of the file's format: "Limber JSON", "Bender VTK", "Bender ARM", "BVH", "glTF"
   std::vector<std::string> warnings;
 };
 

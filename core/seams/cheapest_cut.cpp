@@ -170,7 +170,7 @@ class CheapestCut {
   const Seams& seams_;
   const bool has_seams_ = !seams_.empty();
   const SkinLayers &of_limb_, &of_other_;
-  std::vector<Layer> layer_;  // layer of each label; air ends a ray as deep tissue does
+  std::vector<Layer> layer_;  // layer of each label; air counts as Deep, so that it ends a ray
   const std::array<std::int64_t, 3> stride_{1, volume_.grid.size.x,
                                             std::int64_t{volume_.grid.size.x} * volume_.grid.size.y};
 };

@@ -13,7 +13,8 @@ namespace limber {
 
 constexpr int kWeightLanes = 8;  // the number of voxels must be a multiple of this
 
-enum class LaneWidth { Widest, Four };  // number of voxels at a time; the results are equal
+// Number of voxels that are processed at a time: as many as the processor can, or four. The results are equal.
+enum class LaneWidth { Widest, Four };
 
 // Writes the weight of `bone` in each voxel to `weights`.
 void weights_of(std::span<const Influence> influences, int bone, std::span<std::uint16_t> weights,

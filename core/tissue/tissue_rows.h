@@ -20,7 +20,7 @@ namespace limber {
 
 struct TissueShare {
   int row = 0;
-  double volume = 0;  // share by volume, (0, 1]
+  double volume = 0;  // share of the part by volume, (0, 1]
 };
 
 struct TissueRow {
