@@ -125,8 +125,8 @@ glm::dvec3 direction_of(const Skeleton& skeleton, int joint) {
 
 namespace {
 
-// Returns the vector from the right joint of `part` to the left one. Thighs give the line through the hips, upper arms
-// the line through the shoulders.
+// Returns the vector from the right joint of `part` to the left one; nothing if the skeleton lacks one of them. Thighs
+// give the line through the hips, upper arms the line through the shoulders.
 std::optional<glm::dvec3> across(const Skeleton& skeleton, BodyPart part) {
   const auto left = skeleton.place_of(part, BodySide::Left), right = skeleton.place_of(part, BodySide::Right);
   return left && right && glm::length(*left - *right) > 1e-9 ? std::optional(*left - *right) : std::nullopt;

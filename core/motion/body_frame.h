@@ -56,10 +56,11 @@ void place_joints(Skeleton& skeleton, const Motion& motion, int frame);
 // when the direction is unknown.
 glm::dvec3 direction_of(const Skeleton& skeleton, int joint);
 
-// Returns the vector from the hips up to the neck.
+// Returns the vector from the hips up to the neck; nothing if the skeleton lacks the joints for it.
 std::optional<glm::dvec3> trunk_line(const Skeleton& skeleton);
 
-// Returns the body's axes (left, back, up), found from the left and right joint of `part` and from the trunk line.
+// Returns the body's axes (left, back, up), found from the left and right joint of `part` and from the trunk line;
+// nothing if the skeleton lacks them.
 std::optional<glm::dmat3> body_axes(const Skeleton& skeleton, BodyPart part);
 
 // Returns the frame of the motion at which the body is nearest to standing, or -1 if the rest pose is. Retargeting

@@ -238,7 +238,7 @@ bool read_hierarchy(Reader& in, Motion& motion) {
 
 // ---- reading the MOTION section
 
-// Reads the number after "Frames:" or "Frame Time:", with or without blanks before the colon.
+// Reads and returns the number after "Frames:" or "Frame Time:", with or without blanks before the colon.
 double headed_number(Reader& in, std::string_view first, std::string_view second, const char* title) {
   std::string heading;
   while (heading.size() < 20 && !heading.ends_with(':')) {

@@ -49,7 +49,7 @@ struct Motion {
   std::vector<std::string> warnings;
 };
 
-// Reads a BVH file or its text. Throws Error with file, line and what to do.
+// Read a BVH file, or the text of one. Both functions throw Error with file, line and what to do.
 Motion read_bvh(const Path& path);
 Motion parse_bvh(const std::string& text, const std::string& where);
 

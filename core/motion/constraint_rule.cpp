@@ -19,8 +19,8 @@ int bone_named(const Armature& armature, const Constraint& constraint, const std
   throw Error("the rig has no bone \"" + name + "\"", constraint.name, "choose another bone, or remove the constraint");
 }
 
-// Finds the limb that the planted bone belongs to. The bone is the limb's foot or hand or, if the rig has none, the
-// shank or forearm.
+// Sets the bones of the limb to which the planted bone of `found` belongs. The planted bone is the limb's foot or hand
+// or, if the rig has none, the shank or forearm.
 void find_limb(ConstraintOnRig& found, const Armature& armature, const std::vector<PlantedLimb>& limbs) {
   for (const PlantedLimb& limb : limbs) {
     if (found.bone != (limb.end >= 0 ? limb.end : limb.lower)) continue;

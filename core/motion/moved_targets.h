@@ -13,7 +13,8 @@ namespace limber {
 
 // Returns the names of the constraints with a target position whose target bone has another head or tail in the new
 // rig.
-//   from  for each bone of the new rig, its index in the old rig; -1: a new bone
+//   before, after  the old rig and the new rig
+//   from           for each bone of the new rig, its index in the old rig; -1: a new bone
 std::vector<std::string> moved_targets(const Constraints& constraints, const Armature& before, const Armature& after,
                                        const std::vector<int>& from);
 

@@ -168,7 +168,8 @@ class Spline {
     return true;
   }
 
-  // Replaces a key and the next one by one key between them, if the curve then stays within the allowed error.
+  // Replaces a key and the next one by one key between them, if the curve then stays within the allowed error. Returns
+  // whether it did so.
   bool merge(int key) {
     const SplineKey from = keys_[key], to = keys_[key + 1];
     for (const double share : {0.5, 0.25, 0.75}) {

@@ -41,8 +41,8 @@ std::size_t farthest(const std::vector<glm::dvec3>& places, const auto& distance
   return best;
 }
 
-// Returns orthonormal axes from three of the positions. The third axis points from position a to position b; the first
-// is as near as possible to the direction from a to c.
+// Returns orthonormal axes from three of the positions; nothing if these are nearly in line. The third axis points from
+// position a to position b; the first is as near as possible to the direction from a to c.
 std::optional<glm::dmat3> axes_by(const std::vector<glm::dvec3>& places, std::size_t a, std::size_t b, std::size_t c) {
   return axes_of(places[b] - places[a], places[c] - places[a]);
 }

@@ -34,7 +34,7 @@ std::optional<glm::dvec3> first_of(const Skeleton& skeleton, std::initializer_li
 }
 
 // Returns the unit direction from the lowest body part that the joint names tell (feet at best) to the highest (head at
-// best), in the file's axes.
+// best), in the file's axes. Returns nothing if the names tell no such parts.
 std::optional<glm::dvec3> body_line(const Skeleton& skeleton) {
   const auto top = first_of(skeleton, {BodyPart::Head, BodyPart::Neck, BodyPart::UpperArm, BodyPart::Clavicle});
   const auto end = first_of(skeleton, {BodyPart::Foot, BodyPart::Shank, BodyPart::Thigh, BodyPart::Pelvis});
@@ -63,7 +63,8 @@ std::optional<UpAxis> axis_over_frames(const Motion& motion, Skeleton& skeleton)
   return along_y > 0 && along_y >= kFew * looked_at ? std::optional(UpAxis::Y) : std::nullopt;
 }
 
-// Returns the axis (y or z) along which the root moves little while it travels far along the other of the two.
+// Returns the axis (y or z) along which the root moves little while it travels far along the other one of them. Returns
+// nothing if the root does not travel far.
 std::optional<UpAxis> axis_by_travel(const Motion& motion) {
   glm::dvec3 low(1e300), high(-1e300);
   const int step = std::max(1, motion.frame_count / kMostFrames);

@@ -24,7 +24,7 @@ constexpr std::int64_t kBricksAtOnce = 16;
 using Target = WeightSum;
 using Words = std::array<std::uint64_t, 2>;  // the 16 bytes of an Influence
 
-// Compares two influences as pairs of 64-bit numbers, because a comparison of arrays would be a slow function call.
+// Returns whether two influences are equal. Compares 64-bit numbers: a comparison of arrays would be a function call.
 bool equal(const Influence& a, const Influence& b) {
   const Words first = std::bit_cast<Words>(a), second = std::bit_cast<Words>(b);
   return first[0] == second[0] && first[1] == second[1];
@@ -107,7 +107,7 @@ class Stroke::Work {
   void cover_plainly(const Reached& reached, const Reached::Brick& part, float strength);
   void paint_waiting();
   void paint_waiting(Brick& brick, Canvas& canvas, Blocked& blocked);
-  // Returns a weight after a plain brush has painted it. All values are in 1/65535; `covered` is the voxel's cover.
+  // Returns the weight that a plain brush makes of `before`, in 1/65535. `covered` is the voxel's cover, in 1/65535.
   std::uint16_t painted(int before, int covered) const {
     return static_cast<std::uint16_t>(rule_.paint_whole(before, covered, brush_));
   }

@@ -19,8 +19,8 @@ class WeightsNearby {
     return view_.weights(brick)[place - view_.body.tissue.bricks()[brick].first];
   }
 
-  // Adds the weights at a position to `sum`. They are interpolated between those of the eight surrounding voxels that
-  // are tissue.
+  // Adds the weights at a position (voxel coordinates) to `sum`. They are interpolated between those of the eight
+  // surrounding voxels that are tissue.
   void add_between(const glm::dvec3& place, WeightSum& sum) const {
     const glm::dvec3 low = glm::floor(place), share = place - low;
     for (int corner = 0; corner < 8; ++corner) {

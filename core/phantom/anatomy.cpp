@@ -37,6 +37,7 @@ struct Depth {
 
 // Computes the depth of a point below the skin's surface. Each part of the flesh (such as a finger) is blended smoothly
 // with its parent part (the palm) only.
+//   at  working memory, which receives the distance to each part in `nearby`
 Depth depth_at(const Anatomy& anatomy, const std::vector<int>& nearby, const glm::dvec3& p, std::vector<double>& at) {
   for (int i : nearby) at[i] = anatomy.flesh[i].solid.distance(p);
   Depth depth{kFar, 0};

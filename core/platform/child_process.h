@@ -37,6 +37,7 @@ ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size
                          const AskCancelled& cancelled = {});
 
 // Runs `work` in a child process within the default limits, for callers that do not need the reason of a failure.
+// Returns the sent bytes, or nothing after a failure.
 std::optional<std::string> run_in_child(const std::function<bool(const Send&)>& work, std::size_t most);
 
 }  // namespace limber

@@ -25,7 +25,7 @@ struct FileStatus {
 
 // Returns the status of a file, after symbolic links are followed; nothing when there is no such file.
 std::optional<FileStatus> status_of_file(const Path& path);
-// Returns the status of a file; of a symbolic link, the status of the link.
+// Returns the status of a file; of a symbolic link, the status of the link. Returns nothing when there is no such file.
 std::optional<FileStatus> status_of_link(const Path& path);
 // Returns the status of an open file (OpenFile::status).
 std::optional<FileStatus> status_of_open_file(const Handle& file);

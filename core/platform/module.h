@@ -24,7 +24,8 @@ void* open_module(const std::string& name);
 // as open_module(). Returns nothing when no folder has the program.
 std::optional<Path> find_own_program(const std::string& name);
 
-// Returns the path of the program `name` in the first folder of PATH that has it. Skips relative folders of PATH.
+// Returns the path of the program `name` in the first folder of PATH that has it; nothing if none has it. Skips
+// relative folders of PATH.
 std::optional<Path> find_program(const std::string& name);
 
 // Returns the path of the running program; empty where the system does not tell it.

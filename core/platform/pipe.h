@@ -41,6 +41,7 @@ bool wait_to_write(const Handle& end, int milliseconds);
 // standard output is a pipe. Both functions block. They return false when the other program has closed the channel.
 bool write_to_parent(std::string_view head, std::string_view body);
 // Reads `size` bytes. Unless `file` is nullptr, also receives the file that was sent with the first of these bytes.
+// Returns false when the other program has closed the channel.
 bool read_from_parent(void* to, std::size_t size, OpenFile* file);
 
 }  // namespace limber

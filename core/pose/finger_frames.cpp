@@ -34,7 +34,7 @@ std::optional<int> bone_of(const Skeleton& skeleton, BodyPart part, BodySide sid
   return found == skeleton.joint.end() ? std::nullopt : std::optional(found->second);
 }
 
-// Returns the position of a finger's knuckle, which is the joint between palm and finger.
+// Returns the position of a finger's knuckle, which is the joint between palm and finger; nothing if the rig lacks it.
 std::optional<glm::dvec3> knuckle(const Skeleton& skeleton, BodyPart finger, BodySide side) {
   if (const auto place = skeleton.place_of(finger, side, 1)) return place;
   const auto metacarpal = bone_of(skeleton, finger, side, 0);
@@ -47,7 +47,7 @@ std::optional<glm::dvec3> wrist(const Skeleton& skeleton, BodySide side) {
   return forearm ? std::optional(skeleton.tip[*forearm]) : std::nullopt;
 }
 
-// Returns the bone of the finger's outermost segment.
+// Returns the bone of the finger's outermost segment; nothing if the finger has no bones.
 std::optional<int> last_segment(const Skeleton& skeleton, BodyPart finger, BodySide side) {
   for (int segment = 3; segment >= 1; --segment)
     if (const auto bone = bone_of(skeleton, finger, side, segment)) return bone;

@@ -28,7 +28,7 @@ glm::dquat rotation_of_finger(const AnatomicalHinge& hinge, const FingerAngles& 
 std::optional<glm::dvec3> along_hand(const Skeleton& skeleton, BodySide side);
 
 // Returns the vector across the palm from the index finger to the little finger, or away from the thumb if there is no
-// other finger. The vector is not normalized.
+// other finger. The vector is not normalized. Returns nothing for a hand without fingers.
 std::optional<glm::dvec3> across_palm(const Skeleton& skeleton, BodySide side);
 
 // Returns true if the rig's only hand, whose bone names tell no side, is a right hand. The direction in which the

@@ -256,7 +256,7 @@ bool add_hand_request(JointAngles& angles, const std::vector<std::string>& words
 }
 
 // Returns the angles of a finger's joints for a requested motion. "flexion" bends all joints of the finger, a motion
-// with the name of a joint ("knuckle flexion") only this joint.
+// with the name of a joint ("knuckle flexion") only this joint. Returns nothing for an unknown motion.
 std::optional<JointMotions> finger_motions(BodyJoint finger, const std::string& motion, double degrees) {
   if (motion == "flexion" || motion.empty()) {
     if (finger == Thumb) return JointMotions{std::nullopt, degrees, degrees};
@@ -300,7 +300,7 @@ struct FoundJoint {
   std::size_t next = 0;  // index of the word after the joint's name
 };
 
-// Finds the longest joint name that begins at the word with index `first`.
+// Returns the longest joint name that begins at the word with index `first`; nothing if none begins there.
 std::optional<FoundJoint> joint_at(const std::vector<std::string>& words, std::size_t first) {
   for (std::size_t count = 2; count >= 1; --count) {
     if (first + count > words.size()) continue;

@@ -52,7 +52,7 @@ CardanSigns signs_of(BodyJoint joint) {
   }
 }
 
-// Adds or subtracts 360 degrees if this brings the angle nearer to the joint's usual range.
+// Returns the angle, or the angle plus or minus 360 degrees if this is nearer to the joint's usual range.
 double unwrapped(double angle, const AngleRange& range) {
   for (const double other : {angle - 360, angle + 360})
     if (excess(other, range) < excess(angle, range) - 1e-9) angle = other;

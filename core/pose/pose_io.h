@@ -12,8 +12,8 @@
 
 namespace limber {
 
-// Reads a pose. Throws Error for an unknown bone, joint or motion, a joint that the rig does not have, a zero axis or
-// quaternion, or a number that is not finite.
+// Read a pose from a file or from text; `where` names the text in messages. Both functions throw Error for an unknown
+// bone, joint or motion, a joint that the rig does not have, a zero axis or quaternion, or a number that is not finite.
 Pose read_pose(const Path& path, const Armature& armature);
 Pose parse_pose(const std::string& text, const std::string& where, const Armature& armature);
 

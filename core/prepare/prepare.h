@@ -41,7 +41,7 @@ LabelVolume crop_to_tissue(const LabelVolume& volume);
 // Crops to the box from voxel `low` to voxel `high`, both included. Throws Error if the box contains no voxel of the
 // volume.
 LabelVolume crop(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high);
-// Adds `voxels` voxels of air on every side. Throws Error when the result would have too many voxels.
+// Returns the volume with `voxels` more voxels of air on every side. Throws Error if it would have too many voxels.
 LabelVolume pad(const LabelVolume& volume, int voxels);
 LabelVolume merge_labels(const LabelVolume& volume, Label from, Label into);
 

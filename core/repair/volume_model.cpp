@@ -94,6 +94,7 @@ class VolumeModel::Work {
 
   // Writes the gradient of the total with respect to the node values.
   //   slopes  derivative of the total with respect to the volume change of each turn and tissue class, 1 / mm3
+  //   care    factor on the costs of folded and overlapping tissue
   void differentiate(std::span<const double> nodes, const std::vector<FleshChange>& slopes, double care,
                      std::span<double> gradient) const;
 

@@ -31,7 +31,8 @@ class Components {
     while (parent_[set] != set) set = parent_[set] = parent_[parent_[set]];
     return set;
   }
-  // Unites two sets. The older set stays the root, so that set 0 always means outside air.
+  // Unites the sets that contain a and b, and returns the root. The older set stays the root, so that set 0 always
+  // means outside air.
   int unite(int a, int b) {
     a = root(a);
     b = root(b);

@@ -72,7 +72,8 @@ float noise(std::uint64_t seed) {
   return static_cast<float>(seed >> 40) / (1 << 24);
 }
 
-// Returns the tissues that may take a voxel, with their memberships. The count is 0 if the voxel keeps its tissue.
+// Returns the tissues that may take a voxel of tissue `own`, with their memberships. The count is 0 if the voxel keeps
+// its tissue.
 Contested contested(const LabelSampler::Memberships& found, Label own) {
   Contested voxel{0, {}, {}, 0};
   for (int i = 0; i < found.count; ++i) {

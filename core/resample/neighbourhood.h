@@ -72,8 +72,8 @@ bool is_enclosed(const LabelView& volume, const glm::ivec3& voxel);
 // 26 neighbours is air or outside the grid.
 bool can_spare_inside(const LabelView& volume, const glm::ivec3& voxel);
 
-// Returns a pseudo-random number for a voxel index, always the same for the same index. Lists of equally good voxels
-// are sorted by it, so that their first entries do not all lie on one side of the body.
+// Returns a pseudo-random number for the voxel index `at`, always the same for the same index. Lists of equally good
+// voxels are sorted by this number, so that their first entries do not all lie on one side of the body.
 std::uint64_t shuffled(std::uint64_t at);
 
 // Returns true if at least one of a voxel's six face neighbours is air or outside the grid.

@@ -16,7 +16,8 @@ bool is_separator(char c) { return c == '.' || c == '_' || c == '-' || c == ' ' 
 
 constexpr std::pair<const char*, const char*> kWords[] = {{"Left", "Right"}, {"left", "right"}, {"LEFT", "RIGHT"}};
 
-// Exchanges left and right in a name in which the side is a whole word ("Left", "right").
+// Exchanges left and right in a name in which the side is a whole word ("Left", "right"). Returns nothing for any other
+// name.
 std::optional<std::string> by_word(const std::string& name) {
   for (const auto& [left, right] : kWords)
     for (const auto& [word, other] : {std::pair{left, right}, std::pair{right, left}})
@@ -38,7 +39,7 @@ char other_letter(char c) {
 }
 
 // Exchanges left and right in a name in which the side is one letter: a letter between separators ("arm.L"), or a
-// capital before another capital at the start of the name ("LThumb").
+// capital before another capital at the start of the name ("LThumb"). Returns nothing for any other name.
 std::optional<std::string> by_letter(const std::string& name) {
   for (std::size_t at = name.size(); at-- > 0;) {
     const char other = other_letter(name[at]);

@@ -209,7 +209,7 @@ class SeamFinder {
     return true;
   }
 
-  // Appends the voxels of a brick that share a face with a voxel of another bone.
+  // Appends the voxels of brick number `at` that share a face with a voxel of another bone.
   void find_borders_of(std::int64_t at, std::vector<Border>& found) const {
     const TissueVoxels::Brick& brick = tissue_.bricks()[at];
     tissue_.for_each(at, at + 1, [&](std::int64_t place, const glm::ivec3& v) {

@@ -309,8 +309,8 @@ WeightEdit with_levels(const WeightedBody& body, const SkinWeights& weights, int
 
 namespace {
 
-// Returns the nearest voxel, at most `reach` mm away, for which `fits` returns true. Searches cubes of growing size
-// around the point.
+// Returns the nearest voxel, at most `reach` mm away, for which `fits` returns true; nothing if there is none. Searches
+// cubes of growing size around the point.
 template <class Fits>
 std::optional<glm::ivec3> nearest_voxel(const Grid& grid, const glm::dvec3& at, double reach, const Fits& fits) {
   const glm::ivec3 centre(glm::round(glm::clamp(at, glm::dvec3(-1e6), glm::dvec3(1e6))));

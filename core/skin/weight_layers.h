@@ -100,7 +100,8 @@ WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const Tissu
 // the new base.
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base);
 
-// Adapts the layers after bones were added to the rig, removed from it or reordered (see transfer_to_volume.h).
+// Returns the layers for a rig to which bones were added, or in which bones were removed or reordered. Parameters and
+// result are those of carried() in transfer_to_volume.h.
 std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to,
                                     const std::vector<std::string>& names);
 

@@ -51,6 +51,7 @@ std::string csv_field(const std::string& text);  // returns `text` as a field of
 
 // Parses the first three fields of a table's row: `name`, `names` (synonyms) and `kinds`. Throws Error for an unknown
 // kind.
+//   where  the file and line, for messages
 TissueNames tissue_names_of(const std::vector<std::string>& fields, const std::string& where);
 
 }  // namespace limber

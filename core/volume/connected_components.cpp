@@ -52,8 +52,8 @@ std::vector<Run> runs_of_slice(const LabelView& volume, const RowSet* in_rows, c
   return runs;
 }
 
-// While components are sought, Run::component is the run's parent in the union-find forest: an earlier run, or, for a
-// root, the run itself.
+// Returns the root of a run in the union-find forest. While components are sought, Run::component is the run's parent:
+// an earlier run, or, for a root, the run itself.
 std::int32_t root_of(std::vector<Run>& runs, std::int32_t run) {
   while (runs[run].component != run) run = runs[run].component = runs[runs[run].component].component;
   return run;

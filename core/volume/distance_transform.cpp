@@ -20,8 +20,8 @@ constexpr int kLines = 16;
 // than computing the envelope of parabolas.
 constexpr int kNear = 48;
 
-// Computes the squared distance from each voxel of a row to the nearest seed in the row. It takes two sweeps, forwards
-// and backwards, that count the voxels since the last seed.
+// Computes the squared distance, mm2, from each voxel of a row to the nearest seed in the row. It takes two sweeps,
+// forwards and backwards, that count the voxels since the last seed. `step` is the spacing, mm.
 void distance_along_x(const std::uint8_t* seed, float* squared, int count, double step) {
   const int far = std::numeric_limits<int>::max();
   int steps = far;

@@ -15,7 +15,8 @@ namespace {
 // good as at their best. With any value below 4/3, a point at a voxel's centre gets the label of this voxel.
 constexpr double kSharpening = 0.1;
 
-// Rounds down. std::floor would be a function call where the compiler may not use the processor's rounding instruction.
+// Returns the value rounded down. std::floor would be a function call where the compiler may not use the processor's
+// rounding instruction.
 int round_down(double value) {
   const int whole = static_cast<int>(value);
   return whole - (value < whole);

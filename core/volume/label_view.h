@@ -42,7 +42,7 @@ class LabelView {
     return {inside ? first_ + place(v) : nullptr, size.x, std::int64_t{size.x} * size.y};
   }
 
-  // Returns true if both are views of the same labels.
+  // Returns true if this view and `other` are views of the same labels.
   bool is_of_same(const LabelView& other) const { return first_ == other.first_; }
 
  protected:

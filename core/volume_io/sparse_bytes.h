@@ -21,7 +21,7 @@ class SparseBytes {
   //   packed  holds the packed bytes from position `first` on
   explicit SparseBytes(std::string packed, std::size_t first = 0) : packed_(std::move(packed)), at_(first) {}
 
-  // Writes the next `size` bytes. Returns false if the packed bytes hold fewer, or are damaged.
+  // Unpacks the next `size` bytes into `to`. Returns false if the packed bytes hold fewer, or are damaged.
   [[nodiscard]] bool read(char* to, std::size_t size);
   // Returns whether all bytes are unpacked.
   bool is_done() const { return at_ == packed_.size() && zeros_ == 0 && others_ == 0; }

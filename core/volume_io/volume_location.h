@@ -23,7 +23,7 @@ class PlainFile {
 
   const OpenFile& file() const { return file_; }
   std::int64_t size() const { return size_; }  // bytes
-  // Reads `bytes` bytes from `offset` on and returns how many bytes were read. These are fewer only at the file's end.
+  // Reads `bytes` bytes from `offset` on into `to` and returns how many bytes were read: fewer only at the file's end.
   std::size_t read_at(std::int64_t offset, void* to, std::size_t bytes) const {
     return file_.read_at(offset, to, bytes);
   }

@@ -274,7 +274,7 @@ class ReaderVoxels final : public VoxelSource {
     promised_ -= count;
   }
 
-  // Reads from the opened file itself, a few megabytes at a time, so that the user can cancel.
+  // Reads the next bytes from the opened file itself, a few megabytes at a time, so that the user can cancel.
   void read_plain(char* to, std::size_t bytes) {
     constexpr std::size_t kStep = 16 << 20;
     for (std::size_t done = 0; done < bytes;) {

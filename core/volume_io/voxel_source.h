@@ -24,8 +24,8 @@ class VoxelSource {
  public:
   virtual ~VoxelSource() = default;
 
-  // Reads exactly the next `bytes` bytes of voxels, in the header's byte order. Throws Error when the data end earlier
-  // or are damaged.
+  // Reads exactly the next `bytes` bytes of voxels into `to`, in the header's byte order. Throws Error when the data
+  // end earlier or are damaged.
   virtual void read(void* to, std::size_t bytes) = 0;
 
   // If the next voxels are stored in the file exactly as read() returns them, skips them and returns their range in the

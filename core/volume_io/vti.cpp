@@ -229,7 +229,7 @@ class EncodedBytes {
         is_base64_(is_base64),
         where_(std::move(where)) {}
 
-  // Reads the next `bytes` bytes. Throws Error when the data end earlier.
+  // Reads the next `bytes` bytes into `to`. Throws Error when the data end earlier.
   void read(char* to, std::size_t bytes) {
     while (bytes > 0) {
       if (next_ == ready_.size()) fill();

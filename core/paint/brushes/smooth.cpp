@@ -33,7 +33,7 @@ class SharpenSide final : public SmoothSide {
   using SmoothSide::SmoothSide;
 
   // Computes the target 2 w - mean, where w are the voxel's own weights. So the target differs from w as much as the
-  // mean does, but in the opposite direction. Negative weights are dropped.
+  // mean does, but in the opposite direction. Negative weights are dropped. Returns false if no weight is left.
   bool target_at(const VoxelView& at, WeightSum& target) const override {
     if (!SmoothSide::target_at(at, target)) return false;
     for (auto& [_, weight] : target) weight = -weight;
