@@ -70,8 +70,9 @@ class WaitingConstraints {
     };
     if (const auto free = first([&](std::size_t one) { return !must_wait_for(one) && !waits_for_earlier(one); }))
       return free;
-    // Every constraint waits for another one. The list's order may be broken only for a constraint in a cycle: all
-    // constraints that it waits for also wait for it. Constraints that others must wait for are taken first.
+    // Every constraint waits for another one, so the list's order must be broken. This is allowed only for a constraint
+    // in a cycle: one for which all constraints that it waits for also wait. Of these constraints, one that others must
+    // wait for comes first.
     const auto is_in_circle = [&](std::size_t one) {
       if (must_wait_for(one)) return false;
       const std::set<std::size_t> earlier = earlier_of(one);

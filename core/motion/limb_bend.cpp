@@ -10,8 +10,8 @@
 namespace limber {
 
 double bend_for(const glm::dvec3& upper, const glm::dvec3& lower, const glm::dvec3& axis, double wanted) {
-  // With `angle` the rotation of the lower bone about the axis: dot(upper, turned lower) = across + a cos(angle) + b
-  // sin(angle).
+  // If `angle` is the rotation of the lower bone about the axis, then dot(upper, turned lower) = across + a cos(angle)
+  // + b sin(angle).
   const double across = glm::dot(upper, axis) * glm::dot(axis, lower);
   const double a = glm::dot(upper, lower) - across, b = glm::dot(upper, glm::cross(axis, lower));
   const double c = (wanted * wanted - glm::dot(upper, upper) - glm::dot(lower, lower)) / 2 - across;

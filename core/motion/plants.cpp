@@ -174,8 +174,8 @@ class Planter {
   Pull pull_of(const PosedRig& rig, std::size_t limb, PlantPoint point, int frame) const {
     const glm::dvec3 own = point_of(rig, limbs_[limb], point);
     Pull pull;
-    // Where one plant closely follows another, both have an effect. The nearer one has more weight, and within its own
-    // frames it is the only one.
+    // In frames between two plants of one point that closely follow one another, both plants have an effect, the nearer
+    // one with more weight. Within a plant's own frames, only this plant has an effect.
     double weights = 0, free = 1;
     for (const Plant& plant : plants_) {
       if (plant.limb != static_cast<int>(limb) || plant.point != point) continue;

@@ -20,8 +20,8 @@ constexpr double kCurled = 0.5;
 // Cosine of the largest angle (37 degrees) between the axis of a finger's curl and the line across the palm. A finger
 // beyond this angle is crooked, so its curl does not show the axis about which it bends.
 constexpr double kAskew = 0.8;
-// Curl of a hand (sum of the sines of the bends of all finger joints) above which its direction tells a left hand from
-// a right hand; 15 degrees in one joint give 0.26.
+// Curl of a hand (sum of the sines of the bends of all finger joints) above which the direction of the curl tells a
+// left hand from a right hand; 15 degrees in one joint give 0.26.
 constexpr double kSided = 0.26;
 
 glm::dvec3 unit(const glm::dvec3& v) {

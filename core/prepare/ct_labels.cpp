@@ -216,7 +216,8 @@ void label_skin(double thickness, LabelVolume& volume, Progress& progress) {
   const Mask outside = outside_air(volume);
   const std::vector<float> depth = squared_distance(whole(grid), outside, grid.spacing, progress);
   const double coarsest = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  // Distances are measured between voxel centres, so a layer of one voxel has the distance of one spacing.
+  // Distances are measured between voxel centres, so the outermost layer of voxels has a depth of one spacing. Skin
+  // includes at least this layer.
   const double most = std::max(thickness, coarsest) * (1 + 1e-6);
   for_each_voxel(grid, [&](std::size_t i) {
     Label& label = volume.voxels[i];

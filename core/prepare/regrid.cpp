@@ -344,7 +344,7 @@ LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progres
   }
   if (spacing == volume.grid.spacing) return volume;
 
-  // The lowest corner of the grid keeps its position.
+  // The lowest corner of the grid keeps its position, so the centre of the lowest voxel moves.
   grid.spacing = spacing;
   grid.origin = volume.grid.origin + volume.grid.direction * (0.5 * (spacing - volume.grid.spacing));
   return Regrid(volume, grid).run(progress);

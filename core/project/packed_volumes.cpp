@@ -81,7 +81,7 @@ bool PackedVolumes::pack(Steps& steps, std::int64_t current, const SetVolume& se
       if (!document.volume || bytes_of(*document.volume) < kLeastBytes) continue;
       if (!link(steps, step < current ? step + 1 : step)) continue;
       packed_[static_cast<std::size_t>(step)] = Packed{document.volume};
-      // Undoes the packing if this was the last unpacked volume of its group.
+      // Keeps the volume unpacked if it is the last unpacked one of its group of linked steps.
       if (!has_volume_left(step, 0) && !has_volume_right(step, count)) {
         packed_[static_cast<std::size_t>(step)].reset();
         continue;

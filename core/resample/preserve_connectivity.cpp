@@ -393,8 +393,8 @@ class Mending {
   std::vector<int> joined_;  // index of the component that each component was joined to, or its own index
   std::unordered_map<std::int64_t, int> taken_;  // new component of each taken voxel, by voxel index
   std::vector<glm::ivec3> bridges_;
-  // Voxel at rest from which each posed voxel that was tried for a long bridge comes, by voxel index. Only the first
-  // kTraced voxels have a value.
+  // For each posed voxel that was tried for a long bridge, by voxel index: the voxel at rest from which it comes. Only
+  // the first kTraced voxels have a value.
   std::unordered_map<std::int64_t, std::optional<glm::ivec3>> comes_from_;
   // Voxels that bridges of the current component may not take.
   std::unordered_set<std::int64_t> barred_;

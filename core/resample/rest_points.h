@@ -31,7 +31,7 @@ class RestPoints {
   // Stores the rest points of one tile if there is room. Several threads may call it for different tiles.
   void keep(const InverseMap& tile);
 
-  // Returns the rest point of a voxel of the posed volume; 0 where there is no tissue.
+  // Returns the rest point of a voxel of the posed volume; the zero vector where there is no tissue.
   glm::dvec3 at(const glm::ivec3& voxel);
 
  private:

@@ -94,7 +94,7 @@ bool is_connected(const Armature& armature, int bone) {
 }
 
 std::vector<BoneEnd> joint_of(const Armature& armature, const BoneEnd& end) {
-  // `above` is the bone whose tail is at the joint.
+  // `above` is the bone whose tail is at the joint to which `end` belongs.
   const int above = end.tail ? end.bone : is_connected(armature, end.bone) ? armature.bones[end.bone].parent : -1;
   if (above < 0) return {end};
   std::vector<BoneEnd> ends = {{above, true}};

@@ -244,7 +244,8 @@ Meaning meaning_of(const std::string& name) {
   for (const std::string& word : words)
     if (!is_digit(word[0])) joined += word;
   auto found = dictionary().find(joined);
-  // Names such as "rbuttock" or "lthigh" have no separator after the letter of the side.
+  // Names such as "rbuttock" or "lthigh" have no separator after the letter of the side, so the rest is looked up
+  // alone.
   if (found == dictionary().end() && meaning.side == BodySide::Middle && joined.size() > 2 &&
       (joined[0] == 'l' || joined[0] == 'r')) {
     found = dictionary().find(std::string_view(joined).substr(1));
@@ -255,7 +256,8 @@ Meaning meaning_of(const std::string& name) {
       if (joined.find(trunk) != joined.npos)
         meaning.word = trunk == std::string_view("cervical") ? Word::Neck : Word::Trunk;
   if (found != dictionary().end()) meaning.word = found->second;
-  // CMU's "LHipJoint" is the link from the pelvis to the thigh. The word "joint" was ignored above.
+  // CMU's "LHipJoint" is the link from the pelvis to the thigh. words_of() drops the word "joint", so `name` is
+  // searched.
   if (meaning.word == Word::Hip && name.find("HipJoint") != name.npos) meaning.word = Word::HipLink;
   return meaning;
 }

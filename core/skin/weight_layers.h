@@ -100,8 +100,10 @@ WeightLayer with_mask(const WeightLayers& layers, std::size_t layer, const Tissu
 // the new base.
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base);
 
-// Returns the layers for a rig to which bones were added, or in which bones were removed or reordered. Parameters and
-// result are those of carried() in transfer_to_volume.h.
+// Returns the layers for a rig to which bones were added, or in which bones were removed or reordered; nothing if some
+// voxel would be left without a bone.
+//   to     for each old bone: the new bone that takes over its weight; -1: none
+//   names  names of the new bones
 std::optional<WeightLayers> carried(const WeightLayers& layers, const std::vector<int>& to,
                                     const std::vector<std::string>& names);
 

@@ -216,7 +216,8 @@ std::vector<std::int32_t> bones_of_bone_tissue(const WeightedBody& body, const B
   const std::vector<std::int32_t> piece = all.pieces(follows, pieces);
   std::map<int, std::size_t> largest;
   for (const auto& voxels : pieces) largest[follows[voxels[0]]] = std::max(largest[follows[voxels[0]]], voxels.size());
-  // Decides larger small patches first, so that a smaller patch joins a neighbour whose bone is already decided.
+  // Decides the small patches in descending order of size, so that a patch joins a neighbour whose bone is already
+  // decided.
   std::vector<std::size_t> small;
   for (std::size_t p = 0; p < pieces.size(); ++p)
     if (double(pieces[p].size()) < settings.island_share * double(largest[follows[pieces[p][0]]])) small.push_back(p);

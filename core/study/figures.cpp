@@ -177,7 +177,7 @@ class Maker {
     if (!middle_) middle_ = middle_of(body.volume->grid);
     box_.add(*body.volume, body_frame(cell));
 
-    // Results of an editor session may lack the files overlap.nrrd and ratio.nrrd.
+    // Results of an editor session may lack the files overlap.nrrd and ratio.nrrd. Their pictures are then left out.
     const bool is_largest = cell.cell.pose == figures_.largest_pose;
     if (const Path overlap = cell.folder / "overlap.nrrd"; is_largest && std::filesystem::exists(overlap)) {
       figures_.overlaps.png[technique][0] =

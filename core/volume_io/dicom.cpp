@@ -20,7 +20,8 @@ constexpr std::size_t kMostFiles = 100000;
 // A series is refused if a gap between slices differs from the mean gap by more than this share of the mean gap. Slice
 // positions are rounded decimal text, so equal gaps differ slightly.
 constexpr double kEvenGaps = 0.02;
-// Upper limit on the number of bytes into which one byte of a compressed slice can unpack.
+// Largest number of bytes into which one byte of a compressed slice can unpack. A file too small for its pixels is
+// refused.
 constexpr std::int64_t kCodecMost = 4000;
 // Memory that GDCM may use in addition to the file (which GDCM holds up to four times) and the pixels (which JPEG 2000
 // expands widely), bytes. GDCM allocates memory for an element by its stated 32-bit length before it reads the element.

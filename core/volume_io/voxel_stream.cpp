@@ -15,8 +15,9 @@ namespace limber {
 
 namespace {
 constexpr std::size_t kChunk = 1 << 16;
-// Upper limits on the number of bytes into which one byte of compressed data can unpack. The limit of deflate is 1032.
-// A bzip2 block of 900 000 bytes takes at least about 40 compressed bytes.
+// Largest number of bytes into which one byte of compressed data can unpack. A file that is too small for its voxels by
+// this number is refused. The limit of deflate is 1032. A bzip2 block of 900 000 bytes takes at least about 40
+// compressed bytes.
 constexpr std::int64_t kDeflateMost = 1032, kBzip2Most = 25000;
 
 const char* const kExportAgain = "the file is cut off or damaged; export or download it again";
