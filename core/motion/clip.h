@@ -81,7 +81,8 @@ class ClipOnRig {
   const std::string& problem() const { return problem_; }
 
  private:
-  // Adds the shift of the root's keys to the pose of the motion at a frame. `base` gives that pose at other frames.
+  // Adds to `pose`, the pose of the motion at a frame, the shift that the root's keys make there. `base` returns the
+  // pose of the motion at other frames.
   void move_root(Pose& pose, int frame, const std::function<const Pose&(int)>& base) const;
 
   std::shared_ptr<const Clip> clip_;

@@ -26,7 +26,8 @@ namespace limber {
 // The kinds of constraints, as indices into the table of constraint_rule.h. Projects store these numbers.
 enum class ConstraintKind : std::uint8_t { CopyRotation, LimitRotation, JointRange, Aim, Plant, InverseKinematics };
 
-// Tells what a rotation is measured from. World: the bone's rest pose in the world. Parent: the parent bone.
+// Tells what a rotation is measured from. World: the bone's rest pose in the world. Parent: the rest pose relative to
+// the parent bone.
 enum class RotationSpace : std::uint8_t { World, Parent };
 
 // A direction along one of a bone's own axes in the rest pose (rest_axes()); y points from head to tail.

@@ -23,8 +23,8 @@ class FollowedCentre {
 
  private:
   const glm::dvec3& measured(int frame);
-  // Extends the path of the centre beyond the ends of the range by a point reflection at each end. A walk that is cut
-  // there so keeps its speed.
+  // Extends the path of the centre beyond the ends of the range by a point reflection at each end. So a walk keeps its
+  // speed at the ends.
   glm::dvec3 extended(int frame);
 
   const ClipOnRig clip_;

@@ -44,7 +44,7 @@ Lengths lengths_of(const PlantedLimb& limb, const Armature& armature) {
   return {glm::distance(armature.bones[limb.upper].head, middle), glm::distance(middle, end)};
 }
 
-// Bends and turns the limb's two long bones so that its joint comes to `target`, or as near to it as the limb reaches.
+// Bends and turns the limb's two long bones so that the ankle or wrist comes to `target`, or as near to it as it can.
 void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature, const glm::dvec3& target) {
   constexpr double kOfHinge = 0.1;  // small weight of the hinge against the axis about which the limb is bent
   const Lengths length = lengths_of(limb, armature);

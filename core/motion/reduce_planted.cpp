@@ -42,8 +42,8 @@ double most_off_in(const Plant& plant, const LimbTracks& recorded, const LimbTra
   return most;
 }
 
-// Lowers the allowed errors, in the frames of a plant, of the bones from the root to its point and of the body's shift.
-// If the errors have random directions, together they then move the point by about `mm`.
+// Lowers, in the frames of a plant, the allowed errors of the body's shift and of the bones from the root to the
+// planted point. If the errors have random directions, together they then move the point by about `mm`.
 void tighten(AllowedErrors& allowed, const Plant& plant, const Armature& armature,
              const std::vector<PlantedLimb>& limbs, const Pose& pose, double mm) {
   const glm::dvec3 point = place_of(limbs[plant.limb], plant.point, armature, pose);

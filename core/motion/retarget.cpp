@@ -204,9 +204,9 @@ class Alignment {
 
 // ---- matching
 
-// Returns whether a rig of a single hand is a left or a right hand. In a right hand, three directions form a
-// right-handed system: along the hand, from the index to the little finger, and to where the fingers curl. Returns
-// Right if the rig lacks the fingers that show these directions.
+// Returns the side of a rig of a single hand. In a right hand, three directions form a right-handed system: along the
+// hand, from the index to the little finger, and to where the fingers curl. Returns Right if the rig lacks the fingers
+// that show these directions.
 BodySide side_of_single(const Skeleton& rig) {
   auto of = [&](BodyPart finger, int segment) { return rig.place_of(finger, BodySide::Middle, segment); };
   const auto index = of(BodyPart::Index, 1), little = of(BodyPart::Little, 1), knuckle = of(BodyPart::Middle, 1),

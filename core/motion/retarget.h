@@ -100,7 +100,7 @@ struct RetargetSettings {
 // and `armature` alive as long as this object.
 class Retarget {
  public:
-  // Throws Error when the motion has no frames.
+  // Prepares the retargeting. Throws Error when the motion has no frames.
   Retarget(const Motion& motion, const Armature& armature, const RetargetMap& map,
            const RetargetSettings& settings = {});
 

@@ -36,7 +36,7 @@ std::uint64_t reversed(std::uint64_t word) {
   return word >> 32 | word << 32;
 }
 
-// Returns 64 bits of a row of bits, beginning with bit `from`. `from` may be negative; bits outside the row are 0.
+// Returns 64 bits of a row of `words` words from bit `from` on, which may be negative. Bits outside the row are 0.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int from) {
   const int word = from >> 6, shift = from & 63;
   const auto at = [&](int w) { return w >= 0 && w < words ? row[w] : 0; };
@@ -363,7 +363,7 @@ const Seams* BrushReach::seams_near() const {
   return seams && std::any_of(bricks_.begin(), bricks_.end(), is_near) ? seams : nullptr;
 }
 
-// Marks only the start voxel as seen. Near a seam, the front of shortest paths finds all other voxels from there.
+// Marks only the start voxel as seen. Near a seam, the front of shortest paths finds all other voxels from it.
 void BrushReach::see_start() {
   const glm::ivec3 cell = start_ - low_;
   const int bit = start_.x - x0_;
@@ -510,7 +510,7 @@ bool BrushReach::line_is_clear(const glm::ivec3& from, const glm::ivec3& to) con
   return true;
 }
 
-// Like line_is_clear(), but for a window near a seam: also returns false when the line crosses a seam.
+// Returns true if the line stays in tissue and crosses no seam. line_is_clear() calls this when a seam is near.
 bool BrushReach::line_crosses_no_seam(const glm::ivec3& from, const glm::ivec3& to) const {
   const glm::ivec3 way = glm::abs(to - from), sign = glm::sign(to - from);
   constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();

@@ -3,7 +3,7 @@
 
 namespace limber {
 
-// Each function returns one brush of the table. It is defined in that brush's source file in core/paint/brushes.
+// Each function returns one brush of the table, and is defined in that brush's source file in core/paint/brushes.
 BrushRule add_brush();
 BrushRule subtract_brush();
 BrushRule set_brush();

@@ -85,8 +85,8 @@ class BrushSide {
  public:
   virtual ~BrushSide() = default;
   virtual void begin_dab(const DabView&) {}
-  // Computes the target towards which the voxel's weights move. Only the proportions of its weights matter. Returns
-  // false when the voxel stays unchanged. It is called from several threads.
+  // Computes the target towards which the voxel's weights move. Only the proportions of the target's weights matter.
+  // Returns false when the voxel stays unchanged. It is called from several threads.
   virtual bool target_at(const VoxelView&, WeightSum& /*target*/) const { return false; }
   // Changes a voxel by the brush's own function. Returns nothing when the brush has no such function; the voxel is then
   // moved towards the target.

@@ -211,6 +211,8 @@ class Arm {
 
   // Adds a phalanx (finger bone) along -z of `frame`. The frame's origin is the centre of the joint about which the
   // phalanx rotates.
+  //   head_before, head  radii of the head of the bone before and of the phalanx's own head, mm
+  //   last               true: the phalanx at the finger's tip
   void add_phalanx(const Frame& frame, double length, double head_before, double head, bool last) {
     const double base = 0.98 * head_before, shaft = 0.62 * (last ? head : 0.5 * (head + head_before));
     Solid bone(cone(frame, {0, 0, -(0.6 * head_before + kGap)}, base, {0, 0, -0.30 * length}, shaft * 1.05));
@@ -223,7 +225,8 @@ class Arm {
   }
 
   // Adds the flesh, the nail and the two tendons (flexor and extensor) of a finger or thumb.
-  //   joints  the frame of each of its bones, with the joint as origin
+  //   joints, lengths  the frame of each of its bones, with the joint as origin, and the bone's length, mm
+  //   flesh, blend     radius at the first joint, and width of the blend with the palm, mm
   void add_digit_flesh(const std::vector<Frame>& joints, const std::vector<double>& lengths, double flesh,
                        double blend) {
     Solid digit;

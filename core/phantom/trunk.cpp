@@ -197,6 +197,7 @@ class Trunk {
   }
 
   // Returns a point of a rib, which runs around the rib cage from t = 0 at the back to t = 1 at the front.
+  //   z, drop  height of the rib at the back, and how much lower the rib is at the front, mm
   static V rib_point(double z, double drop, double t, double side) {
     const double height = z - drop * (1 - std::cos(std::numbers::pi * t)) / 2,
                  angle = std::numbers::pi * (0.10 + 0.78 * t);

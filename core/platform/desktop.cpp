@@ -51,7 +51,8 @@ std::vector<Path> mounted_folders() {
   return folders;
 }
 
-// Starts the program by a shell that exits at once, so that the program is no child of this process.
+// Starts the program by a shell that exits at once, so that the program is no child of this process. Returns false if
+// it cannot be started.
 bool open_in_default_program(const Path& path) {
   const auto opener = find_program("xdg-open");
   if (!opener) return false;

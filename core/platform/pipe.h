@@ -19,7 +19,8 @@ struct Pipe {
 //   buffer_bytes  size of the pipe's buffer, which the system may refuse; 0: the default size
 Pipe make_pipe(std::error_code& error, int buffer_bytes = 0);
 
-// A channel to another program, through which open files can be sent. `ours` is this program's end and does not block.
+// A channel to another program, through which open files can be sent. `ours` is this program's end and does not block;
+// `its` is the other program's end.
 struct FileChannel {
   Handle ours, its;
 };

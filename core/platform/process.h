@@ -21,7 +21,7 @@ void yield_to_other_programs();
 // Lowers the priority of the calling thread: it gets a tenth of the time of a normal thread on the same core. A refusal
 // by the system is ignored.
 void lower_priority_of_thread();
-// Limits the address space of this process.
+// Limits the address space of this process. Returns the system's error, if any.
 std::error_code limit_memory(std::int64_t bytes);
 
 double own_cpu_seconds();       // CPU time of all threads of this process, seconds

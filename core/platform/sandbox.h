@@ -16,10 +16,11 @@ namespace limber {
 struct SandboxSettings {
   // Memory that the process may map in addition to what it has mapped on entry, bytes; see allow_memory().
   std::size_t memory_bytes = std::size_t{256} << 20;
-  // Upper limit on the bytes that allow_memory() adds.
+  // allow_memory() adds at most so many bytes.
   std::size_t most_memory = std::size_t{256} << 20;
   double processor_seconds = 600;
-  // False switches the protection off. Tests do so to test the other protections alone.
+  // False switches the protection by seccomp (system_calls) or by Landlock (files) off, to test the other protections
+  // alone.
   bool system_calls = true, files = true;
 };
 

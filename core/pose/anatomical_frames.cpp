@@ -165,6 +165,7 @@ class Measuring {
   // Returns the angle, radians, by which the hinge axis of `bone` is rotated about the length of the limb above it.
   // Returns nothing if the bone has no hinge, or if the hinge axis runs along this limb.
   //   swung  the frame of the limb above, without a rotation about its length
+  //   sign   +1 or -1: the sign of the rotation about x that flexes the joint
   std::optional<double> turn_of_hinge(int bone, const glm::dquat& swung, double sign) const {
     if (!hinge_of(bone)) return std::nullopt;
     glm::dvec3 axis = glm::conjugate(swung) * view_.seen_axis(hinge_of(bone)->axis) * sign;
@@ -237,6 +238,8 @@ void Measuring::leg(BodySide side) {
 
 // Sets the frames of foot and toes. If the foot has toes, they determine its pitch in the anatomical position: the
 // slope of toes on the ground is known, and the angle between foot and toes stays as it is at rest.
+//   shank          the frame of the shank
+//   heading, seen  the heading of the foot and its direction, in this frame
 void Measuring::foot(int bone, const glm::dquat& shank, double heading, const glm::dvec3& seen) {
   const auto slope = [&](const glm::dvec3& v) { return std::atan2(-v.z, glm::dot(v, about(kZ, heading) * -kY)); };
   double neutral = kSoleSlope;
@@ -288,6 +291,7 @@ void Measuring::arm(BodySide side) {
 
 // Returns the forearm's pronation, radians in the range of -90 to 270 degrees, found from the direction in which the
 // palm faces. It is 0 if the palm faces forward.
+//   raised  angle between the upper arm and a hanging arm, radians
 double Measuring::pronation_of_hand(BodySide side, const glm::dquat& forearm, double raised) const {
   const auto across = across_palm(skeleton_, side);
   const auto along = along_hand(skeleton_, side);

@@ -27,7 +27,8 @@ double radians_of(const JointMotions& motions, std::size_t motion) {
   return motions[motion].value_or(0) * std::numbers::pi / 180;
 }
 
-// Adds the shoulder rhythm to collarbones whose angles are not requested.
+// Adds the shoulder rhythm, the turn of a collarbone with a raised arm, where no angles of the collarbone are
+// requested.
 JointAngles with_shoulder_rhythm(const BodyFrames& frames, JointAngles angles) {
   for (const BodySide side : {BodySide::Left, BodySide::Right}) {
     const auto shoulder = angles.find({Shoulder, side});

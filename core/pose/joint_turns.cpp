@@ -19,8 +19,8 @@ const glm::dvec3 kX(1, 0, 0), kY(0, 1, 0), kZ(0, 0, 1);  // the body's left, bac
 // axis stays on the ribs [Kapandji, The Physiology of the Joints].
 const glm::dvec3 kOffBlade(0.573576436351046, 0.819152044288992, 0);
 
-// Cosine of the second rotation below which a rotation counts as locked. At 1e-7, rounding errors of a quaternion
-// already turn the first and the third angle by 1e-9 rad.
+// Cosine of the second rotation below which a rotation counts as being in gimbal lock. At 1e-7, rounding errors of a
+// quaternion already turn the first and the third angle by 1e-9 rad.
 constexpr double kLocked = 1e-7;
 constexpr double kNearLock = 0.05;  // degrees; within this distance of a gimbal lock the user is warned
 

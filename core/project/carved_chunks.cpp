@@ -46,6 +46,8 @@ std::optional<std::int64_t> varint(std::string_view bytes, std::size_t& at) {
 }
 
 // Returns how many bytes of a row's payload SQLite stores in the row's own page. The other bytes are in overflow pages.
+//   usable  number of bytes of a page that SQLite uses
+//   index   true: the row is in an index, false: in a table
 std::uint32_t local_bytes(std::uint32_t payload, std::int64_t usable, bool index) {
   const std::int64_t most = index ? (usable - 12) * 64 / 255 - 23 : usable - 35, least = (usable - 12) * 32 / 255 - 23;
   if (payload <= most) return payload;

@@ -48,7 +48,7 @@ class Session {
  public:
   // Starts a session for a project without a file.
   static std::unique_ptr<Session> start(SessionSettings settings = {});
-  // Opens a project. Throws Error when it cannot be read or when another session has it open.
+  // Opens a project and reads it into `project`. Throws Error when it cannot be read or another session has it open.
   static std::unique_ptr<Session> open(const Path& path, Project& project, Progress& progress = no_progress(),
                                        SessionSettings settings = {});
   // Removes the journal when the last document handed to keep() has been saved or discarded. Otherwise the journal

@@ -39,7 +39,7 @@ class JointField {
   std::int64_t node_count() const { return std::ssize(node_position_); }
   // Returns a node's position at rest relative to the joint, along the world's axes, mm.
   const glm::dvec3& node_position(std::int64_t node) const { return node_position_[node]; }
-  // Returns the node values whose shares approximate w0 best.
+  // Returns the node values whose shares approximate w0, the share according to the body's present weights, best.
   const std::vector<double>& initial() const { return initial_; }
   std::span<const std::array<std::int32_t, 8>> pieces() const { return pieces_; }
   // Three nodes in a row along an axis of the volume.
@@ -47,7 +47,7 @@ class JointField {
   std::span<const Row> rows() const { return rows_; }
   double cell_edge() const { return cell_edge_; }  // mean edge length of a cell over the three axes, mm
 
-  // Return w0 and the mask of a tissue voxel, by its index in the list of tissue voxels.
+  // Return w0 (the share according to the body's present weights) and the mask of a tissue voxel, by its list index.
   float share(std::int64_t voxel) const { return share_[voxel]; }
   float mask(std::int64_t voxel) const { return mask_[voxel]; }
   FieldPoint point(std::int64_t index, const glm::ivec3& voxel) const;

@@ -50,7 +50,8 @@ struct JointRepair {
   std::int64_t changed = 0;          // number of voxels whose weights have changed
   CapsuleWidths widths;              // widths of the capsule from which the correction started
   bool starts_from_capsule = false;  // false: the correction started from the given weights
-  // One entry for each turn of joint_motion(); equal if no better weights were found.
+  // Figures before and after the repair, one entry for each turn of joint_motion(); equal if no better weights were
+  // found.
   std::vector<TurnFigures> before, after;
 };
 
@@ -60,7 +61,7 @@ struct JointRepair {
 JointRepair repair_joint(const WeightedBody& body, const SkinWeights& weights, int bone,
                          const JointRepairSettings& settings = {}, Progress& progress = no_progress());
 
-// Return the means of S (%) and of the overlapping voxels over the turns.
+// Return the means over the turns: of S, the sum of the absolute volume changes (%), and of the overlapping voxels.
 double mean_sum(const std::vector<TurnFigures>& figures);
 double mean_overlap(const std::vector<TurnFigures>& figures);
 

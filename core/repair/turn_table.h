@@ -20,11 +20,11 @@ namespace limber {
 
 class TurnTable {
  public:
-  // Tabulates the functions for one blend and one turn.
+  // Tabulates |z|^2, Re(k) and Im(k) for one blend and one turn.
   //   angle  angle of the turn, radians, less than pi
   TurnTable(Blend blend, double angle);
 
-  // The functions at a share w, [0, 1], and their derivatives with respect to w.
+  // The tabulated functions at a share w, [0, 1], and their derivatives with respect to w.
   struct Values {
     float volume, away, about;        // the functions |z|^2, Re(k) and Im(k) in the formula of det F
     float volume_w, away_w, about_w;  // derivatives of volume, away and about with respect to w

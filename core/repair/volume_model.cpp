@@ -166,7 +166,7 @@ class VolumeModel::Work {
 namespace {
 
 // Computes gradients of a function of voxels in world axes by central differences. A neighbour that is not connected
-// tissue is replaced by the voxel itself. The same happens at the corners of the voxel's cell when the body is posed.
+// tissue is replaced by the voxel itself.
 class Slopes {
  public:
   explicit Slopes(const WeightedBody& body) : tissue_(body.tissue), size_(body.volume.grid.size) {

@@ -31,8 +31,8 @@ double energy_of(const TetMaterial& material, const Eigen::Matrix3d& F) {
   return J > 0 ? energy_density({.shear = material.shear_modulus, .bulk = tet_bulk(material)}, F, J) : kInfinite;
 }
 
-// Returns the root mean square of the tets' edge lengths in mm. It is the distance below which gaps are measured; only
-// skin that was more than three times as far apart at rest counts, since such skin must have folded.
+// Returns the root mean square of the tets' edge lengths in mm. Only gaps below this distance are measured, and only to
+// skin that was more than three times this distance away at rest, since such skin must have folded.
 double mean_edge(const TetMesh& mesh) {
   double sum = 0;
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
