@@ -16,8 +16,9 @@ namespace limber {
 
 // Moves voxels of bone tissue to another tissue of the same rig bone until the volumes are as at rest.
 //   posed        posed labels; those of bone voxels are changed
-//   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere
-//   rest_bones   like posed_bones, for the rest volume        soft  tissues that are not bone, by label
+//   posed_bones  1 + the rig bone of each posed voxel of bone tissue, 0 elsewhere
+//   rest_bones   1 + the rig bone of each voxel of bone tissue at rest, 0 elsewhere
+//   soft         tissues that are not bone, by label
 //   returns      the number of changed voxels
 std::int64_t keep_bone_volumes(LabelEdit posed, const LabelView& posed_bones, const LabelVolume& rest,
                                const LabelView& rest_bones, const LabelSet& soft, const RestPoint& rest_point,

@@ -23,7 +23,8 @@ constexpr double kFar = 10000;  // distance of waiting objects from their target
 // The solver derives the number of steps from the largest rotation of a joint. An object's motion by one edge length of
 // the tets counts as a rotation by this angle, degrees.
 constexpr double kDegreesPerEdge = 22.5;
-// Factor on the solver's tolerance when objects press: forces react more strongly to it than shapes do.
+// The solver's tolerance is multiplied by this when objects press on the body with requested forces, because an error
+// of the solve changes forces more than shapes.
 constexpr double kTight = 0.02;
 // The search ends when the force differs from the requested one by at most this share of the requested one.
 constexpr double kForceTolerance = 0.01;
@@ -214,8 +215,8 @@ void FemObjects::add_to(FemModel& model) const {
   stay(model);
 }
 
-// Sets away_ to the distances that the objects reached in a solve. A solve that was blocked leaves them short of their
-// target positions.
+// Sets away_ to the distances that the objects reached in a solve. A solve that was blocked leaves the objects short of
+// their target positions.
 void FemObjects::find_away(const NodePositions& there) {
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < objects_.size(); ++k) {

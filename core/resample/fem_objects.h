@@ -23,7 +23,8 @@ struct FemObject {
   // World direction from which the object comes; its length does not matter. None: of the six directions along the
   // world axes, the one with the shortest way.
   std::optional<glm::dvec3> from;
-  // true: every point of the object moves straight towards the object's axis, as a cuff tightens
+  // If true, every point of the object moves straight towards the object's axis, as a cuff tightens. If false, the
+  // object moves as a whole.
   bool tightens = false;
   // Requested force along the object's way: force_n, N, plus share_of_weight times the body's weight. If both are zero,
   // the object stops at its target position with whatever force results.

@@ -35,18 +35,21 @@ constexpr double kMargin = 24;
 // Width of the margin that is meshed around tissue that the pose brings into contact, mm. It is smaller than kMargin,
 // because pressed flesh deforms less far out than a crease.
 constexpr double kGive = 16;
-// The lengths below are multiples of Fem::reach_mm, so that smaller tets solve the same problem more accurately.
+// The next three lengths are multiples of Fem::reach_mm, so that smaller tets solve the same problem more accurately.
 // Width of the rim around the tissue that may deform: at least two layers of tets. The nodes of the rim move rigidly
 // with a bone.
 constexpr double kRim = 2.5;
-// Distance from another bone below which the end of a bone is part of a joint and may slide.
+// Distance from another bone below which the end of a bone is part of a joint and may slide, as a multiple of
+// Fem::reach_mm.
 constexpr double kJoint = 2;
-// Distance between two bones in a pose below which both are part of a joint there.
+// Distance between two bones in a pose below which both are part of a joint at this place, as a multiple of
+// Fem::reach_mm.
 constexpr double kClosing = 1;
 // If a bone's node is further than this from its exact position, mm, a step of the solve fails. For coarse tets the
 // limit is larger, because they follow a bone's shape only roughly.
 constexpr double kDrift = 2;
-// Gravity grows over as many steps as a rotation by this angle takes, degrees.
+// Gravity is applied little by little, over as many steps of the solve as a rotation of a joint by this angle takes,
+// degrees.
 constexpr double kSagging = 45;
 constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; for small tets it is smaller
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching

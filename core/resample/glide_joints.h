@@ -27,11 +27,12 @@
 namespace limber {
 
 struct GlideSettings {
-  // Upper limit on the shift of a joint, as a share of the length of the shorter of its two rig bones.
+  // A joint is shifted by at most this share of the length of the shorter of its two rig bones.
   double most_share = 0.05;
-  // Upper limit on the shift of a joint, mm; it replaces most_share. None: most_share is the limit.
+  // A joint is shifted by at most this length, mm, instead of the share most_share. None: most_share is the limit.
   std::optional<double> most_mm;
-  // Upper limit on the length of the sum of a bone's own shift and the shifts of all its ancestors, mm; none: no limit.
+  // Upper limit, mm, on the length of the sum of a bone's own shift and the shifts of all its ancestors. A longer sum
+  // is not allowed, however far the bones then overlap. None: no limit.
   std::optional<double> whole_mm;
 };
 

@@ -12,7 +12,8 @@
 
 namespace limber {
 
-// Smallest connected component that counts, in voxels. Smaller components appear and disappear by resampling alone.
+// Smallest connected component, in voxels, that counts when the components of a tissue are compared with those at rest.
+// Smaller components appear and disappear by resampling alone.
 constexpr std::int64_t kSmallestPart = 50;
 
 // Returns the rest point that the pose moves to a given tissue voxel of the posed volume. Both are in voxel

@@ -22,6 +22,7 @@ constexpr int kLongestBridge = 4;
 // Upper limit on the voxels of a bridge whose voxels all come from positions inside or beside the tissue at rest.
 constexpr int kLongestTrace = 64;
 // Upper limit on the rest points (positions at rest) that are computed to find long bridges, since each takes time.
+// Once it is reached, long bridges avoid all further voxels.
 constexpr std::size_t kTraced = 20000;
 // Upper limit on the bridges that are tried for one component. Each new bridge avoids the voxels that the earlier ones
 // failed to take.

@@ -39,8 +39,8 @@ std::int64_t preserve_connectivity(LabelEdit posed, const LabelView& rest, const
 
 // Restores the number of connected components of every rig bone, whatever the tissues in it. Bones take voxels of soft
 // tissue.
-//   posed_bones  1 + the rig bone of each voxel of bone tissue, 0 elsewhere; taken voxels are added
-//   rest_bones   like posed_bones, for the rest volume
+//   posed_bones  1 + the rig bone of each posed voxel of bone tissue, 0 elsewhere; taken voxels are added
+//   rest_bones   1 + the rig bone of each voxel of bone tissue at rest, 0 elsewhere
 //   tissue       the posed tissue on the grid of posed_bones; its soft voxels may be taken
 //   returns      the taken voxels
 std::vector<glm::ivec3> mend_bones(LabelEdit posed_bones, const LabelView& rest_bones, const LabelView& tissue,

@@ -96,7 +96,7 @@ glm::vec3 RestPoints::traced(const glm::ivec3& voxel) {
   return block.rest[in.x + std::size_t(extent.x) * (in.y + std::size_t(extent.y) * in.z)];
 }
 
-// Returns the rest points of all voxels of a range, x fastest; 0 where there is no tissue.
+// Returns the rest points of all voxels of a range, x fastest; the zero vector where there is no tissue.
 std::vector<glm::vec3> RestPoints::trace_all(const VoxelRange& range) const {
   InverseMap map;
   map.has_volume_ratio = false;

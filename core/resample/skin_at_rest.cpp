@@ -10,9 +10,11 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the depth below air, in voxels, at which tissue can touch the underside of thin skin.
+// Skin beside a voxel counts as lying over the voxel only if the voxel is at most this deep below air, in voxels of the
+// largest spacing. Deeper voxels cannot touch the underside of thin skin.
 constexpr double kSkinReach = 3;
-// Largest distance, in voxels, at which skin is searched to cover a bare voxel.
+// Largest distance, in voxels, at which skin is searched to cover a bare voxel. A voxel without skin up to there stays
+// bare.
 constexpr int kFurthestSkin = 8;
 // A volume counts as coarse slices if its largest voxel spacing is more than this many times its smallest.
 constexpr double kCoarse = 2;

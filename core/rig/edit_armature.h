@@ -49,8 +49,9 @@ Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to
 // Removes bones. The nearest ancestor that stays becomes the parent of their children. Throws Error if no bone would be
 // left.
 Armature without_bones(const Armature& armature, const std::vector<int>& bones);
-// Removes bones like without_bones(), but closes the gaps in chains: if a removed bone is connected to its parent, the
-// parent is extended to the removed bone's tail.
+// Removes bones and closes the gaps in chains: if a removed bone is connected to its parent, the parent is extended to
+// the removed bone's tail. The nearest ancestor that stays becomes the parent of the removed bones' children. Throws
+// Error if no bone would be left.
 Armature dissolved(const Armature& armature, const std::vector<int>& bones);
 // Splits each of the bones into a number of equal pieces. The first piece keeps the joint limits.
 //   parts  number of pieces, [2, 100]

@@ -69,8 +69,8 @@ struct Joint {
     return {outward, glm::cross(axis, outward)};
   }
 
-  // Computes, for each parameter of the joint, the axis about which the bone turns when the parameter changes a little.
-  // The axes are in the parent's rest frame.
+  // Writes to `out`, for each parameter of the joint, the axis about which the bone turns when the parameter changes a
+  // little. The axes are in the parent's rest frame.
   void turning_axes(glm::dvec3* out) const {
     if (type == JointLimits::Type::Hinge) out[0] = axis;
     if (type == JointLimits::Type::Free)

@@ -89,7 +89,8 @@ std::vector<int> mirror_pairs(const Armature& armature) {
   return pairs;
 }
 
-// For a reflection S and a rotation R about the axis a, S R(a, angle) S = R(-S a, angle).
+// Returns the mirror image of the rotation `q`. For a reflection S and a rotation R about the axis a,
+// S R(a, angle) S = R(-S a, angle).
 glm::dquat MirrorPlane::rotation(const glm::dquat& q) const {
   const glm::dvec3 v = -direction({q.x, q.y, q.z});
   return {q.w, v.x, v.y, v.z};

@@ -19,7 +19,7 @@ namespace limber {
 namespace {
 using Json = nlohmann::json;
 
-// Upper limit on the size of a rig file, bytes (64 MiB). A rig with 4096 bones, the largest allowed, needs far less.
+// A rig file with more bytes (64 MiB) is refused. A rig with 4096 bones, the largest allowed, needs far less.
 constexpr std::uint64_t kMostBytes = 64 << 20;
 
 std::string extension_of(const Path& path) {

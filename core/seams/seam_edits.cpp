@@ -9,8 +9,8 @@ namespace limber {
 
 namespace {
 
-// Offset that is added to blades, in voxels. A blade that passes exactly through voxel centres would have these voxels
-// on neither of its sides.
+// Offset that is added to blades, in voxels. Without it, a blade that passes exactly through voxel centres would have
+// these voxels on neither of its sides.
 constexpr glm::dvec3 kAside(1.17e-4, 2.31e-4, 3.43e-4);
 
 // Returns whether the line segment from a to b, which is parallel to a voxel axis, passes through a triangle.

@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-// Upper limit on the distance between the corners of two grids that count as equal, in mm per voxel of the longest
+// Two grids count as equal if the distances between their corners are at most this, in mm per voxel of the longest
 // axis.
 constexpr double kSamePlace = 1e-3;
 

@@ -52,7 +52,7 @@ class SkinCaster {
       : volume_(volume),
         layer_(layers_of(kind)) {}
 
-  // Casts a ray from a voxel of skin. Returns nothing when the ray meets air or never leaves the skin.
+  // Casts a ray from a voxel of skin. Returns the ray, or nothing when it meets air or never leaves the skin.
   //   inward  direction of the ray, 0 to 5: towards lower x, higher x, lower y, higher y, lower z, higher z
   std::optional<SkinRay> cast(const glm::ivec3& voxel, int inward) const {
     const int axis = inward >> 1, step = inward & 1 ? 1 : -1, steps = steps_along(volume_.grid.spacing, axis);

@@ -31,8 +31,8 @@ std::vector<Layer> layers_of(const std::vector<TissueKind>& kinds);
 struct SkinRay {
   std::int64_t place;  // index of the skin voxel in the list of tissue voxels
   std::uint8_t axis;
-  // Depth at which the ray first meets each layer or a deeper layer, in voxels below the skin face at the air. The
-  // length of the ray if it meets neither.
+  // For each layer, the depth at which the ray first meets this layer or a deeper one, in voxels below the skin face at
+  // the air. If the ray meets no such layer, the depth is the ray's length.
   std::array<std::uint16_t, kLayers> first;
 };
 

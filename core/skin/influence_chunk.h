@@ -22,7 +22,8 @@ namespace limber {
 class InfluenceChunk {
  public:
   InfluenceChunk() = default;
-  // Throws std::logic_error if a sum of weights is not exactly kFullWeight.
+  // Packs the influences of a brick's voxels. Throws std::logic_error if the weights of a voxel do not sum to exactly
+  // kFullWeight.
   explicit InfluenceChunk(std::span<const Influence> influences);
   InfluenceChunk(std::size_t count, const Influence& all);
 

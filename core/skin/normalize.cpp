@@ -57,8 +57,8 @@ struct Entries {
     for (int i = 0; i < count; ++i) all += entry[i].part == part;
     return all;
   }
-  // Returns the index of the smallest entry of one kind (locked, painted group or other). If several are equally small,
-  // returns the last of them.
+  // Returns the index of the smallest entry of one kind (locked, painted group or other); -1 if there is none. If
+  // several are equally small, returns the last of them.
   int smallest(Part part) const {
     int best = -1;
     for (int i = 0; i < count; ++i)

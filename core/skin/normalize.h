@@ -24,7 +24,7 @@ enum class Normalize {
   Unlocked,  // painted bones get the requested weight, and the other unlocked bones make room
   All,       // painted bones and other unlocked bones are scaled together so that their sum fits
   // For painting on a weight layer: the layer's other bones keep their weights, and the weights below the layer make
-  // room (see shares_as_weights in weight_layers.h). Anywhere else this equals Unlocked.
+  // room (see shares_as_weights in weight_layers.h). For all other edits this equals Unlocked.
   WhenComposed,
 };
 

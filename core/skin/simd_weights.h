@@ -16,11 +16,12 @@ constexpr int kWeightLanes = 8;  // the number of voxels must be a multiple of t
 // Number of voxels that are processed at a time: as many as the processor can, or four. The results are equal.
 enum class LaneWidth { Widest, Four };
 
-// Writes the weight of `bone` in each voxel to `weights`.
+// Writes the weight of `bone` in each voxel to `weights`, one entry for each influence.
 void weights_of(std::span<const Influence> influences, int bone, std::span<std::uint16_t> weights,
                 LaneWidth width = LaneWidth::Widest);
 
-// Sets the weight of `bone` in each voxel. The voxel's other bones make room in proportion to their weights.
+// Sets the weight of `bone` in each voxel to the voxel's entry of `weights`. The voxel's other bones make room in
+// proportion to their weights.
 //   fallback_bone  gets the remaining weight in voxels in which `bone` had all the weight
 void set_weights(std::span<Influence> influences, int bone, int fallback_bone, std::span<const std::uint16_t> weights,
                  LaneWidth width = LaneWidth::Widest);

@@ -12,10 +12,10 @@ constexpr double kCell = 0.75;  // upper limit on the edge of a cell (a block of
 // Share of its weights that a cell full of tissue exchanges with its neighbours in one step. A larger share would make
 // the weights oscillate.
 constexpr double kAtOnce = 0.5;
-// Upper limit on the share of its weights that a cell exchanges in one step. Only cells that are partly air reach this
-// limit.
+// Upper limit on the share of its weights that a cell exchanges in one step. A cell that would exchange more exchanges
+// proportionally less with each neighbour. Only cells that are partly air reach this limit.
 constexpr float kMostAtOnce = 0.9f;
-// Lower limit on a weight of the result, as a share of a voxel's full weight. Smaller weights are dropped.
+// A weight of the result that is at most this share of a voxel's full weight is dropped.
 constexpr float kNothing = 1e-5f;
 
 glm::ivec3 voxel_in_brick(int cell) { return {cell & 7, cell >> 3 & 7, cell >> 6}; }

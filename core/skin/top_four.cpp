@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-// Lower limit on a weight that is kept, in 1/65535. Smaller weights are noise of the solver that computes weights.
+// A weight below this, in 1/65535, is dropped: it is noise of the solver that computes weights.
 constexpr int kLeastWeight = 7;
 
 // Scales the weights so that their sum is exactly kFullWeight. The weights are rounded down, and the largest one takes

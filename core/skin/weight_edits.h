@@ -108,8 +108,8 @@ MirrorEdit mirrored(const WeightedBody& body, const SkinWeights& weights, const 
 // An edit that transfers the weights of another volume at the same position in the world. That volume may have any
 // voxel spacing, since weights are interpolated between its voxels. Bones are matched by name.
 struct TransferEdit : WeightEdit {
-  // Bones of the other rig that have weight there but do not exist in this rig. The weight of each such bone went to
-  // its nearest ancestor that exists in this rig.
+  // Bones of the other rig that have weight in the other volume but do not exist in this rig. The weight of each such
+  // bone went to its nearest ancestor that exists in this rig.
   std::vector<std::string> missing;
 };
 struct TransferSource {

@@ -143,8 +143,8 @@ class Maker {
     }
   }
 
-  // Reads a volume whose voxels are the values in the file. read_volume() may renumber them, which this function
-  // undoes.
+  // Reads a volume and returns it with each voxel's value in the file as its label. read_volume() may number the labels
+  // anew, which this function undoes.
   LabelVolume read_values(const Path& path) const {
     VolumeFile file = read_volume(path, progress_);
     std::vector<Label> value_of(65536, 0);

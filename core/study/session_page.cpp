@@ -54,8 +54,8 @@ LabelVolume ratios_of(const SolvedMesh& solved, const LabelVolume& volume) {
   return codes;
 }
 
-// Writes a result of the session to a folder, with the files that a study writes for a cell (one spacing, pose and
-// technique). The page can then be made as for a study.
+// Writes a result of the session to a folder, in the same files in which a study stores a cell (one spacing, pose and
+// technique). The page can then be made by the functions that make a study's page.
 void write_cell(const SessionResult& one, const TissueTable& tissues, const Path& folder) {
   const Result& result = *one.result;
   std::filesystem::create_directories(folder);

@@ -16,8 +16,8 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // Number of neighbouring lines along y or z that are processed together, so that memory is read in whole cache lines.
 constexpr int kLines = 16;
-// Largest distance to seeds, in voxels along a line, at which trying all nearer positions of the line takes less time
-// than computing the envelope of parabolas.
+// Up to this distance to seeds, in voxels along a line, trying all nearer positions of the line takes less time than
+// computing the envelope of parabolas. Beyond it, the envelope is computed.
 constexpr int kNear = 48;
 
 // Computes the squared distance, mm2, from each voxel of a row to the nearest seed in the row. It takes two sweeps,

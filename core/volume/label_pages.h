@@ -9,7 +9,8 @@
 
 namespace limber {
 
-// Asks for large pages for volumes of at most 32 million voxels; call it before labels are written.
+// Asks the system for large memory pages for the labels of volumes of at most 32 million voxels; does nothing for
+// larger volumes. Call it before labels are written.
 inline void want_large_pages(LabelVolume& volume) {
   constexpr std::size_t kMost = 32'000'000;
   const std::size_t voxels = volume.voxels.size();

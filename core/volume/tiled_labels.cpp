@@ -20,7 +20,7 @@ bool is_air(const Label* line) {
   return (words[0] | words[1] | words[2] | words[3]) == 0;
 }
 
-// Copies the lines of a tile that hold tissue.
+// Copies the lines of a tile that hold tissue to the volume `to`.
 //   low  lowest voxel of the tile
 void copy_tile(const Label* tile, const glm::ivec3& low, LabelVolume& to) {
   const glm::ivec3 count = glm::min(TiledLabels::kTile, to.grid.size - low);

@@ -16,11 +16,13 @@ struct LimberDicomFile {
   std::size_t (*read_at)(const void* context, std::int64_t offset, char* to, std::size_t size);
 };
 
-// Callback that receives the bytes of one data element. They are valid only during the call.
+// Callback that receives `size` bytes, the value of one data element, and the `context` given to
+// limber_dicom_elements(). The bytes are valid only during the call.
 using LimberDicomElement = void (*)(void* context, std::uint16_t group, std::uint16_t element, const char* bytes,
                                     std::size_t size);
 
-// Calls `visit` for each data element that has a value and comes before the pixels. Returns 0, or 1 for a damaged file.
+// Calls `visit` with `context` for each data element that has a value and comes before the pixels. Returns 0, or 1 for
+// a damaged file.
 int limber_dicom_elements(const LimberDicomFile* file, LimberDicomElement visit, void* context);
 
 // Decodes the pixels of a file with one frame into `pixels`. Returns 0 on success, and 1 when the pixels are missing,

@@ -36,8 +36,9 @@ void swap_bytes(void* voxels, std::size_t count, int size) {
   if (size == 8) swap_words<std::uint64_t>(voxels, count);
 }
 
-// Finds the label for a voxel value of the file: the value itself when possible, else the label that the value got
-// earlier, else the highest label that is still unused.
+// Finds the label for a voxel value of the file and writes it to `label`: the value itself when possible, else the
+// label that the value got earlier, else the highest label that is still unused. Returns TooMany when no label is
+// unused.
 LabelDecoder::Problem LabelDecoder::assign(std::int64_t value, Label& label) {
   if (value >= 0 && value <= 65535 && use_[value] != kOther) {
     use_[value] = kItself;

@@ -17,7 +17,8 @@ void append_number(std::string& text, std::size_t number) {
   text.append(reinterpret_cast<const char*>(&short_number), sizeof short_number);
 }
 
-// Returns the end of the run of blocks from `at` on that are all zero (if `zero`) or all not zero (if not).
+// Returns the position at which the run of blocks that begins at `at` ends. The run consists of blocks that are all
+// zero (if `zero`) or not all zero (if not).
 std::size_t end_of_blocks(std::string_view bytes, std::size_t at, bool zero) {
   while (at < bytes.size() && is_all_zero(&bytes[at], std::min(kBlock, bytes.size() - at)) == zero) at += kBlock;
   return std::min(at, bytes.size());

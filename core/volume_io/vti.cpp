@@ -97,7 +97,7 @@ class VtiText {
     if (name == "AppendedData" && header_.array["format"] == "appended") begin_appended(all(attributes));
   }
 
-  // Takes the array with the name in the attribute Scalars, else the first array; it must have one component.
+  // Chooses this array if it has one component and the name in the attribute Scalars (none: if it is the first).
   void consider(Attributes array) {
     const bool one = !array.contains("NumberOfComponents") || array["NumberOfComponents"] == "1";
     const bool named = !wanted_.empty() && array["Name"] == wanted_;
@@ -372,7 +372,7 @@ class VtiVoxels final : public VoxelSource {
       bytes_.read(rest.data(), std::min<std::uint64_t>(left_packed_, rest.size()));
   }
 
-  // Decompresses bytes of the current block into `to`, at most `room` bytes. Returns how many bytes were written.
+  // Decompresses at most `room` bytes of the current block into `to`. Returns how many bytes were written.
   std::size_t inflate_some(char* to, std::size_t room) {
     if (waiting_.empty() && left_packed_ > 0) {
       waiting_.resize(std::min<std::uint64_t>(left_packed_, 1 << 16));
