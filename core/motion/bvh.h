@@ -44,7 +44,7 @@ struct Motion {
   std::vector<BvhJoint> joints;  // parents before children, in file order, names unique
   int channel_count = 0;
   int frame_count = 0;
-  double frame_time = 1.0 / 30;  // seconds
+  double frame_time = 1.0 / 30;  // time from one frame to the next, seconds
   std::vector<float> values;     // one row of channel_count values for each frame, degrees and file units
   std::vector<std::string> warnings;
 };

@@ -38,16 +38,16 @@ struct Marker {
 };
 
 struct Clip {
-  std::string name;                      // unique among the clips
+  std::string name;                      // name of the clip, unique among the clips
   std::shared_ptr<const Motion> motion;  // null: the clip has only keys
-  double rate = 30;                      // frames per second
+  double rate = 30;                      // frames per second at which the clip plays
   int start = 0;
   int first = 0, last = 0;  // range of the motion's frames that is used, both included
   RetargetMap map;          // which joint moves which bone; without entries, bones and joints are matched by name
   RetargetSettings retarget;
   int range_start = 0, range_end = 250;  // the frames that play, both included
   Keys keys;
-  std::vector<Marker> markers;                     // sorted by frame
+  std::vector<Marker> markers;                     // the clip's markers, sorted by frame
   std::shared_ptr<const Constraints> constraints;  // declared in core/motion/constraint.h; null: none
 
   // Compares the pointers of motion and constraints, not their contents.

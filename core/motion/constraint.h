@@ -47,11 +47,11 @@ struct Constraint {
   // Components of a rotation vector about the bone's own axes. Limit rotation limits these components. Copy rotation
   // copies these components of the rotation from the bone's own orientation to its target's.
   std::array<bool, 3> axes{true, true, true};
-  RotationSpace space = RotationSpace::World;  // used by copy rotation
+  RotationSpace space = RotationSpace::World;  // copy rotation: what the rotation is measured from
   // Limit rotation: limits about the bone's own axes, radians.
   glm::dvec3 minimum{glm::radians(-30.0)}, maximum{glm::radians(30.0)};
   BoneAxis aim = BoneAxis::PlusY;      // aim: the direction that points at the target
-  PlantPoint point = PlantPoint::Tip;  // plant: the point of hand or foot that stays
+  PlantPoint point = PlantPoint::Tip;  // plant: the point of hand or foot that keeps its position
   bool keeps_rotation = true;          // plant: the hand or foot keeps `rotation` too
   glm::dquat rotation{1, 0, 0, 0};     // plant: rotation from the rest pose, relative to the target
   int chain = 2;                       // inverse kinematics: number of bones that turn; 0: all up to the root

@@ -30,7 +30,7 @@ enum class ConstraintTarget : std::uint8_t { None, Bone, Place };
 struct ConstraintRule {
   ConstraintKind kind = {};  // equals the rule's index in the table
   std::string id;           // for example "copy_rotation"; the operator that adds one is "constraint.add_copy_rotation"
-  std::string name;         // for example "Copy rotation"
+  std::string name;         // name that the user sees, for example "Copy rotation"
   std::string description;  // a sentence that the user sees
   ConstraintTarget target = {};  // kind of target that the constraint needs; a position may be fixed to a bone
 

@@ -34,7 +34,7 @@ enum class PlantPoint {
 };
 
 struct Plant {
-  int limb = 0;  // index in planted_limbs()
+  int limb = 0;  // the limb whose hand or foot stays: an index in planted_limbs()
   PlantPoint point = PlantPoint::Tip;
   int first = 0, last = 0;  // the frames in which the point stays, both included
   glm::dvec3 place{0};      // position at which the point stays, in the world, mm

@@ -57,7 +57,7 @@ struct BrushFilter {
 // The voxels that a dab touches, brick by brick. The arrays `at`, `cell` and `distance` have one entry for each voxel.
 struct Reached {
   struct Brick {
-    std::int32_t brick;       // index in TissueVoxels::bricks()
+    std::int32_t brick;       // index of the brick in TissueVoxels::bricks()
     std::int32_t begin, end;  // range of the brick's entries in the arrays: begin .. end - 1
   };
   std::vector<Brick> bricks;        // only bricks with touched voxels, sorted by index

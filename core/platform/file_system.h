@@ -14,8 +14,8 @@ class Handle;
 
 struct FileStatus {
   std::uint64_t device = 0, number = 0;       // together they identify a file, whatever its name
-  std::int64_t size = 0;                      // bytes
-  std::int64_t seconds = 0, nanoseconds = 0;  // time of the last change, since 1970
+  std::int64_t size = 0;                      // size of the file, bytes
+  std::int64_t seconds = 0, nanoseconds = 0;  // time of the last change, counted from the start of 1970
   bool is_regular = false, is_folder = false;
   bool is_own = false;  // true: the file belongs to the user who runs this process
 

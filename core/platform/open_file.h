@@ -68,7 +68,7 @@ class OpenFile {
   bool is_open() const { return handle_.is_open(); }
   const Handle& handle() const { return handle_; }
   std::optional<FileStatus> status() const;
-  std::int64_t size() const;  // bytes
+  std::int64_t size() const;  // returns the file's size, bytes
   // Reads `size` bytes from `offset` on and returns how many were read: fewer at the end of the file and on failure.
   std::size_t read_at(std::int64_t offset, void* to, std::size_t size) const;
 

@@ -14,7 +14,7 @@
 namespace limber {
 
 struct NamedPose {
-  std::string name;                            // unique in the library
+  std::string name;                            // name of the pose, unique in the library
   std::map<std::string, glm::dquat> rotation;  // rotation of each bone by its name, as in Pose
   std::optional<glm::dvec3> root_translation;  // shift of the body, mm; empty if the pose has no root bone
   std::string picture;                         // contents of a PNG file, a picture of the posed body; may be empty

@@ -82,7 +82,7 @@ class History {
   std::unique_ptr<Ledger> ledger_;
 };
 
-// Returns the size of a document's distinct parts, in bytes.
+// Returns the memory of a document, bytes. A part to which the document refers several times counts once.
 std::int64_t bytes_of(const Document& document);
 
 }  // namespace limber

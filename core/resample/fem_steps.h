@@ -22,7 +22,7 @@ namespace limber {
 struct TissueModel;
 
 struct FemMesh {
-  TetMesh tets;                       // the mesh at rest
+  TetMesh tets;                       // mesh of the body at rest
   std::vector<TetMaterial> material;  // #T: material of each tet
   std::vector<std::uint8_t> joint;    // #T: 1 for a tet between two bones, else 0
 

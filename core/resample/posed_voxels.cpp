@@ -473,7 +473,7 @@ class PosedVoxels {
   RowSet rows_, bone_rows_;  // 1 for each row of the output that contains tissue; that contains bone tissue
   TiledLabels posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
   const LabelSampler sampler_;
-  TiledLabels tiles_;  // the posed labels
+  TiledLabels tiles_;  // labels of the posed volume
   const BodyTracer tracer_;
   AffineTransform world_from_rest_;
   std::optional<GreySampler> grey_;

@@ -37,7 +37,7 @@ void add_moves(const LabelVolume& posed, const glm::ivec3& voxel, const LabelSam
                const LabelSet& soft, std::vector<BorderMove>& moves);
 
 struct TissueVolumes {
-  std::int64_t changed = 0;               // number of label changes
+  std::int64_t changed = 0;               // number of label changes that were made
   std::map<Label, std::int64_t> missing;  // wanted minus present voxels of each tissue where they differ
 };
 

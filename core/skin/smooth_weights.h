@@ -69,7 +69,7 @@ class SmoothWeights {
   // Neighbouring cell of each cell in each direction; kNone: none. If there are several, the one that shares the most
   // voxel faces.
   std::vector<std::array<std::int32_t, 6>> beside_;
-  std::vector<Link> links_;               // sorted by `from`
+  std::vector<Link> links_;               // pairs of neighbouring cells, sorted by `from`
   std::vector<std::int32_t> first_link_;  // index of each cell's first link in links_; one entry more at the end
   std::vector<int> bones_;                // bones that have weight in the bricks of the last spread()
   std::vector<float> weight_, next_;      // weights of each cell, in the order of bones_

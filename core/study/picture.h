@@ -20,7 +20,7 @@ namespace limber {
 struct PictureFrame {
   glm::dvec3 centre{0}, right{1, 0, 0}, up{0, 0, 1};  // centre in mm; right and up: perpendicular unit vectors
   double height_mm = 100;
-  glm::ivec2 size{480, 360};  // pixels
+  glm::ivec2 size{480, 360};  // width and height of the picture, pixels
 
   glm::dvec3 towards_eye() const { return glm::cross(right, up); }
 };

@@ -28,8 +28,8 @@ struct ColeCole {
 };
 
 struct Dielectric {
-  double permittivity = 1;  // relative permittivity
-  double conductivity = 0;  // conductivity, S/m
+  double permittivity = 1;  // permittivity relative to that of vacuum
+  double conductivity = 0;  // conductivity at the frequency, S/m
 };
 
 constexpr double kLowestFrequency = 10, kHighestFrequency = 1e11;  // frequency range of the model, Hz

@@ -25,7 +25,7 @@ struct TissueShare {
 
 struct TissueRow {
   TissueNames names;
-  double density = 0;                // g/cm3
+  double density = 0;                // density of the tissue, g/cm3
   std::string dielectric, medium;    // names of rows of dielectric.csv and composition.csv
   std::vector<TissueShare> mixture;  // parts with their shares, which sum to 1; empty: not a mixture
   std::string stand_in, source;

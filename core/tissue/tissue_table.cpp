@@ -17,7 +17,7 @@ namespace {
 struct KindDefaults {
   TissueKind kind;
   std::string_view name;
-  std::uint32_t colour;  // 0xRRGGBB
+  std::uint32_t colour;  // sRGB colour, 0xRRGGBB
   double young_modulus;  // kPa, 3 times the shear modulus that the finite elements use; bone is far stiffer than flesh
   double poisson_ratio;
   int priority;  // where tissues overlap, the one with the higher priority is kept: bone above all, skin below all

@@ -50,10 +50,10 @@ struct Tissue {
   // The label's value in files; whole numbers up to 2^53 are exact, and larger values are refused.
   double file_value = 0;
   std::string name;
-  glm::vec3 colour{0.7f};  // sRGB, [0, 1]
+  glm::vec3 colour{0.7f};  // colour in pictures, sRGB, [0, 1]
   TissueKind kind = TissueKind::Unknown;
-  double density = 1.0;         // g/cm3
-  double young_modulus = 10.0;  // kPa
+  double density = 1.0;         // density of the tissue, g/cm3
+  double young_modulus = 10.0;  // stiffness (Young's modulus), kPa
   double poisson_ratio = 0.45;
   // If two tissues move into the same voxel, the one with the higher priority wins; skin lowest, bone highest.
   int priority = 0;

@@ -12,7 +12,7 @@ extern "C" {
 // the file's end.
 struct LimberDicomFile {
   const void* context;
-  std::int64_t size;  // bytes
+  std::int64_t size;  // size of the file, bytes
   std::size_t (*read_at)(const void* context, std::int64_t offset, char* to, std::size_t size);
 };
 

@@ -35,7 +35,7 @@ GreyWindow usual_window(const GreyVolume& volume);
 // columns (`down`).
 struct GreyFrame {
   glm::dvec3 middle{0}, right{1, 0, 0}, down{0, 1, 0};
-  glm::ivec2 size{1};  // pixels
+  glm::ivec2 size{1};  // width and height of the picture, pixels
   double millimetres_per_pixel = 1;
 };
 // Both functions return the picture's values row by row from the top. A value is NaN where the picture lies outside the

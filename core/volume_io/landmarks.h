@@ -14,7 +14,7 @@ namespace limber {
 
 struct Landmark {
   std::string name;
-  glm::dvec3 position{0};  // world, mm
+  glm::dvec3 position{0};  // position of the landmark in the world, mm
 };
 
 // Reads landmarks. Throws an Error that names the file and the line.

@@ -30,7 +30,7 @@ class SparseBytes {
   bool begin_span();
 
   std::string packed_;
-  std::size_t at_ = 0;                    // position in packed_
+  std::size_t at_ = 0;                    // position in packed_ of the next byte to read
   std::uint32_t zeros_ = 0, others_ = 0;  // bytes of the current span that are not unpacked yet
 };
 

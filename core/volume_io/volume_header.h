@@ -64,7 +64,7 @@ struct VolumeHeader {
   std::int64_t decoded_skip = 0;  // bytes to skip after decoding, before the first voxel
   std::optional<std::int64_t> compressed_bytes;  // size that the header states, possibly wrong
 
-  KeyValues keys;     // `key:=value` lines of NRRD
+  KeyValues keys;     // keys and values of an NRRD header's lines `key:=value`
   TissueTable named;  // names and colours of voxel values according to the header; Tissue::label is not set
   std::vector<std::string> warnings;
 };

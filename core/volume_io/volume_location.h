@@ -58,7 +58,7 @@ class VolumeFiles {
   virtual PlainFile open_header(std::size_t index) = 0;  // opens headers[index], or throws Error
   // Throws Error when a data file is missing or, after symbolic links are resolved, lies outside the header's folder.
   virtual void check_data(const std::vector<std::string>& names) = 0;
-  virtual PlainFile open_data(const std::string& name) = 0;  // throws Error as check_data() does
+  virtual PlainFile open_data(const std::string& name) = 0;  // throws Error for a name that check_data() rejects
   virtual bool has_data(const std::string& name) = 0;        // true if check_data() accepts the name
   // Announces that the parser may soon allocate up to this many bytes of memory at once.
   virtual void expect_memory(std::size_t) {}

@@ -47,10 +47,10 @@ struct Voxels {
   bool compress = true;
   // Fills `to` with `count` voxels, starting at voxel `first`.
   std::function<void(std::int64_t first, std::size_t count, void* to)> fill;
-  TissueTable tissues;  // written by formats that store tissue names
+  TissueTable tissues;  // written only by formats that store tissue names
   int nifti_version = 1;
   std::string description = {};  // one line of ASCII, at most 79 characters, the limit of NIfTI
-  std::vector<std::pair<std::string, std::string>> keys = {};  // additional keys of NRRD
+  std::vector<std::pair<std::string, std::string>> keys = {};  // written only by NRRD, as key:=value
 };
 
 // Writes all voxels in this machine's byte order. They are compressed only between begin_deflate() and end_deflate().
