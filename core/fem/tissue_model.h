@@ -29,10 +29,10 @@ namespace limber {
 
 struct TissueModelSettings {
   double joint_mm = 12;
-  // motions: the motions of the rig's bones at some positions on the path, indexed like weights.bones(). closing_mm:
-  // where two bones are closer than this in one of these motions, their ends belong to a joint.
+  // Motions of the rig's bones at some positions on the path from the rest pose to the pose. Each entry is indexed like
+  // weights.bones().
   std::vector<std::vector<RigidTransform>> motions = {};
-  double closing_mm = 8;
+  double closing_mm = 8;  // nodes of bone that are closer to another bone in one of the motions belong to a joint
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa
   double stiffest = 360;                                         // stiffer soft tissue gets this shear modulus, kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // material of tets of bone; shear modulus in kPa

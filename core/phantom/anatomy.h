@@ -94,8 +94,10 @@ struct Flesh {
 
 struct BonePart {
   Solid solid;
-  double cortex;           // thickness of the cortical bone, mm
-  bool long_bone = false;  // true: inside is marrow between points a and b; elsewhere inside is cancellous bone
+  double cortex;  // thickness of the cortical bone, mm
+  // true: below the cortex lies marrow between the points a and b, and cancellous bone beyond them; false: only
+  // cancellous bone
+  bool long_bone = false;
   glm::dvec3 a{0}, b{0};
 };
 

@@ -77,7 +77,8 @@ struct CellResult {
 // Judges a cell's report. Returns each quality gate (a check of one figure against a limit) with its outcome.
 std::vector<QualityGate> gates_of(const std::string& report, const QualityLimits& limits);
 
-// Judges the change of a label's volume by the study's limit. Returns nothing if the label is too small for a gate.
+// Returns whether the change of a label's volume is within the study's limit. Returns nothing if the label has fewer
+// voxels than `limits.least_voxels`, or its change is unknown.
 std::optional<bool> label_passes(const TissueFigures& tissue, const QualityLimits& limits);
 
 // Reads the result of a cell of the study. Throws Error if files in the cell's folder cannot be read.

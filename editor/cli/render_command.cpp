@@ -97,8 +97,8 @@ Visibility visibility_of(const Options& options, const TissueTable& tissues, Vis
     int end = 0;
     if (std::sscanf(request.c_str(), "%lf=%lf%n", &label, &opacity, &end) != 2 ||
         end != static_cast<int>(request.size()) || !(opacity >= 0) || opacity > 1)
-      throw Error("this is not a label with an opacity", "--opacity " + request,
-                  "write LABEL=OPACITY with an opacity of 0 to 1");
+      throw Error("this does not have the form LABEL=OPACITY", "--opacity " + request,
+                  "write for example 3=0.5; the opacity is 0 to 1");
     look_at(visibility, tissues, label, "--opacity " + request).opacity = static_cast<float>(opacity);
   }
   return visibility;

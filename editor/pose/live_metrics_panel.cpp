@@ -133,7 +133,7 @@ void draw_live_volume(Editor& editor, Column& column) {
       if (metrics) put_metrics(editor, column, *metrics, known != nullptr);
       else
         put_text(editor, look.fonts.regular, look.theme.text2, padded(editor, column.row(28)),
-                 posed ? "Measured when the pose stops" : "At rest");
+                 posed ? "Measured when the pose stops changing" : "At rest");
       put_limits(editor, column);
     }
     column.space(6);

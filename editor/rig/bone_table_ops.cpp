@@ -15,7 +15,7 @@ std::vector<Operator> bone_table_operators() {
        },
        [](const Editor& e) { return e.bone_table->coloured; }},
       {"rig.clear_bone_map", "Clear bone map", icon::kTrash, "Rig",
-       "Let all bone tissue follow the rig bones that were found automatically.", clear_bone_map,
+       "Remove all assignments of bone tissue to rig bones that were made by hand.", clear_bone_map,
        [](const Editor& e) {
          return e.document().bone_map ? std::string() : std::string("No bone tissue was assigned by hand");
        }},

@@ -193,10 +193,11 @@ void PreferencesDialog::draw_jobs(Editor& editor, Column& column) {
   whole_number(editor, column, "Jobs at once", "Number of jobs that run at the same time. The others wait.",
                &Preferences::jobs_at_once, 1, 8, "");
   whole_number(editor, column, "Memory of a resampling",
-               "Stop a resampling above this memory, with a message. 0 = unlimited.", &Preferences::worker_memory_mb, 0,
-               1 << 18, "MB");
-  number(editor, column, "Time of a resampling", "Stop a resampling after this time, with a message. 0 = unlimited.", 0,
-         1440, "%.1f", "min", [](Preferences& p) -> double& { return p.worker_minutes; });
+               "Stop a resampling that takes more memory than this, with a message. 0 = unlimited.",
+               &Preferences::worker_memory_mb, 0, 1 << 18, "MB");
+  number(editor, column, "Time of a resampling",
+         "Stop a resampling that takes longer than this, with a message. 0 = unlimited.", 0, 1440, "%.1f", "min",
+         [](Preferences& p) -> double& { return p.worker_minutes; });
   note(editor, column, "A resampling runs in a separate process: if it fails, the project is not affected.");
 }
 

@@ -88,7 +88,8 @@ struct Limits {
   double busy_seconds = 20, silent_seconds = 120;
 };
 
-// Returns the error if the reader misbehaves in this way; empty if the volume is read.
+// Opens a volume with a reader that misbehaves as `what` says. Returns the error; empty if the volume is read all the
+// same.
 std::string outcome(const std::string& what, const Limits& limits = {}) {
   const TemporaryFolder folder;
   write(folder / "other.raw", "12345678");
