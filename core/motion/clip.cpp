@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/motion/constraint_stack.h"
 #include "core/motion/key_curve.h"
+#include "core/motion/strips_on_rig.h"
 
 namespace limber {
 
@@ -69,6 +70,15 @@ ClipOnRig::ClipOnRig(std::shared_ptr<const Clip> clip, std::shared_ptr<const Arm
     constraints_ =
         is_known ? before->constraints_ : std::make_shared<const ConstraintStack>(clip_->constraints, armature_);
   }
+  if (clip_->strips) {
+    const bool is_known = before && before->strips_ && before->armature_ == armature_ &&
+                          before->clip_->strips == clip_->strips && before->clip_->rate == clip_->rate;
+    strips_ = is_known ? before->strips_
+                       : std::make_shared<const StripsOnRig>(clip_->strips, armature_, clip_->rate,
+                                                             before ? before->strips_.get() : nullptr);
+    problem_ = strips_->problem();
+    return;
+  }
   if (!clip_->motion) return;
   if (before && before->armature_ == armature_ && before->clip_->motion == clip_->motion &&
       before->clip_->map == clip_->map && before->clip_->retarget == clip_->retarget) {
@@ -89,6 +99,7 @@ ClipOnRig::ClipOnRig(std::shared_ptr<const Clip> clip, std::shared_ptr<const Arm
 }
 
 Pose ClipOnRig::base_at(int frame) const {
+  if (strips_) return strips_->at(frame);
   if (!retarget_) return rest_pose(*armature_);
   const int most = clip_->motion->frame_count - 1;
   const std::int64_t wanted = std::int64_t{frame} - clip_->start + clip_->first;
@@ -140,7 +151,7 @@ Pose ClipOnRig::unconstrained_at(int frame) const {
     const auto between = around(track->second, frame);
     const auto& [before, after, share] = between;
     const Interpolation way = interpolation_at(between, shapes);
-    if (!retarget_ || before->first == frame) {
+    if (!has_base() || before->first == frame) {
       pose.rotation[bone] = way == Interpolation::Constant ? before->second
                             : way == Interpolation::Linear
                                 ? glm::normalize(glm::slerp(before->second, after->second, share))

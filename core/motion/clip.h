@@ -5,7 +5,10 @@
 // `last`; frame `first` plays at the clip's frame `start`. Before and after these frames the body holds still. If the
 // clip has no motion, bones without keys stay in the rest pose.
 //
-// The pose of a frame is made in this order: the motion, the keys, the constraints.
+// In place of a motion a clip may have strips: other clips that play one after another and over one another
+// (core/motion/strips.h).
+//
+// The pose of a frame is made in this order: the motion or the strips, the keys, the constraints.
 //
 // Keys warp the motion [Witkin & Popovic, Motion Warping, 1995]. At a key's frame the bone has the key's rotation.
 // Between two keys the bone follows the motion, rotated by a correction. At each key the correction is the rotation
@@ -29,6 +32,8 @@ namespace limber {
 
 struct Constraints;
 class ConstraintStack;
+struct Strips;
+class StripsOnRig;
 
 struct Marker {
   int frame = 0;
@@ -49,8 +54,9 @@ struct Clip {
   Keys keys;
   std::vector<Marker> markers;                     // the clip's markers, sorted by frame
   std::shared_ptr<const Constraints> constraints;  // declared in core/motion/constraint.h; null: none
+  std::shared_ptr<const Strips> strips;  // declared in core/motion/strips.h; null: none; a clip with a motion has none
 
-  // Compares the pointers of motion and constraints, not their contents.
+  // Compares the pointers of motion, constraints and strips, not their contents.
   bool operator==(const Clip&) const = default;
   int end() const { return start + last - first; }  // the clip's frame at which the motion ends
 };
@@ -73,11 +79,14 @@ class ClipOnRig {
 
   Pose at(int frame) const;
   Pose unconstrained_at(int frame) const;  // returns the pose of motion and keys, without the constraints
-  Pose base_at(int frame) const;           // returns the pose of the motion alone, without the keys
+  Pose base_at(int frame) const;           // returns the pose of the motion or the strips alone, without the keys
+  // Returns whether a motion or strips move the rig. Keys then change their poses; otherwise keys are all there is.
+  bool has_base() const { return retarget_ || strips_; }
   const ConstraintStack* constraints() const { return constraints_.get(); }  // null: the clip has none
   const std::shared_ptr<const Clip>& clip() const { return clip_; }
   const std::shared_ptr<const Armature>& armature() const { return armature_; }
   const Retarget* retarget() const { return retarget_.get(); }
+  const StripsOnRig* strips() const { return strips_.get(); }  // null: the clip has none
   const std::string& problem() const { return problem_; }
 
  private:
@@ -89,6 +98,7 @@ class ClipOnRig {
   std::shared_ptr<const Armature> armature_;
   std::shared_ptr<const Retarget> retarget_;  // null: the clip has no motion, or there is a problem
   std::shared_ptr<const ConstraintStack> constraints_;
+  std::shared_ptr<const StripsOnRig> strips_;
   std::string problem_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/motion/motion_edit.h"
+#include "core/motion/strip_edits.h"
 
 namespace limber {
 
@@ -29,9 +30,10 @@ void require_frames(double frames) {
 }
 
 // Gives the clip `ratio` times as many frames: resamples its motion, and multiplies the frames of keys and markers.
+//   speed        the factor by which it plays faster
 //   played_rate  frame rate at which the clip's motion is read, per second
 //   rate         frame rate of the resampled motion, per second
-void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress& progress) {
+void stretch(Clip& clip, double ratio, double speed, double played_rate, double rate, Progress& progress) {
   const auto moved = [&](int frame) {
     const double wanted = clip.start + std::round((double(frame) - clip.start) * ratio);
     if (std::abs(wanted) > kMostFrame)
@@ -46,6 +48,7 @@ void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress
   const bool plays_to_end = clip.motion && clip.range_end == clip.end();
   clip.range_start = moved(clip.range_start);
   clip.range_end = moved(clip.range_end);
+  if (clip.strips) clip.strips = std::make_shared<const Strips>(rescaled_strips(*clip.strips, moved, ratio, speed));
   if (!clip.motion) return;
   Motion played = *clip.motion;
   played.frame_time = 1 / played_rate;
@@ -61,7 +64,7 @@ void stretch(Clip& clip, double ratio, double played_rate, double rate, Progress
 
 Clip at_rate(const Clip& clip, double rate) {
   Clip changed = clip;
-  stretch(changed, rate / clip.rate, clip.rate, rate, no_progress());
+  stretch(changed, rate / clip.rate, 1, clip.rate, rate, no_progress());
   changed.rate = rate;
   return changed;
 }
@@ -72,7 +75,7 @@ Clip at_speed(const Clip& clip, double factor, Progress& progress) {
   Clip changed = clip;
   // Resampling accepts only rates in a limited range, so the rate is clamped here.
   const double rate = std::clamp(clip.rate, 1.0, 1000.0);
-  stretch(changed, 1 / factor, rate * factor, rate, progress);
+  stretch(changed, 1 / factor, factor, rate * factor, rate, progress);
   return changed;
 }
 

@@ -12,6 +12,7 @@ struct GroundMove {
 
   glm::dquat rotation() const { return glm::angleAxis(turn, glm::dvec3(0, 0, 1)); }
   glm::dvec3 place(const glm::dvec3& p) const { return to + rotation() * (p - from); }
+  bool operator==(const GroundMove&) const = default;
 };
 
 // Returns the index of the rig's root bone. Throws Error for a rig with several root bones, which cannot turn as one.

@@ -6,6 +6,7 @@
 
 #include "core/motion/constraint.h"
 #include "core/motion/key_curve.h"
+#include "core/motion/strip_edits.h"
 #include "core/rig/mirror.h"
 
 namespace limber {
@@ -19,7 +20,7 @@ bool lies_along_an_axis(const glm::dvec3& normal) {
 // Replaces clamped handles of the body's shift by aligned handles with the same tangents.
 void align_root_handles(Clip& clip, const ClipOnRig& on_rig) {
   std::map<int, glm::dvec3> shifts = clip.keys.root;
-  if (on_rig.retarget())
+  if (on_rig.has_base())
     for (auto& [frame, shift] : shifts) shift -= on_rig.base_at(frame).root_translation;
   const KeyShapes before = clip.keys.root_shapes;
   for (const auto& [frame, shift] : shifts) {
@@ -38,6 +39,7 @@ void align_root_handles(Clip& clip, const ClipOnRig& on_rig) {
 Clip mirrored_clip(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature) {
   Clip mirrored = *clip;
   mirrored.retarget.mirror = !clip->retarget.mirror;
+  if (clip->strips) mirrored.strips = std::make_shared<const Strips>(mirrored_strips(*clip->strips, *armature));
   const MirrorPlane plane = mirror_plane(*armature);
   const bool is_eased = std::any_of(clip->keys.root_shapes.begin(), clip->keys.root_shapes.end(),
                                     [](const auto& key) { return key.second.next == Interpolation::Bezier; });

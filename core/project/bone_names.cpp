@@ -2,12 +2,14 @@
 #include "core/project/bone_names.h"
 
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <set>
 #include <type_traits>
 
 #include "core/base/error.h"
 #include "core/motion/constraint.h"
+#include "core/motion/strips.h"
 #include "core/rig/mirror.h"
 
 namespace limber {
@@ -99,6 +101,17 @@ void follow_constraints(Clip& clip, const Names& names) {
   take_list(clip, std::move(next));
 }
 
+// Gives the strips' bones other names.
+//   follow  returns the new set of names
+void follow_strips(Clip& clip, const std::function<std::set<std::string>(const std::set<std::string>&)>& follow) {
+  if (!clip.strips) return;
+  Strips next = *clip.strips;
+  for (StripTrack& track : next.tracks)
+    for (Strip& strip : track.strips)
+      if (strip.bones) strip.bones = follow(*strip.bones);
+  take(clip.strips, std::move(next));
+}
+
 void follow_motion(Clip& clip, const Armature& before, const Armature& after, const Names& names) {
   const bool by_names = clip.map.sources.empty();
   RetargetMap old = by_names ? matched(clip, before) : known_part(clip.map, *clip.motion, before);
@@ -170,11 +183,18 @@ void carry_constraints(Clip& clip, const Armature& before, const Armature& after
 
 void follow_names(Document& document, const Armature& before, const Armature& after) {
   const Names names(before, after);
+  const auto follow = [&](const std::set<std::string>& bones) {
+    std::set<std::string> next;
+    for (const std::string& bone : bones)
+      if (const auto name = names.now(bone)) next.insert(*name);
+    return next;
+  };
   for (auto& part : document.clips) {
     Clip clip = *part;
     clip.keys.bones = names.follow(clip.keys.bones);
     clip.keys.shapes = names.follow(clip.keys.shapes);
     follow_constraints(clip, names);
+    follow_strips(clip, follow);
     if (clip.motion && clip.motion->frame_count > 0) follow_motion(clip, before, after, names);
     take(part, std::move(clip));
   }
@@ -183,12 +203,6 @@ void follow_names(Document& document, const Armature& before, const Armature& af
     pose.rotation = names.follow(pose.rotation);
     take(part, std::move(pose));
   }
-  const auto follow = [&](const std::set<std::string>& bones) {
-    std::set<std::string> next;
-    for (const std::string& bone : bones)
-      if (const auto name = names.now(bone)) next.insert(*name);
-    return next;
-  };
   if (document.locks) take(document.locks, WeightLocks{follow(document.locks->bones)});
   if (document.anchors)
     take(document.anchors, Anchors{follow(document.anchors->pins), names.follow(document.anchors->poles)});
@@ -220,6 +234,11 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     }
     by_bone = std::move(next);
   };
+  const auto carried = [&](const std::set<std::string>& bones) {
+    std::set<std::string> next;
+    for (const std::string& bone : bones) next.insert(gone_over.now(bone));
+    return next;
+  };
   const auto turned = [&](const glm::dquat& rotation) { return plane.rotation(rotation); };
   for (auto& part : document.clips) {
     Clip clip = *part;
@@ -235,6 +254,7 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     });
     carry(clip.map.sources, [](const RetargetMap::Source& source) { return RetargetMap::Source{source.joint, {}}; });
     carry_constraints(clip, before, after, gone_over, plane);
+    follow_strips(clip, carried);
     take(part, std::move(clip));
   }
   for (auto& part : document.poses) {
@@ -242,19 +262,14 @@ void follow_mirrored(Document& document, const Armature& before, const Armature&
     carry(pose.rotation, turned);
     take(part, std::move(pose));
   }
-  const auto carry_names = [&](std::set<std::string>& bones) {
-    std::set<std::string> next;
-    for (const std::string& bone : bones) next.insert(gone_over.now(bone));
-    bones = std::move(next);
-  };
   if (document.locks) {
     WeightLocks locks = *document.locks;
-    carry_names(locks.bones);
+    locks.bones = carried(locks.bones);
     take(document.locks, std::move(locks));
   }
   if (!document.anchors) return;
   Anchors anchors = *document.anchors;
-  carry_names(anchors.pins);
+  anchors.pins = carried(anchors.pins);
   carry(anchors.poles, [&](const glm::dvec3& place) { return plane.place(place); });
   take(document.anchors, std::move(anchors));
 }

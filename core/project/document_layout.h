@@ -12,9 +12,9 @@ namespace limber {
 
 // The reader also accepts the earlier layouts. Layout 1 has one motion and no clips. Layout 2 has no pose library, 3
 // has no anchors, 4 has only bits 0 and 1 of packed_reference(), 5 has no weight locks, 6 has no weight layers, 7 has
-// no overlap in a result, 8 has neither seams nor a bone map, 9 has no measurements, 10 has no shapes of keys, and 11
-// has no constraints.
-constexpr std::uint32_t kDocumentLayout = 12;
+// no overlap in a result, 8 has neither seams nor a bone map, 9 has no measurements, 10 has no shapes of keys, 11 has
+// no constraints, and 12 has no strips.
+constexpr std::uint32_t kDocumentLayout = 13;
 
 // The first byte of a part, which names its type.
 enum class PartKind : std::uint8_t {

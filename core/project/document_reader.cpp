@@ -12,7 +12,9 @@
 #include "core/project/constraints_codec.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
+#include "core/project/key_shapes_codec.h"
 #include "core/project/seams_codec.h"
+#include "core/project/strips_codec.h"
 
 namespace limber {
 
@@ -145,32 +147,6 @@ void get(ByteReader& in, Keys& keys) {
     const auto frame = get_frame(in);
     keys.root[frame] = get_within(in, kFarthestShift);
   }
-}
-
-// Reads the shapes of the keys of one bone, or of the body's shift. Leaves out the shape of a key that does not exist.
-template <class Track>
-void get(ByteReader& in, KeyShapes& shapes, const Track& track) {
-  for (std::size_t count = in.count(54); count > 0; --count) {
-    const auto frame = get_frame(in);
-    KeyShape shape;
-    shape.next = static_cast<Interpolation>(in.get_below<std::uint8_t>(static_cast<int>(Interpolation::Bezier) + 1));
-    shape.handles = static_cast<HandleKind>(in.get_below<std::uint8_t>(static_cast<int>(HandleKind::Flat) + 1));
-    shape.in = get_within(in, kSteepestTangent);
-    shape.out = get_within(in, kSteepestTangent);
-    in.require(shape != KeyShape{});
-    if (track.contains(frame)) shapes[frame] = shape;
-  }
-}
-
-void get_shapes(ByteReader& in, Keys& keys) {
-  for (std::size_t bones = in.count(62); bones > 0; --bones) {
-    const std::string bone = in.text();
-    const auto track = keys.bones.find(bone);
-    KeyShapes shapes;
-    get(in, shapes, track == keys.bones.end() ? std::map<int, glm::dquat>{} : track->second);
-    if (!shapes.empty()) keys.shapes[bone] = std::move(shapes);
-  }
-  get(in, keys.root_shapes, keys.root);
 }
 
 void get(ByteReader& in, NamedPose& pose) {
@@ -318,6 +294,19 @@ bool are_of_one_body(const WeightLayers& layers, const SkinWeights& weights) {
          std::all_of(layers.layers.begin(), layers.layers.end(),
                      [&](const auto& layer) { return are_of_one_body(layer->weights, weights); });
 }
+
+// A flag that has another value as long as this exists.
+class Restored {
+ public:
+  Restored(bool& flag, bool value) : flag_(flag), before_(std::exchange(flag, value)) {}
+  ~Restored() { flag_ = before_; }
+  Restored(const Restored&) = delete;
+  Restored& operator=(const Restored&) = delete;
+
+ private:
+  bool& flag_;
+  bool before_;
+};
 
 class Reading {
  public:
@@ -721,9 +710,19 @@ class Reading {
     if (!node.leaves.empty()) return from_leaves<Clip>(node, in);
     Clip clip;
     const bool has_motion = in.flag();
-    in.require(node.nodes.size() == (has_motion ? 1 : 0));
+    const std::size_t motions = has_motion ? 1 : 0;
+    in.require(node.nodes.size() >= motions);
     if (has_motion) clip.motion = read<Motion>(node.nodes[0]);
     get(in, clip);
+    in.require(node.nodes.size() == motions || (!has_motion && !in.at_end() && !reads_strips_));
+    if (in.at_end()) return clip;
+    // The clips of strips have no strips of their own, so that reading does not nest deeply.
+    std::vector<std::shared_ptr<const Clip>> clips;
+    {
+      const Restored nested(reads_strips_, true);
+      for (const ChunkHash& hash : node.nodes) clips.push_back(read<Clip>(hash));
+    }
+    clip.strips = std::make_shared<const Strips>(get_strips(in, clips));
     in.end();
     return clip;
   }
@@ -773,6 +772,7 @@ class Reading {
   const ReadLimits& limits_;
   Progress& progress_;
   std::int64_t bytes_left_;
+  bool reads_strips_ = false;  // true while the clips of strips are read
   std::map<std::array<std::uint8_t, 32>, Known> parts_;
   std::map<std::array<std::uint8_t, 32>, std::vector<std::shared_ptr<const SkinWeights::Chunk>>> groups_;
 };

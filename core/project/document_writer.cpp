@@ -6,7 +6,9 @@
 #include "core/project/constraints_codec.h"
 #include "core/project/document_codec.h"
 #include "core/project/document_layout.h"
+#include "core/project/key_shapes_codec.h"
 #include "core/project/seams_codec.h"
+#include "core/project/strips_codec.h"
 
 namespace limber {
 
@@ -160,26 +162,6 @@ void put(ByteWriter& out, const Keys& keys) {
     out.put(static_cast<std::int32_t>(frame));
     put(out, place);
   }
-}
-
-void put(ByteWriter& out, const KeyShapes& shapes) {
-  out.count(shapes.size());
-  for (const auto& [frame, shape] : shapes) {
-    out.put(static_cast<std::int32_t>(frame));
-    out.put(static_cast<std::uint8_t>(shape.next));
-    out.put(static_cast<std::uint8_t>(shape.handles));
-    put(out, shape.in);
-    put(out, shape.out);
-  }
-}
-
-void put_shapes(ByteWriter& out, const Keys& keys) {
-  out.count(keys.shapes.size());
-  for (const auto& [bone, shapes] : keys.shapes) {
-    out.text(bone);
-    put(out, shapes);
-  }
-  put(out, keys.root_shapes);
 }
 
 void put(ByteWriter& out, const RetargetMap& map) {
@@ -438,9 +420,14 @@ class DocumentWriter::Writing {
       out.put(static_cast<std::int32_t>(marker.frame));
       out.text(marker.name);
     }
-    // Without shapes of keys and constraints, a clip has the same bytes as in earlier layouts.
-    if (clip.keys.shapes.size() + clip.keys.root_shapes.size() > 0 || has_constraints(clip)) put_shapes(out, clip.keys);
-    if (has_constraints(clip)) put_constraints(out, clip);
+    // Without shapes of keys, constraints and strips, a clip has the same bytes as in earlier layouts.
+    const bool has_strips = clip.strips != nullptr, constrained = has_constraints(clip) || has_strips;
+    if (clip.keys.shapes.size() + clip.keys.root_shapes.size() > 0 || constrained) put_shapes(out, clip.keys);
+    if (constrained) put_constraints(out, clip);
+    if (!has_strips) return;
+    const std::vector<std::shared_ptr<const Clip>> clips = clips_of(*clip.strips);
+    for (const auto& one : clips) node.nodes.push_back(write(one));
+    put_strips(out, *clip.strips, clips);
   }
 
   template <class Bytes>

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/motion/constraint.h"
+#include "core/motion/strips.h"
 #include "core/project/packed_volumes.h"
 #include "core/resample/fem_steps.h"
 #include "core/skin/weight_layers.h"
@@ -74,6 +75,19 @@ std::int64_t own_bytes(const Clip& clip) {     // size without its motion, which
   for (const auto& [constraint, shapes] : clip.keys.weight_shapes)
     bytes += kNode + heap_bytes(constraint) + (kNode + 56) * std::ssize(shapes);
   if (clip.constraints) bytes += heap_bytes(clip.constraints->list);
+  return bytes;
+}
+std::int64_t own_bytes(const Strips& strips) {  // without the clips, which are counted separately
+  constexpr std::int64_t kNode = kBlock + 32;   // overhead of a set's node, bytes
+  std::int64_t bytes = heap_bytes(strips.tracks);
+  for (const StripTrack& track : strips.tracks) {
+    bytes += heap_bytes(track.name) + heap_bytes(track.strips);
+    for (const Strip& strip : track.strips) {
+      bytes += heap_bytes(strip.name);
+      for (const std::string& bone : strip.bones.value_or(std::set<std::string>()))
+        bytes += kNode + std::int64_t{sizeof bone} + heap_bytes(bone);
+    }
+  }
   return bytes;
 }
 std::int64_t own_bytes(const Anchors& anchors) {
@@ -189,6 +203,13 @@ class History::Ledger {
     count(result->from_bone_map, step);
   }
 
+  void visit(const std::shared_ptr<const Clip>& clip, int step) {
+    if (!count(clip, step)) return;
+    count(clip->motion, step);
+    if (count(clip->strips, step))
+      for (const auto& one : clips_of(*clip->strips)) visit(one, step);
+  }
+
   void visit(const Document& document, int step) {
     count(document.volume, step);
     count(document.tissues, step);
@@ -198,8 +219,7 @@ class History::Ledger {
     count(document.pose, step);
     count(document.visibility, step);
     for (const auto& result : document.results) visit(result, step);
-    for (const auto& clip : document.clips)
-      if (count(clip, step)) count(clip->motion, step);
+    for (const auto& clip : document.clips) visit(clip, step);
     for (const auto& pose : document.poses) count(pose, step);
     count(document.anchors, step);
     count(document.locks, step);

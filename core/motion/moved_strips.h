@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Moves strips in time and from track to track, and copies them.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "core/motion/strips.h"
+
+namespace limber {
+
+struct StripMove {
+  int frames = 0;  // later
+  int tracks = 0;  // higher
+
+  bool operator==(const StripMove&) const = default;
+};
+
+// Returns the move nearest to the wanted one that leaves the strips on tracks that exist and, unless they may overlap
+// others, keeps them beside the others.
+//   chosen  names of the strips that move
+//   rate    of the clip that has the strips, frames per second
+enum class Overlaps { Allowed, Avoided };
+StripMove fitting_move(const Strips& strips, const std::set<std::string>& chosen, const StripMove& wanted, double rate,
+                       Overlaps overlaps);
+
+// Returns the strips after a move. The tracks that it leads to must exist.
+Strips moved_strips(const Strips& strips, const std::set<std::string>& chosen, const StripMove& move);
+
+// Adds copies of strips to their tracks. Returns the names of the copies.
+std::set<std::string> add_copies(Strips& strips, const std::set<std::string>& chosen);
+
+}  // namespace limber

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Edits of strips (core/motion/strips.h): made of clips, trimmed, split, moved to where the body is, mirrored, scaled
+// in time.
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "core/motion/strips.h"
+#include "core/rig/armature.h"
+
+namespace limber {
+
+// Returns a strip that plays the frames of the clip's playing range once. Its name is unique among the strips.
+Strip strip_of(std::shared_ptr<const Clip> clip, const Strips& among, int start);
+// Returns the name `wanted`, with a number appended if a strip, or a track, has this name already.
+std::string unique_strip_name(const Strips& strips, const std::string& wanted);
+std::string unique_track_name(const Strips& strips, const std::string& wanted);
+
+// Returns where a strip is; nothing if there is none of this name.
+struct StripPlace {
+  std::size_t track = 0, index = 0;
+
+  bool operator==(const StripPlace&) const = default;
+};
+std::optional<StripPlace> find_strip(const Strips& strips, const std::string& name);
+// Inserts the strip at its place in the track's order.
+void insert_strip(StripTrack& track, Strip strip);
+void sort_strips(StripTrack& track);
+// Returns whether no strip of the track plays between the frames first and last. One that ends at `first`, or begins at
+// `last`, only touches.
+bool has_room(const StripTrack& track, int first, int last, double rate);
+
+// Returns the strip with another start or end. What it plays at the frames that stay is the same, bit for bit if it
+// plays whole frames of its clip. A strip keeps at least one step of its clip; it is made longer only as far as its
+// clip, or for an end the most repeats, reach.
+Strip with_start(const Strip& strip, int frame, double rate);
+Strip with_end(const Strip& strip, int frame, double rate);
+// Returns the strip in two: the second begins at the frame and keeps the name `second_name`. Together they play as it
+// did, except that a fade in the middle of which it is split ends there. Throws Error if the frame is not inside.
+std::pair<Strip, Strip> split(const Strip& strip, int frame, double rate, const std::string& second_name);
+
+// Returns the move along the ground by which the strip begins at the place and with the heading that the body has
+// there without it. Throws Error for a rig with several root bones.
+GroundMove place_where_body_is(const Strips& strips, const StripPlace& place,
+                               const std::shared_ptr<const Armature>& armature, double rate);
+
+// Returns strips that play the mirrored poses.
+Strips mirrored_strips(const Strips& strips, const Armature& armature);
+// Returns strips whose starts and fades are those at other frames.
+//   frame_of  returns the new frame of a frame
+//   speed     factor of their speeds
+Strips rescaled_strips(const Strips& strips, const std::function<int(int)>& frame_of, double ratio, double speed);
+
+}  // namespace limber

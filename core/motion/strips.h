@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Strips: clips that play one after another and over one another, as in the non-linear animation editors of Blender and
+// other programs.
+//
+// A strip plays a part of a clip from a frame on: faster or slower, forwards or backwards, mirrored, several times, on
+// all bones or on some. Strips lie on tracks. The pose of a frame is made from the lowest track to the highest, and
+// within a track from the earliest strip to the latest: each strip changes the pose that those before it have made, by
+// as much as its influence says. Where nothing plays, the rig is at rest.
+//
+// Strips of one track that overlap cross-fade: the later one fades in while the earlier one still plays. A strip that
+// holds keeps its last pose when it has ended, below the strips of its track that begin later. Before the first strip
+// of a track, that one holds its first pose.
+//
+// Time is counted in frames of the clip that has the strips. A strip keeps to time, not to frames: of a clip with
+// another rate it plays as many seconds as that clip does.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/motion/ground_move.h"
+
+namespace limber {
+
+struct Clip;
+
+// How a strip changes the pose below it. Replace: bones turn towards the strip's rotations. Add: they are turned
+// further by the strip's rotations from rest, about their own axes, and a strip at rest changes nothing. AddChange:
+// likewise, by what the strip has turned since its first frame.
+enum class StripBlend : std::uint8_t { Replace, Add, AddChange };
+
+struct Strip {
+  std::string name;                  // unique among the strips of a clip
+  std::shared_ptr<const Clip> clip;  // never null, and without strips of its own
+  int start = 0;                     // the frame at which it begins
+  int first = 0, last = 0;           // the clip's frames that are a whole cycle of it, both included, first <= last
+  // Frames of the clip, counted in the order in which they play, that have passed when the strip begins. It may lie in
+  // a later cycle.
+  double skip = 0;
+  double speed = 1;       // 2 plays twice as fast, [kSlowest, kFastest] of core/motion/clip_speed.h
+  double repeat = 1;      // how many cycles have passed when it ends, (0, kMostRepeats]
+  bool reversed = false;  // a cycle plays from `last` to `first`
+  bool mirrored = false;  // left and right are swapped
+  bool goes_on = true;    // each cycle begins at the place and with the heading at which the one before it ended
+  bool holds = true;      // its last pose stays, below later strips of its track
+  bool muted = false;     // it does not play
+  StripBlend blend = StripBlend::Replace;
+  double influence = 1;             // [0, 1]
+  int blend_in = 0, blend_out = 0;  // frames over which its influence grows at its start, and goes at its end
+  std::optional<std::set<std::string>> bones;  // names of the bones that it changes; nothing: all bones
+  GroundMove place;                            // moves and turns the body along the ground
+
+  bool operator==(const Strip&) const = default;  // compares the pointer of the clip
+};
+
+struct StripTrack {
+  std::string name;           // unique among the tracks
+  bool muted = false;         // its strips do not play
+  bool solo = false;          // only tracks with this play, if there are any
+  std::vector<Strip> strips;  // sorted by start
+
+  bool operator==(const StripTrack&) const = default;
+};
+
+struct Strips {
+  std::vector<StripTrack> tracks;  // from the lowest to the highest
+
+  bool operator==(const Strips&) const = default;
+};
+
+// Returns the clips of the strips, each once, in the order in which they come first.
+std::vector<std::shared_ptr<const Clip>> clips_of(const Strips& strips);
+
+constexpr double kMostRepeats = 10'000;
+constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // of a clip
+constexpr int kLongestBlend = 100'000;                        // frames
+
+// Returns how many frames of a strip's clip pass in one frame of the strip.
+//   rate  of the clip that has the strip, frames per second
+double frames_per_frame(const Strip& strip, double rate);
+// Returns the frame at which the strip ends. It is the last one that plays.
+int end_of(const Strip& strip, double rate);
+// Returns over how many frames the strip fades in, because it says so or because it overlaps one before it.
+//   index  of the strip in the track
+int fade_in_of(const StripTrack& track, std::size_t index, double rate);
+// Returns the share of its influence that a strip has at a frame of it, [0, 1], as its fades say. It changes smoothly.
+//   fade_in  as fade_in_of() returns it
+double share_at(const Strip& strip, int fade_in, int end, int frame);
+// Returns whether the track plays, as its own and the others' switches say.
+bool plays(const Strips& strips, std::size_t track);
+
+// The frames from the first start to the last end of the strips; nothing if there are none.
+struct StripSpan {
+  int first = 0, last = 0;
+};
+std::optional<StripSpan> span_of(const Strips& strips, double rate);
+
+}  // namespace limber

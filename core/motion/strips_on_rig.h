@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Strips applied to a rig: prepared once, then evaluated at many frames.
+//
+// Two rotations are blended by slerp, the body's shifts linearly. A strip that replaces all of the pose with full
+// influence gives its own poses bit for bit, and nothing below it is evaluated. Between two frames of a strip's clip,
+// as at half of its speed, its poses are blended too.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/motion/strips.h"
+#include "core/rig/pose.h"
+
+namespace limber {
+
+class ClipOnRig;
+
+class StripsOnRig {
+ public:
+  // Bones of a strip that the rig does not have are ignored. On a rig with several root bones, which cannot turn as
+  // one, the cycles of a strip all begin at the same place, and strips are not moved along the ground.
+  //   rate    of the clip that has the strips, frames per second
+  //   before  earlier strips, whose prepared clips are reused where nothing has changed; may be null
+  StripsOnRig(std::shared_ptr<const Strips> strips, std::shared_ptr<const Armature> armature, double rate,
+              const StripsOnRig* before = nullptr);
+
+  Pose at(int frame) const;
+  // Says which strip cannot move the rig, and why: one line; empty if all can. Such a strip plays the rest pose.
+  const std::string& problem() const { return problem_; }
+
+ private:
+  struct OnRig {
+    const Strip* strip;
+    std::shared_ptr<const ClipOnRig> clip;
+    double ratio = 1, total = 0;     // frames of the clip: in a frame of the strip; that have passed at its end
+    int end = 0, fade_in = 0;        // frames
+    std::vector<char> changes;       // for each bone, whether the strip changes it; empty: all bones
+    bool changes_root = true;        // whether the strip changes the body's shift
+    GroundMove cycle;                // from the beginning of a cycle to its end
+    std::optional<Pose> first_pose;  // of strips that add their change
+  };
+  struct Layer {
+    const OnRig* strip;
+    double share;  // (0, 1]
+  };
+
+  OnRig prepared(const StripTrack& track, std::size_t index, double rate, const StripsOnRig* before);
+  void find_bones(OnRig& strip) const;
+  // Returns the pose of the clip, mirrored if the strip is, when some of its frames have passed.
+  Pose cycle_pose(const OnRig& strip, double passed) const;
+  Pose pose_of(const OnRig& strip, int frame) const;
+  static bool is_held(const std::vector<OnRig>& track, const OnRig& ended, int frame);
+  std::vector<Layer> layers_at(int frame) const;
+  bool covers(const Layer& layer) const;
+  void blend(Pose& pose, const Layer& layer, int frame) const;
+
+  std::shared_ptr<const Strips> strips_;
+  std::shared_ptr<const Armature> armature_;
+  std::map<const Clip*, std::shared_ptr<const ClipOnRig>> clips_;
+  std::vector<std::vector<OnRig>> tracks_;  // of those that play, without muted strips
+  bool has_one_root_ = true;
+  std::string problem_;
+};
+
+}  // namespace limber
