@@ -7,6 +7,7 @@
 
 #include "core/cmd/command.h"
 #include "core/motion/constraint.h"
+#include "core/motion/strips.h"
 #include "core/project/journal.h"
 #include "core/project/project_io.h"
 #include "core/skin/weight_layers.h"
@@ -90,6 +91,10 @@ std::string describe_project(const Path& file) {
     if (clip->motion) one.update({{"joints", clip->motion->joints.size()}, {"frames", clip->motion->frame_count}});
     if (clip->constraints)
       for (const Constraint& constraint : clip->constraints->list) one["constraints"].push_back(constraint.name);
+    if (clip->strips)
+      for (const StripTrack& track : clip->strips->tracks)
+        for (const Strip& strip : track.strips)
+          one["strips"].push_back({{"name", strip.name}, {"track", track.name}, {"clip", strip.clip->name}});
     json["clips"].push_back(one);
   }
   if (!document.results.empty()) json["results"] = results_of(document);

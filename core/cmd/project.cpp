@@ -222,10 +222,10 @@ const T& there(const std::shared_ptr<const T>& part, const Options& options) {
   return *part;
 }
 
-// Returns the shown clip's motion. A clip with keys or constraints is written as it plays on the rig.
+// Returns the shown clip's motion. A clip with keys, constraints or strips is written as it plays on the rig.
 Motion motion_in(const Document& document, const Options& options) {
   const Clip* clip = document.shown_clip();
-  if (document.armature && clip && (!clip->keys.empty() || clip->constraints))
+  if (document.armature && clip && (!clip->keys.empty() || clip->constraints || clip->strips))
     return played_motion(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
   return there(document.shown_clip() ? document.shown_clip()->motion : nullptr, options);
 }

@@ -40,6 +40,7 @@ std::vector<Operator> rig_operators();
 std::vector<Operator> pose_operators();
 std::vector<Operator> motion_operators();
 std::vector<Operator> graph_operators();
+std::vector<Operator> strip_operators();
 std::vector<Operator> motion_clean_operators();
 std::vector<Operator> clip_deed_operators();
 std::vector<Operator> clip_join_operators();
@@ -51,17 +52,17 @@ std::vector<Operator> help_operators();
 
 std::vector<Operator> gather_operators() {
   std::vector<Operator> all;
-  for (auto list : {file_operators,        import_operators,         export_operators,        edit_operators,
-                    workspace_operators,   view_operators,           navigation_operators,    clip_operators,
-                    slice_operators,       image_operators,          measure_operators,       tissue_operators,
-                    select_operators,      search_operators,         preferences_operators,   prepare_operators,
-                    rig_fit_operators,     skin_operators,           paint_operators,         brush_preset_operators,
-                    weight_edit_operators, region_operators,         skin_display_operators,  layer_operators,
-                    test_pose_operators,   weight_problem_operators, joint_repair_operators,  seam_operators,
-                    label_edit_operators,  label_brush_operators,    bone_table_operators,    rig_operators,
-                    pose_operators,        motion_operators,         graph_operators,         motion_clean_operators,
-                    clip_deed_operators,   clip_join_operators,      motion_reduce_operators, constraint_operators,
-                    motion_clip_operators, resample_operators,       help_operators})
+  for (auto list : {file_operators,         import_operators,         export_operators,       edit_operators,
+                    workspace_operators,    view_operators,           navigation_operators,   clip_operators,
+                    slice_operators,        image_operators,          measure_operators,      tissue_operators,
+                    select_operators,       search_operators,         preferences_operators,  prepare_operators,
+                    rig_fit_operators,      skin_operators,           paint_operators,        brush_preset_operators,
+                    weight_edit_operators,  region_operators,         skin_display_operators, layer_operators,
+                    test_pose_operators,    weight_problem_operators, joint_repair_operators, seam_operators,
+                    label_edit_operators,   label_brush_operators,    bone_table_operators,   rig_operators,
+                    pose_operators,         motion_operators,         graph_operators,        strip_operators,
+                    motion_clean_operators, clip_deed_operators,      clip_join_operators,    motion_reduce_operators,
+                    constraint_operators,   motion_clip_operators,    resample_operators,     help_operators})
     for (Operator& op : list()) all.push_back(std::move(op));
   return all;
 }

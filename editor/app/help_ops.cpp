@@ -11,7 +11,7 @@ std::vector<Operator> help_operators() {
   return {
       {"help.guide", "User guide", icon::kHelp, "Help",
        "Read how each task is done, from opening a volume to a result; a search finds every page.",
-       [](Editor& e) { e.open_dialog(open_guide(e)); }},
+       [](Editor& e) { e.open_dialog(open_guide(read_guide(e))); }},
       {"help.new", "What is new", icon::kInfo, "Help", "Read what is new in this version.",
        [](Editor& e) { e.open_dialog(open_document("What is new", "docs/new.md")); }},
       {"help.keys", "Keys", icon::kKeyboard, "Help", "List every key and what it does.",

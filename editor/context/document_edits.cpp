@@ -5,6 +5,8 @@
 
 #include <backends/imgui_impl_opengl3.h>
 
+#include "core/project/strip_clips.h"
+
 namespace limber::editor {
 
 float scale_for(const Preferences& preferences, const Host& host) {
@@ -16,6 +18,7 @@ float scale_for(const Preferences& preferences, const Host& host) {
 }
 
 void commit(Editor& editor, const std::string& label, Document next) {
+  relink_strips(editor.document(), next);
   editor.history.commit(label, std::move(next));
   editor.touch();
 }

@@ -16,6 +16,14 @@ bool is_over(const char* region) {
   return window && std::string_view(window->RootWindow->Name) == region;
 }
 
+bool over_strips(const Editor& editor) {
+  const auto& widgets = editor.widgets.widgets();
+  return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
+    return widget.region == Region::Bottom && widget.name.ends_with("timeline/strips") &&
+           widget.rect.contains(editor.input.pointer);
+  });
+}
+
 }  // namespace
 
 bool over_timeline(const Editor& editor) {
@@ -45,6 +53,7 @@ std::vector<std::string> contexts(const Editor& editor) {
   if (view && view->id != ViewId::Body) contexts.push_back("slice");
   if (view && view->id == ViewId::Body) contexts.push_back("view3d");
   if (over_timeline(editor) && editor.graph_area.contains(editor.input.pointer)) contexts.push_back("graph");
+  if (over_timeline(editor) && over_strips(editor)) contexts.push_back("strips");
   if (over_timeline(editor)) contexts.push_back("timeline");
   if (is_over("##sidebar")) contexts.push_back("sidebar");
   constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};

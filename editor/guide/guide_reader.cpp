@@ -26,7 +26,9 @@ constexpr float kWidth = 1040, kHeight = 680, kContents = 268, kMargin = 28, kFo
 
 class GuideReader final : public Dialog {
  public:
-  explicit GuideReader(Book book) : book_(std::move(book)) {}
+  GuideReader(Book book, int page, int block) : book_(std::move(book)) {
+    if (page > 0 && page < std::ssize(book_.pages)) target_ = Target{page, block};
+  }
   void draw(Editor& editor) override;
   bool key(Editor& editor, const Chord& chord) override;
 
@@ -279,11 +281,15 @@ void GuideReader::draw(Editor& editor) {
 
 }  // namespace
 
-std::unique_ptr<Dialog> open_guide(const Editor& editor) {
-  return std::make_unique<GuideReader>(read_guide([&](const std::string& id) {
+Book read_guide(const Editor& editor) {
+  return read_guide([&](const std::string& id) {
     const auto chord = editor.keymap.chord_of(id);
     return chord ? to_text(*chord) : std::string("(no key)");
-  }));
+  });
+}
+
+std::unique_ptr<Dialog> open_guide(Book book, int page, int block) {
+  return std::make_unique<GuideReader>(std::move(book), page, block);
 }
 
 }  // namespace limber::editor

@@ -83,7 +83,7 @@ void change_free_clip(Editor& editor, const std::string& label, const std::funct
   // The clip has no effect on the rig if it has no keys, no constraints, and no motion that can be retargeted. The
   // pose is then all the user's own work, so it is keyed: otherwise it would be lost.
   const ClipOnRig* before = clip_on_rig(editor);
-  const bool is_bare = !before || (!before->retarget() && before->clip()->keys.empty() && !before->clip()->constraints);
+  const bool is_bare = !before || (!before->has_base() && before->clip()->keys.empty() && !before->clip()->constraints);
   if (is_bare && free != rest) key_changes(next, rest, free);
   if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
   auto& shown = next.clips[static_cast<std::size_t>(next.clip)];

@@ -87,6 +87,8 @@ FrameRange range_of(const Clip& clip, const Keys& keys) {
   without.range_start = clip.range_start;
   without.range_end = clip.range_end;
   without.markers = clip.markers;
+  without.strips = clip.strips;
+  without.rate = clip.rate;
   FrameRange range = all_frames(without);
   const auto take = [&](const auto& track) {
     if (track.empty()) return;
@@ -99,8 +101,8 @@ FrameRange range_of(const Clip& clip, const Keys& keys) {
 }
 
 bool same_motion(const Clip& a, const Clip& b) {
-  return a.motion == b.motion && a.start == b.start && a.first == b.first && a.last == b.last && a.map == b.map &&
-         a.retarget == b.retarget;
+  return a.motion == b.motion && a.strips == b.strips && a.start == b.start && a.first == b.first && a.last == b.last &&
+         a.map == b.map && a.retarget == b.retarget;
 }
 
 // When undo or redo shows another clip, selects the keys again that were selected in that clip.
@@ -135,7 +137,7 @@ void meet_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
   range.high = std::min(range.high, range.low + kMostFrames - 1);
   if (same && curves.range.low == range.low && curves.range.high == range.high) return;
   std::shared_ptr<std::vector<Pose>> known = same ? known_motion(curves, range) : std::make_shared<std::vector<Pose>>();
-  curves = {on_rig.clip(), on_rig.armature(), on_rig.retarget() != nullptr, range, std::move(known), {}};
+  curves = {on_rig.clip(), on_rig.armature(), on_rig.has_base(), range, std::move(known), {}};
 }
 
 void sample_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
@@ -159,14 +161,14 @@ GraphCurve keyed(const GraphCurves& curves, const ClipOnRig& on_rig, const Keys&
   if (track.is_shift) {
     curve.places = curve.shifts = keys.root;
     curve.shapes = keys.root_shapes;
-    if (on_rig.retarget())
+    if (on_rig.has_base())
       for (auto& [frame, shift] : curve.shifts) shift -= motion_pose(curves, on_rig, frame).root_translation;
     return curve;
   }
   if (const auto found = keys.bones.find(track.bone); found != keys.bones.end())
     curve.rotations = curve.turns = found->second;
   curve.shapes = shapes_of(keys, track.bone);
-  if (on_rig.retarget())
+  if (on_rig.has_base())
     for (auto& [frame, turn] : curve.turns)
       turn = glm::normalize(turn * glm::conjugate(motion_pose(curves, on_rig, frame).rotation[curve.bone]));
   return curve;
@@ -329,6 +331,7 @@ void show_graph(Editor& editor, bool on) {
   Graph& graph = graph_of(editor);
   editor.timeline->shows_graph = on;
   if (on) {
+    editor.timeline->shows_strips = false;
     Arrangement& arrangement = editor.arrangement();
     arrangement.timeline = true;
     arrangement.console = false;

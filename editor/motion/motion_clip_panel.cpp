@@ -109,6 +109,10 @@ void draw_motion(Editor& editor, Column& column) {
           put_wrapped(editor, look.fonts.small, look.theme.warn, {row.low.x + look.px(10), row.low.y},
                       row.width() - look.px(20), problem, 2);
         }
+      } else if (clip && clip->strips && on_rig && !on_rig->problem().empty()) {
+        const Rect row = column.row(40);
+        put_wrapped(editor, look.fonts.small, look.theme.warn, {row.low.x + look.px(10), row.low.y},
+                    row.width() - look.px(20), on_rig->problem(), 2);
       }
     }
     column.space(6);

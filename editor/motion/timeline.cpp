@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/motion/strips.h"
 #include "editor/context/document_edits.h"
 #include "editor/motion/constrained_pose.h"
 #include "editor/shown/shown_pose.h"
@@ -22,8 +23,8 @@ std::shared_ptr<const Pose> pose_part(const Armature& armature, Pose pose) {
   return pose == rest_pose(armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
 }
 
-// Returns whether the clip moves the rig, by a retargeted motion, by keys or by constraints.
-bool moves(const ClipOnRig& clip) { return clip.retarget() || !clip.clip()->keys.empty() || clip.constraints(); }
+// Returns whether the clip moves the rig, by a retargeted motion, by strips, by keys or by constraints.
+bool moves(const ClipOnRig& clip) { return clip.has_base() || !clip.clip()->keys.empty() || clip.constraints(); }
 
 // Returns the frame to show after a playing time, counted from the start of the playing range: 0 to count - 1. Returns
 // nothing when the clip has played to the end of the range and stops there.
@@ -67,6 +68,8 @@ FrameRange all_frames(const Clip& clip) {
   FrameRange all{clip.range_start, std::max(clip.range_start, clip.range_end)};
   const auto take = [&](int frame) { all = {std::min(all.low, frame), std::max(all.high, frame)}; };
   if (clip.motion) take(clip.start), take(clip.end());
+  if (clip.strips)
+    if (const auto span = span_of(*clip.strips, clip.rate)) take(span->first), take(span->last);
   for (const int frame : frames_of(clip.keys)) take(frame);
   for (const Marker& marker : clip.markers) take(marker.frame);
   return all;

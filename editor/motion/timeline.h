@@ -29,6 +29,7 @@ enum class AtEnd { Stop, Loop, PingPong };
 struct OnionOutlines;
 struct MotionPaths;
 struct Graph;
+struct StripView;
 struct HandPoses;
 
 struct Timeline {
@@ -85,6 +86,10 @@ struct Timeline {
   std::int64_t revision = -1;  // revision of the undo history after the last frame change; -1: none
   std::unique_ptr<ClipOnRig> prepared;
   std::unique_ptr<FrameLog> frame_log;  // measured drawing times; null: not measured
+
+  // Whether the strips are shown in place of the markers, the clip and the keys; never together with the graph.
+  bool shows_strips = false;
+  std::shared_ptr<StripView> strips;  // their state (editor/motion/strip_view.h); null until they are shown
 };
 
 // ---- The shown clip and frame
@@ -94,7 +99,7 @@ struct FrameRange {
   int low, high;
 };
 FrameRange playing_range(const Editor& editor);
-// Returns the smallest range of frames that contains the clip's motion, playing range, keys and markers.
+// Returns the smallest range of frames that contains the clip's motion or strips, playing range, keys and markers.
 FrameRange all_frames(const Clip& clip);
 double frame_rate(const Editor& editor);
 // Returns the shown clip retargeted to the document's rig, which gives the rig's pose at each frame; nullptr without a

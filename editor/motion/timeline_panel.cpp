@@ -9,7 +9,9 @@
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/motion/graph_panel.h"
+#include "editor/motion/strip_panel.h"
 #include "editor/motion/timeline.h"
+#include "editor/motion/timeline_faces.h"
 #include "editor/motion/timeline_ruler.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/shown_pose.h"
@@ -339,10 +341,12 @@ void draw_lane(Editor& editor) {
   const Look& look = editor.look;
   const Timeline& timeline = *editor.timeline;
   const Clip* clip = shown_clip(editor);
-  if (!clip || !clip->motion) return;
+  if (!clip || (!clip->motion && !clip->strips)) return;
   const Rect& lane = timeline.lane;
-  const Rect bar = intersection(lane, {{std::round(x_of(timeline, clip->start)), lane.low.y},
-                                       {std::round(x_of(timeline, clip->end() + 1.0)), lane.high.y}});
+  StripSpan span{clip->start, clip->end()};
+  if (clip->strips) span = span_of(*clip->strips, clip->rate).value_or(span);
+  const Rect bar = intersection(lane, {{std::round(x_of(timeline, span.first)), lane.low.y},
+                                       {std::round(x_of(timeline, span.last + 1.0)), lane.high.y}});
   if (bar.empty()) return;
   fill(bar, look.theme.accent_soft, look.px(3));
   outline(bar, look.theme.accent, look.px(3), look.line());
@@ -354,7 +358,7 @@ void draw_lane(Editor& editor) {
   put_text(editor, look.fonts.semibold, look.theme.accent_text, Rect{{x, y}, {x + name, y + look.px(18)}}, clip->name);
   x += name + look.px(14);
   char facts[128];
-  const std::string frames = number_text(clip->last - clip->first + 1);
+  const std::string frames = number_text(span.last - span.first + 1);
   const Document& document = editor.document();
   const int bone = editor.selection.bone.value_or(-1);
   const bool chosen = document.armature && bone >= 0 && bone < std::ssize(document.armature->bones);
@@ -424,7 +428,7 @@ void draw_timeline(Editor& editor, const Rect& rect) {
     return;
   }
   editor.graph_area = {};
-  if (!timeline.shows_graph) place_rows(editor, rows);
+  if (!timeline.shows_graph && !timeline.shows_strips) place_rows(editor, rows);
   const std::string fitted = clip->name + std::to_string(clip->start) + "+" + std::to_string(clip->end());
   if (timeline.window.clip != fitted) {
     timeline.window.clip = fitted;
@@ -433,11 +437,13 @@ void draw_timeline(Editor& editor, const Rect& rect) {
     fit_window(editor);
   }
   follow_head(editor);
-  // The button beside the ruler switches between the rows and the graph editor.
-  const glm::vec2 corner = rows.low + glm::vec2(look.px(12), look.px(1));
-  operator_button(editor, "graph.show", {corner, corner + glm::vec2(look.px(30), look.px(kRulerHeight - 2))}, "",
-                  timeline.shows_graph ? ButtonStyle::Soft : ButtonStyle::Plain);
+  // The switch beside the ruler selects the rows, the graph editor or the strips.
+  const bool wide = timeline.shows_graph || timeline.shows_strips;
+  const glm::vec2 corner = rows.low + glm::vec2(look.px(wide ? 12 : 2), look.px(1));
+  draw_face_switch(editor, {corner, corner + glm::vec2(look.px(wide ? 64 : 53), look.px(kRulerHeight - 2))});
+  if (!shown_clip(editor)) return;
   if (timeline.shows_graph) return draw_graph(editor, rows);
+  if (timeline.shows_strips) return draw_strips(editor, rows);
   for (const auto& [name, place] :
        {std::pair<const char*, Rect>{"Marks", timeline.marks}, {"Clip", timeline.lane}, {"Keys", timeline.keys}})
     if (!place.empty())

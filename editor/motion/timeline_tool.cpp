@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/motion/strips.h"
 #include "editor/motion/graph.h"
 #include "editor/viewport/numeric_input.h"
 
@@ -215,6 +216,11 @@ void fit_window(Editor& editor) {
     low = std::min<double>(low, clip->start);
     high = std::max<double>(high, clip->end());
   }
+  if (const Clip* clip = shown_clip(editor); clip && clip->strips)
+    if (const auto span = span_of(*clip->strips, clip->rate)) {
+      low = std::min<double>(low, span->first);
+      high = std::max<double>(high, span->last);
+    }
   const double room = std::max(2.0, 0.03 * (high - low));
   editor.timeline->window.low = low - room;
   editor.timeline->window.count = high - low + 2 * room;

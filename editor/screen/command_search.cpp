@@ -3,7 +3,9 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "editor/context/pointer_context.h"
+#include "editor/guide/guide_reader.h"
 #include "editor/screen/preferences_dialog.h"
 #include "editor/ui/fuzzy_match.h"
 #include "editor/ui/icons.h"
@@ -15,6 +17,7 @@ namespace limber::editor {
 namespace {
 
 constexpr int kMostRows = 8, kLastUsed = 5;
+constexpr std::size_t kMostPages = 4;  // pages of the guide that are listed
 // Amounts subtracted from a command's score if the query matches the command's category (kPlacePenalty) or description
 // (kSentencePenalty) instead of its label.
 constexpr int kPlacePenalty = 30, kSentencePenalty = 60;
@@ -59,22 +62,34 @@ std::optional<Ranked> rank(const Operator& op, const std::string& query) {
   if (auto match = fuzzy_match(query, op.category + " " + op.label))
     return Ranked{{&op, {}, ""}, match->score - kPlacePenalty, op.label.size()};
   if (query.size() < kLeastForSentence || !begins_words(query, op.description)) return std::nullopt;
-  return Ranked{{&op, {}, ""}, -kSentencePenalty, op.label.size()};
+  return Ranked{{&op, {}, "", false}, -kSentencePenalty, op.label.size()};
 }
+
+// A row of the list: a command, or a page of the guide.
+struct FoundRow {
+  std::optional<FoundCommand> command;
+  Found page;
+};
 
 class CommandSearch final : public Dialog {
  public:
+  // Without its guide, as where a page of it is missing, the search finds commands alone.
+  explicit CommandSearch(std::optional<Book> guide) : guide_(std::move(guide)) {}
   void draw(Editor& editor) override;
   bool key(Editor& editor, const Chord& chord) override;
 
  private:
   void draw_field(Editor& editor, const Rect& rect);
   void draw_row(Editor& editor, const Rect& rect, int index);
+  void draw_page_row(Editor& editor, const Rect& rect, const Found& page, bool chosen);
   void draw_foot(Editor& editor, const Rect& rect);
+  void search(Editor& editor);
   void run_chosen(Editor& editor);
+  std::string title_of(const FoundRow& row) const;
 
   std::string query_, last_query_ = "\n";  // last_query_ differs from query_ at first, so that the first frame searches
-  std::vector<FoundCommand> found_;
+  std::optional<Book> guide_;
+  std::vector<FoundRow> found_;
   int chosen_ = 0, first_ = 0;
   bool focus_ = true, accept_ = false, assign_ = false;
 };
@@ -97,9 +112,28 @@ bool CommandSearch::key(Editor&, const Chord& chord) {
 
 void CommandSearch::run_chosen(Editor& editor) {
   if (chosen_ >= std::ssize(found_)) return;
-  const Operator& op = *found_[chosen_].op;
+  const FoundRow row = found_[chosen_];
+  if (!row.command) return editor.open_dialog(open_guide(*guide_, row.page.page, row.page.block));
+  const Operator& op = *row.command->op;
   editor.close_dialog();
   run(editor, op);
+}
+
+// Pages of the guide stand behind the commands that are named, before those whose descriptions speak of the query.
+void CommandSearch::search(Editor& editor) {
+  found_.clear();
+  for (FoundCommand& command : find_commands(editor, query_)) found_.push_back({std::move(command), {}});
+  last_query_ = query_;
+  chosen_ = first_ = 0;
+  if (!guide_ || query_.size() < kLeastForSentence) return;
+  std::vector<Found> pages = find_in(*guide_, query_);
+  pages.resize(std::min(pages.size(), kMostPages));
+  auto place = std::find_if(found_.begin(), found_.end(), [](const FoundRow& row) { return !row.command->is_named; });
+  for (Found& page : pages) place = std::next(found_.insert(place, {std::nullopt, std::move(page)}));
+}
+
+std::string CommandSearch::title_of(const FoundRow& row) const {
+  return row.command ? row.command->op->label : "Guide: " + guide_->pages[row.page.page].title;
 }
 
 void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
@@ -115,7 +149,8 @@ void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   focus_ = false;
-  const std::string count = std::to_string(found_.size()) + " of " + std::to_string(count_commands(editor));
+ const auto commands = std::count_if(found_.begin(), found_.end(), [](const FoundRow& row) { return row.command; });
+  const std::string count = std::to_string(commands) + " of " + std::to_string(count_commands(editor));
   put_text(editor, look.fonts.small, look.theme.text2,
            Rect{{rect.high.x - look.px(90), rect.low.y}, {rect.high.x - look.px(14), rect.high.y}}, count,
            Align::Right);
@@ -149,11 +184,17 @@ float put_label(Editor& editor, const Rect& rect, const FoundCommand& command, b
 
 void CommandSearch::draw_row(Editor& editor, const Rect& rect, int index) {
   const Look& look = editor.look;
-  const FoundCommand& command = found_[index];
-  const Pressed pressed = press_area(editor, command.op->id, rect);
+  const FoundRow& row = found_[index];
+  const Pressed pressed = press_area(editor, row.command ? row.command->op->id : title_of(row), rect);
   const bool chosen = index == chosen_;
   if (chosen) fill(rect, look.theme.accent);
   else if (pressed.hovered) fill(rect, look.theme.hover);
+  if (pressed.clicked) {
+    chosen_ = index;
+    accept_ = true;
+  }
+  if (!row.command) return draw_page_row(editor, rect, row.page, chosen);
+  const FoundCommand& command = *row.command;
   put_icon(look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text2,
            Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, command.op->icon);
 
@@ -166,10 +207,18 @@ void CommandSearch::draw_row(Editor& editor, const Rect& rect, int index) {
   put_text(editor, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
            Rect{{right + look.px(9), rect.low.y}, {caps_left - look.px(8), rect.high.y}}, beside);
   put_key_caps(editor, caps_left, rect.centre().y, caps);
-  if (pressed.clicked) {
-    chosen_ = index;
-    accept_ = true;
-  }
+}
+
+void CommandSearch::draw_page_row(Editor& editor, const Rect& rect, const Found& page, bool chosen) {
+  const Look& look = editor.look;
+  put_icon(look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text2,
+           Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, icon::kHelp);
+  const std::string title = title_of({std::nullopt, page});
+  const Rect words{{rect.low.x + look.px(39), rect.low.y}, {rect.high.x - look.px(14), rect.high.y}};
+  put_text(editor, look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text, words, title);
+  const float right = std::min(words.high.x, words.low.x + text_size(look.fonts.regular, title).x);
+  put_text(editor, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
+           Rect{{right + look.px(9), rect.low.y}, words.high}, "Help");
 }
 
 void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
@@ -177,18 +226,18 @@ void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.line2);
   const float left = rect.low.x + look.px(14);
   if (chosen_ < std::ssize(found_)) {
-    const FoundCommand& command = found_[chosen_];
+    const FoundRow& row = found_[chosen_];
     put_text(editor, look.fonts.semibold, look.theme.text,
              Rect{{left, rect.low.y + look.px(8)}, {rect.high.x - look.px(14), rect.low.y + look.px(28)}},
-             command.op->label);
+             title_of(row));
     put_text(editor, look.fonts.regular, look.theme.text2,
              Rect{{left, rect.low.y + look.px(28)}, {rect.high.x - look.px(14), rect.low.y + look.px(48)}},
-             command.op->description);
+             row.command ? row.command->op->description : row.page.sentence);
   }
   float x = left;
   const float y = rect.high.y - look.px(18);
   const std::pair<std::vector<std::string>, const char*> hints[] = {
-      {{"Enter"}, "run"}, {{"Up", "Down"}, "select"}, {{"Ctrl", "K"}, "assign a key"}, {{"Esc"}, "close"}};
+      {{"Enter"}, chosen_ < std::ssize(found_) && !found_[chosen_].command ? "read" : "run"}, {{"Up", "Down"}, "select"}, {{"Ctrl", "K"}, "assign a key"}, {{"Esc"}, "close"}};
   for (const auto& [caps, words] : hints) {
     x = put_key_caps(editor, x, y, caps) + look.px(7);
     x = put_text(editor, look.fonts.small, look.theme.text2, glm::vec2(x, y - look.fonts.small->FontSize / 2), words) +
@@ -197,11 +246,7 @@ void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
 }
 
 void CommandSearch::draw(Editor& editor) {
-  if (query_ != last_query_) {
-    found_ = find_commands(editor, query_);
-    last_query_ = query_;
-    chosen_ = first_ = 0;
-  }
+  if (query_ != last_query_) search(editor);
   const Look& look = editor.look;
   const int rows = std::min(kMostRows, std::max(1, static_cast<int>(found_.size())));
   first_ = std::clamp(first_, chosen_ - rows + 1, chosen_);
@@ -224,7 +269,7 @@ void CommandSearch::draw(Editor& editor) {
   if (found_.empty())
     put_text(editor, look.fonts.regular, look.theme.text2,
              Rect{{rect.low.x + look.px(14), y}, {rect.high.x - look.px(14), y + look.px(30)}},
-             "No command matches '" + query_ + "'");
+             "Nothing matches '" + query_ + "'");
   for (int i = first_; i < first_ + rows && i < std::ssize(found_); ++i, y += look.px(30))
     draw_row(editor, {{rect.low.x + look.line(), y}, {rect.high.x - look.line(), y + look.px(30)}}, i);
   if (rect.contains(editor.input.pointer) && editor.input.wheel != 0)
@@ -236,13 +281,11 @@ void CommandSearch::draw(Editor& editor) {
   if (query_ != last_query_) {
     editor.touch();
     if (!accept_ && !assign_) return;
-    found_ = find_commands(editor, query_);
-    last_query_ = query_;
-    chosen_ = 0;
+    search(editor);
   }
   if (std::exchange(accept_, false)) run_chosen(editor);
-  if (std::exchange(assign_, false) && chosen_ < std::ssize(found_))
-    editor.open_dialog(open_preferences(PreferencesPage::Keymap, found_[chosen_].op->label));
+  if (std::exchange(assign_, false) && chosen_ < std::ssize(found_) && found_[chosen_].command)
+    editor.open_dialog(open_preferences(PreferencesPage::Keymap, found_[chosen_].command->op->label));
 }
 
 }  // namespace
@@ -277,6 +320,14 @@ std::vector<FoundCommand> find_commands(const Editor& editor, const std::string&
   return found;
 }
 
-std::unique_ptr<Dialog> open_command_search() { return std::make_unique<CommandSearch>(); }
+std::unique_ptr<Dialog> open_command_search(Editor& editor) {
+  std::optional<Book> guide;
+  try {
+    guide = read_guide(editor);
+  } catch (const Error& error) {  // commands are found without it
+    editor.messages.warn(error.what());
+  }
+  return std::make_unique<CommandSearch>(std::move(guide));
+}
 
 }  // namespace limber::editor

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The command search (F3): finds every command by a few letters of its name and runs it.
+// The command search (F3): finds every command by a few letters of its name and runs it, and finds the pages of the
+// user guide that speak of the query's words and opens them.
 #pragma once
 
 #include <memory>
@@ -14,6 +15,7 @@ struct FoundCommand {
   const Operator* op;
   std::vector<std::size_t> letters;  // byte offsets of the label's letters that match the query
   std::string reason;                // why the command cannot run now; "": it can
+  bool is_named = true;              // false: only its description speaks of the query
 };
 // Returns the commands that match the query, the best match first. Commands that match by label or category come
 // before commands that match only by description. In both groups, commands that cannot run now come last. If the query
@@ -22,6 +24,6 @@ std::vector<FoundCommand> find_commands(const Editor& editor, const std::string&
 // Returns the number of commands that the search can find.
 int count_commands(const Editor& editor);
 
-std::unique_ptr<Dialog> open_command_search();
+std::unique_ptr<Dialog> open_command_search(Editor& editor);
 
 }  // namespace limber::editor

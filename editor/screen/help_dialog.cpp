@@ -38,8 +38,8 @@ void KeysPage::draw(Editor& editor) {
                   {{rect.low.x - look.px(18) + look.line(), search_bottom + look.px(10)},
                    {rect.high.x + look.px(18) - look.line(), rect.high.y + look.px(10)}});
     bool any = false;
-    for (const char* context :
-         {"global", "view3d", "slice", "sidebar", "select", "rig", "skin", "pose", "resample", "timeline", "graph"}) {
+    for (const char* context : {"global", "view3d", "slice", "sidebar", "select", "rig", "skin", "pose", "resample",
+                                "timeline", "graph", "strips"}) {
       const auto bindings = editor.keymap.contexts.find(context);
       if (bindings == editor.keymap.contexts.end()) continue;
       int index = 0;

@@ -18,7 +18,7 @@ namespace {
 constexpr std::pair<const char*, const char*> kContexts[] = {
     {"global", "Everywhere"}, {"view3d", "3D view"},    {"slice", "Slices"}, {"sidebar", "Sidebar"},
     {"select", "Selection"},  {"rig", "Rig"},           {"skin", "Skin"},    {"pose", "Pose"},
-    {"resample", "Resample"}, {"timeline", "Timeline"}, {"graph", "Graph"}};
+    {"resample", "Resample"}, {"timeline", "Timeline"}, {"graph", "Graph"},  {"strips", "Strips"}};
 
 const Clash* clash_of(const std::vector<Clash>& clashes, const std::string& context, const std::string& id) {
   const auto found = std::find_if(clashes.begin(), clashes.end(), [&](const Clash& clash) {

@@ -3,6 +3,7 @@
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
 #include "editor/motion/constraint_panel.h"
+#include "editor/motion/strip_properties_panel.h"
 #include "editor/pose/clinical_angles_panel.h"
 #include "editor/pose/pose_bone_panel.h"
 #include "editor/pose/pose_library.h"
@@ -60,6 +61,7 @@ void draw_sidebar(Editor& editor) {
     }
     if (editor.workspace == Workspace::Skin) draw_seam_section(editor, column);
     if (editor.workspace == Workspace::Pose) {
+      draw_strip_properties(editor, column);
       draw_pose_library(editor, column);
       draw_posed_bone(editor, column);
       draw_constraints(editor, column);

@@ -61,10 +61,18 @@ std::vector<KeyHint> hints(const Editor& editor) {
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
   if (contexts(editor).front() == "graph")
-    operators = {
-        {"graph.select", "Select"},       {"graph.move", "Move keys"}, {"graph.interpolation_menu", "Interpolation"},
-        {"graph.handle_menu", "Handles"}, {"graph.zoom", "Zoom"},      {"graph.pan", "Pan"},
-        {"graph.delete", "Delete keys"},  {"graph.show", "Timeline"}};
+    operators = {{"graph.select", "Select"},
+                 {"graph.move", "Move keys"},
+                 {"graph.interpolation_menu", "Interpolation"},
+                 {"graph.handle_menu", "Handles"},
+                 {"graph.zoom", "Zoom"},
+                 {"graph.pan", "Pan"},
+                 {"graph.delete", "Delete keys"},
+                 {"motion.next_face", "Next view"}};
+  else if (contexts(editor).front() == "strips")
+    operators = {{"strips.select", "Select"},       {"strips.move", "Move"},   {"strips.add", "Add"},
+                 {"strips.duplicate", "Duplicate"}, {"strips.split", "Split"}, {"strips.mute", "Mute"},
+                 {"strips.delete", "Delete"},       {"strips.pan", "Pan"},     {"motion.next_face", "Next view"}};
   else if (contexts(editor).front() == "timeline")
     operators = {{"motion.scrub", "Scrub"},         {"motion.zoom", "Zoom"},
                  {"motion.pan", "Shift"},           {"motion.insert_key", "Key"},

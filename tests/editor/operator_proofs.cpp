@@ -99,7 +99,7 @@ TEST_CASE("operators: each one that exists is proved to do what it says") {
         proofs_of_regions(),     proofs_of_layers(),       proofs_of_test_poses(), proofs_of_weight_problems(),
         proofs_of_label_edits(), proofs_of_label_brush(),  proofs_of_seams(),      proofs_of_bone_table(),
         proofs_of_images(),      proofs_of_joint_repair(), proofs_of_measuring(),  proofs_of_curves(),
-        proofs_of_constraints()})
+        proofs_of_constraints(), proofs_of_strips()})
     for (const Proof& proof : proofs) {
       INFO(proof.id);
       CHECK(proved.insert(proof.id).second);

@@ -87,6 +87,7 @@ std::vector<Proof> proofs_of_comparing();
 std::vector<Proof> proofs_of_motion();
 std::vector<Proof> proofs_of_clips();
 std::vector<Proof> proofs_of_curves();
+std::vector<Proof> proofs_of_strips();
 std::vector<Proof> proofs_of_constraints();
 std::vector<Proof> proofs_of_handling();
 std::vector<Proof> proofs_of_skin();

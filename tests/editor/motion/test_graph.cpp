@@ -114,7 +114,7 @@ std::vector<Proof> proofs_of_curves() {
   };
   const auto range = [](Stage& s) { return graph_of(s.editor()).high - graph_of(s.editor()).low; };
   return {
-      {"graph.show", "key Ctrl+Tab",
+      {"graph.show", "click \"Motion/Curves/Graph editor\"\n wait-idle",
        [](Stage& s, const Seen&) { return !s.editor().timeline->shows_graph && !s.is("widget:timeline/graph"); },
        Shows::Nothing, "", in_graph()},
       {"graph.select", "drag graph 400 200 LMB", chosen_count(1), Shows::Nothing, "",

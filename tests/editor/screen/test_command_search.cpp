@@ -96,3 +96,28 @@ TEST_CASE("search: what is for the pointer alone is left out, Repeat does the la
     expect display solid
   )");
 }
+
+TEST_CASE("search: pages of the guide are found, stand behind the commands that are named, and open by Return") {
+  SmallEditor test;
+  test.play(R"(
+    key F3
+    type "limbs that touch"
+    expect "text:Guide: Limbs that touch" shown
+    key Return
+    wait-idle
+    expect dialog yes
+    expect "text:Guide: Limbs that touch" absent
+    expect "text:would be dragged along when one of them moves." shown
+    key Escape
+    key F3
+    type "mirror clip"
+    expect "text:Mirror clip" shown
+    key Return
+    expect dialog no
+    expect toast "Mirror clip"
+    key F3
+    type "xylophone"
+    expect "text:Nothing matches 'xylophone'" shown
+    key Escape
+  )");
+}

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Operators of the timeline's faces, and of strips and their tracks.
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/motion/recorded_clip.h"
+#include "editor/context/background_task.h"
+#include "editor/context/document_edits.h"
+#include "editor/context/operator.h"
+#include "editor/dialogs/form_dialog.h"
+#include "editor/motion/graph.h"
+#include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/strip_tool.h"
+#include "editor/motion/timeline_faces.h"
+#include "editor/motion/timeline_tool.h"
+#include "editor/shown/shown_pose.h"
+#include "editor/ui/icons.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are baked at once
+
+// ---- Why operators cannot run
+
+std::string needs_clip(const Editor& editor) {
+  return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
+}
+std::string needs_shown_strips(const Editor& editor) {
+  if (const std::string why = needs_clip(editor); !why.empty()) return why;
+  if (!shown_strips(editor)) return "Make strips of the clip first";
+  return strips_are_shown(editor) ? "" : "Show the strips first";
+}
+std::string needs_chosen(const Editor& editor) {
+  if (const std::string why = needs_shown_strips(editor); !why.empty()) return why;
+  return chosen_strips(editor).empty() ? "Select strips first" : "";
+}
+std::string needs_active(const Editor& editor) {
+  if (const std::string why = needs_shown_strips(editor); !why.empty()) return why;
+  return active_strip(editor) ? "" : "Select a strip first";
+}
+std::string needs_active_and_rig(const Editor& editor) {
+  if (const std::string why = needs_active(editor); !why.empty()) return why;
+  return editor.document().armature ? "" : "Import a rig first";
+}
+std::string needs_track(const Editor& editor) {
+  if (const std::string why = needs_shown_strips(editor); !why.empty()) return why;
+  return active_track(editor) ? "" : "Add a track first";
+}
+std::string needs_strips_and_rig(const Editor& editor) {
+  if (const std::string why = needs_clip(editor); !why.empty()) return why;
+  if (!shown_clip(editor)->strips) return "Make strips of the clip first";
+  return editor.document().armature ? "" : "Import a rig first";
+}
+std::string needs_clip_of_strips(const Editor& editor) {
+  if (!needs_clip(editor).empty()) return needs_clip(editor);
+  const auto& clips = editor.document().clips;
+  const bool any = std::any_of(clips.begin(), clips.end(), [](const auto& clip) { return !clip->strips; });
+  return any ? "" : "Import a motion first: strips play other clips";
+}
+
+// ---- Strips of clips
+
+std::string track_name_of(const Strips& strips) {
+  return unique_track_name(strips, "Track " + std::to_string(strips.tracks.size() + 1));
+}
+
+// Adds a clip with a strip of the shown clip, and shows it.
+void make_strips(Editor& editor) {
+  stop_playing(editor);
+  settle_frame(editor);
+  Document next = editor.document();
+  const std::shared_ptr<const Clip> source = next.clips[static_cast<std::size_t>(next.clip)];
+  Clip clip{.name = unique_clip_name(next.clips, source->name + " strips"), .rate = source->rate};
+  clip.range_start = source->range_start;
+  clip.range_end = source->range_end;
+  Strips strips;
+  strips.tracks.push_back({.name = track_name_of(strips), .strips = {strip_of(source, strips, source->range_start)}});
+  const std::string name = strips.tracks[0].strips[0].name;
+  clip.strips = std::make_shared<const Strips>(std::move(strips));
+  next.clips.push_back(std::make_shared<const Clip>(std::move(clip)));
+  next.clip = static_cast<int>(next.clips.size()) - 1;
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  commit(editor, "Make strips of " + source->name, std::move(next));
+  show_strips(editor, true);
+  choose_strip(editor, name);
+}
+
+// Returns the active track if it has room for the strip, or the lowest that is above it and has; otherwise a new one.
+std::size_t track_for(Strips& strips, const Strip& strip, std::size_t from, double rate) {
+  for (std::size_t t = from; t < strips.tracks.size(); ++t)
+    if (has_room(strips.tracks[t], strip.start, std::max(strip.start + 1, end_of(strip, rate)), rate)) return t;
+  strips.tracks.push_back({.name = track_name_of(strips)});
+  return strips.tracks.size() - 1;
+}
+
+// Adds a strip of the clip at the frame. A strip on the lowest track begins where the body is, so that one take goes
+// on where another ends; one on a higher track lets go of the body at its ends.
+void add_strip(Editor& editor, const std::shared_ptr<const Clip>& source, int frame) {
+  std::string name;
+  const std::size_t from = active_track(editor).value_or(0);
+  const auto armature = editor.document().armature;
+  const double rate = strips_rate(editor);
+  const auto roots = armature ? std::count_if(armature->bones.begin(), armature->bones.end(),
+                                              [](const Bone& bone) { return bone.parent < 0; })
+                              : 0;
+  change_strips(editor, "Add strip of " + source->name, [&](Strips& strips) {
+    Strip strip = strip_of(source, strips, frame);
+    name = strip.name;
+    const std::size_t t = track_for(strips, strip, from, rate);
+    strip.holds = t == 0;
+    const bool follows = t == 0 && !strips.tracks[t].strips.empty() && strips.tracks[t].strips.front().start < frame;
+    insert_strip(strips.tracks[t], std::move(strip));
+    if (!follows || roots != 1) return;
+    const StripPlace place = *find_strip(strips, name);
+    strips.tracks[place.track].strips[place.index].place = place_where_body_is(strips, place, armature, rate);
+  });
+  choose_strip(editor, name);
+}
+
+void ask_strip(Editor& editor) {
+  if (!shown_strips(editor)) make_strips(editor);
+  show_strips(editor, true);
+  std::vector<std::shared_ptr<const Clip>> sources;
+  std::vector<std::string> names;
+  for (const auto& clip : editor.document().clips)
+    if (!clip->strips) sources.push_back(clip), names.push_back(clip->name);
+  editor.open_dialog(
+      make_form({"Add strip",
+                 "Adds a strip of a clip on the active track, or above it where that has no room.",
+                 "Add",
+                 {choice_of("Clip", "The clip that the strip plays.", names),
+                  number_of("Start", "The frame at which it begins.", shown_frame(editor), -100'000, 1e6, "%.0f")},
+                 [sources](const Editor& e, const std::vector<FormField>& fields) {
+                   if (!shown_strips(e)) throw Error("there are no strips any more", "strip", "open this again");
+                   const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
+                   const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
+                   return std::to_string(frames) + (frames == 1 ? " frame." : " frames of the clip.");
+                 },
+                 [sources](Editor& e, const std::vector<FormField>& fields) {
+                   const auto& source = sources[static_cast<std::size_t>(fields[0].chosen)];
+                   const auto& clips = e.document().clips;
+                   if (!shown_strips(e) || std::find(clips.begin(), clips.end(), source) == clips.end())
+                     throw Error("the clip is not there any more", source->name, "open this again");
+                   add_strip(e, source, static_cast<int>(std::lround(fields[1].value)));
+                 }}));
+}
+
+void bake_strips(Editor& editor) {
+  stop_playing(editor);
+  const auto source = graph_clip(editor);
+  const auto [first, last] = playing_range(editor);
+  if (std::int64_t{last} - first >= kMostFrames)
+    throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
+                "set a shorter range");
+  start_task(editor, "Bake strips to clip", [source, rig = editor.document().armature](Progress& progress) -> Finish {
+    auto baked = std::make_shared<Clip>(baked_clip(source, rig, progress));
+    baked->name += " baked";
+    return [=](Editor& e) {
+      take_in_clip(e, source, rig, "Bake strips to clip", *baked, true);
+      show_face(e, TimelineFace::Rows);
+      e.messages.ok(std::to_string(baked->motion->frame_count) + " frames baked",
+                    "The clip " + shown_clip(e)->name + " plays what the strips play");
+    };
+  });
+}
+
+// ---- Strips
+
+void choose_all(Editor& editor) {
+  for (const StripTrack& track : shown_strips(editor)->tracks)
+    for (const Strip& strip : track.strips) strip_view(editor).chosen.insert(strip.name);
+}
+
+void delete_chosen(Editor& editor) {
+  const std::set<std::string> chosen = chosen_strips(editor);
+  change_strips(editor, chosen.size() == 1 ? "Delete strip" : "Delete strips", [&](Strips& strips) {
+    for (StripTrack& track : strips.tracks)
+      std::erase_if(track.strips, [&](const Strip& strip) { return chosen.contains(strip.name); });
+  });
+}
+
+void mute_chosen(Editor& editor) {
+  const std::set<std::string> chosen = chosen_strips(editor);
+  bool any_plays = false;
+  for (const std::string& name : chosen) {
+    const StripPlace place = *find_strip(*shown_strips(editor), name);
+    any_plays = any_plays || !shown_strips(editor)->tracks[place.track].strips[place.index].muted;
+  }
+  change_strips(editor, any_plays ? "Mute strips" : "Unmute strips", [&](Strips& strips) {
+    for (StripTrack& track : strips.tracks)
+      for (Strip& strip : track.strips)
+        if (chosen.contains(strip.name)) strip.muted = any_plays;
+  });
+}
+
+// Splits the selected strips at the shown frame, or where none is selected all that play there.
+void split_at_head(Editor& editor) {
+  const int frame = shown_frame(editor);
+  const double rate = strips_rate(editor);
+  std::set<std::string> wanted = chosen_strips(editor), seconds;
+  if (wanted.empty())
+    for (const StripTrack& track : shown_strips(editor)->tracks)
+      for (const Strip& strip : track.strips) wanted.insert(strip.name);
+  Strips next = *shown_clip(editor)->strips;
+  for (const std::string& name : wanted) {
+    const StripPlace place = *find_strip(next, name);
+    StripTrack& track = next.tracks[place.track];
+    const Strip strip = track.strips[place.index];
+    if (frame <= strip.start || frame >= end_of(strip, rate)) continue;
+    auto [left, right] = split(strip, frame, rate, unique_strip_name(next, name));
+    seconds.insert(right.name);
+    track.strips[place.index] = std::move(left);
+    insert_strip(track, std::move(right));
+  }
+  if (seconds.empty())
+    throw Error("no selected strip plays on both sides of this frame", "frame " + std::to_string(frame),
+                "move the play head into a strip");
+  change_strips(editor, "Split strips", [&](Strips& strips) { strips = std::move(next); });
+  strip_view(editor).chosen = seconds;
+  strip_view(editor).active = *seconds.begin();
+}
+
+void set_bones(Editor& editor, bool all) {
+  std::optional<std::set<std::string>> bones;
+  if (!all) {
+    const Armature& armature = *editor.document().armature;
+    bones.emplace();
+    std::vector<char> inside(armature.bones.size());
+    for (const int bone : editor.selection.bones) inside[static_cast<std::size_t>(bone)] = 1;
+    for (std::size_t bone = 0; bone < armature.bones.size(); ++bone) {
+      const int parent = armature.bones[bone].parent;
+      if (parent >= 0 && inside[static_cast<std::size_t>(parent)]) inside[bone] = 1;
+      if (inside[bone]) bones->insert(armature.bones[bone].name);
+    }
+  }
+  change_active_strip(editor, "Set bones of strip", [&](Strip& strip) { strip.bones = bones; });
+}
+std::string needs_bones(const Editor& editor) {
+  if (const std::string why = needs_active_and_rig(editor); !why.empty()) return why;
+  const auto count = std::ssize(editor.document().armature->bones);
+  const bool fits = std::all_of(editor.selection.bones.begin(), editor.selection.bones.end(),
+                                [&](int bone) { return bone >= 0 && bone < count; });
+  return fits && !editor.selection.bones.empty() ? "" : "Select bones first";
+}
+
+void begin_where_body_is(Editor& editor) {
+  const auto armature = editor.document().armature;
+  const double rate = strips_rate(editor);
+  const std::string name = active_strip(editor)->name;
+  change_strips(editor, "Begin strip where the body is", [&](Strips& strips) {
+    const StripPlace place = *find_strip(strips, name);
+    strips.tracks[place.track].strips[place.index].place = place_where_body_is(strips, place, armature, rate);
+  });
+}
+
+// ---- Tracks
+
+void change_track(Editor& editor, const std::string& label, const std::function<void(StripTrack&)>& edit) {
+  const std::size_t track = *active_track(editor);
+  change_strips(editor, label, [&](Strips& strips) { edit(strips.tracks[track]); });
+}
+
+void add_track(Editor& editor) {
+  if (!shown_strips(editor)) make_strips(editor);
+  show_strips(editor, true);
+  if (shown_strips(editor)->tracks.size() >= kMostTracks)
+    throw Error("no more tracks can be added", std::to_string(kMostTracks) + " tracks", "delete one first");
+  const std::string name = track_name_of(*shown_strips(editor));
+  change_strips(editor, "Add track", [&](Strips& strips) { strips.tracks.push_back({.name = name}); });
+  strip_view(editor).track = name;
+}
+
+void move_track(Editor& editor, int by) {
+  const std::size_t track = *active_track(editor), to = track + static_cast<std::size_t>(by);
+  const std::string name = shown_strips(editor)->tracks[track].name;
+  if (to >= shown_strips(editor)->tracks.size())
+    return editor.messages.info(name + (by > 0 ? " is the highest track" : " is the lowest track"));
+  change_strips(editor, by > 0 ? "Move track up" : "Move track down",
+                [&](Strips& strips) { std::swap(strips.tracks[track], strips.tracks[to]); });
+  strip_view(editor).track = name;
+}
+
+void delete_track(Editor& editor) {
+  const std::size_t track = *active_track(editor);
+  change_strips(editor, "Delete track", [&](Strips& strips) {
+    strips.tracks.erase(strips.tracks.begin() + static_cast<std::ptrdiff_t>(track));
+  });
+}
+
+void ask_track_name(Editor& editor) {
+  const std::string before = shown_strips(editor)->tracks[*active_track(editor)].name;
+  editor.open_dialog(make_form({"Rename track",
+                                "Changes the name of the active track.",
+                                "Rename",
+                                {text_of("Name", "The track's name.", before)},
+                                [](const Editor&, const std::vector<FormField>& fields) -> std::string {
+                                  if (fields[0].text.empty()) throw Error("a track needs a name", "rename", "type one");
+                                  return "";
+                                },
+                                [before](Editor& e, const std::vector<FormField>& fields) {
+                                  const std::string& name = fields[0].text;
+                                  const auto track = active_track(e);
+                                  if (!track) throw Error("there is no track any more", before, "open this again");
+                                  if (name == before) return;
+                                  change_track(e, "Rename track", [&](StripTrack& one) {
+                                    one.name = unique_track_name(*shown_clip(e)->strips, name);
+                                  });
+                                  strip_view(e).track = shown_strips(e)->tracks[*track].name;
+                                }}));
+}
+
+bool is_track(const Editor& editor, bool StripTrack::*flag) {
+  const auto track = active_track(editor);
+  return track && shown_strips(editor)->tracks[*track].*flag;
+}
+
+std::vector<Operator> track_operators() {
+  return {
+      {"strips.add_track", "Add strip track", icon::kAdd, "Motion", "Add an empty track above the others.", add_track,
+       needs_clip_of_strips},
+      {"strips.rename_track", "Rename strip track...", icon::kRename, "Motion", "Rename the active track.",
+       ask_track_name, needs_track},
+      {"strips.track_up", "Move strip track up", "", "Motion", "Let the active track play over the one above it.",
+       [](Editor& e) { move_track(e, 1); }, needs_track},
+      {"strips.track_down", "Move strip track down", "", "Motion", "Let the active track play below the one under it.",
+       [](Editor& e) { move_track(e, -1); }, needs_track},
+      {"strips.mute_track", "Mute strip track", "", "Motion", "Switch the active track's strips off, or on again.",
+       [](Editor& e) { change_track(e, "Mute track", [](StripTrack& track) { track.muted = !track.muted; }); },
+       needs_track, [](const Editor& e) { return is_track(e, &StripTrack::muted); }},
+      {"strips.solo_track", "Solo strip track", "", "Motion", "Let only the tracks play that have this switched on.",
+       [](Editor& e) { change_track(e, "Solo track", [](StripTrack& track) { track.solo = !track.solo; }); },
+       needs_track, [](const Editor& e) { return is_track(e, &StripTrack::solo); }},
+      {"strips.delete_track", "Delete strip track", icon::kTrash, "Motion", "Delete the active track with its strips.",
+       delete_track, needs_track},
+  };
+}
+
+}  // namespace
+
+std::vector<Operator> strip_operators() {
+  std::vector<Operator> all{
+      {"motion.next_face", "Next timeline view", "", "Motion",
+       "Show the clip's keys, its curves or its strips: the one after what is shown.",
+       [](Editor& e) { show_face(e, static_cast<TimelineFace>((static_cast<int>(shown_face(e)) + 1) % 3)); },
+       needs_clip},
+      {"motion.show_rows", "Timeline rows", "", "Motion", "Show the markers, the clip and the keys in the timeline.",
+       [](Editor& e) { show_face(e, TimelineFace::Rows); }, needs_clip,
+       [](const Editor& e) { return shown_face(e) == TimelineFace::Rows; }},
+      {"strips.show", "Strips", "", "Motion",
+       "Show the clip's strips in place of the timeline's rows, or the rows again.",
+       [](Editor& e) { show_face(e, strips_are_shown(e) ? TimelineFace::Rows : TimelineFace::Strips); }, needs_clip,
+       strips_are_shown},
+      {"strips.make", "Make strips of the clip", "", "Motion",
+       "Add a clip that plays the shown clip as a strip, over which others may be laid.", make_strips,
+       [](const Editor& e) {
+         if (const std::string why = needs_clip(e); !why.empty()) return why;
+         return shown_clip(e)->strips ? std::string("This clip is made of strips already") : std::string();
+       }},
+      {"strips.add", "Add strip...", icon::kAdd, "Motion", "Add a strip of another clip at the play head.", ask_strip,
+       needs_clip_of_strips},
+      {"strips.select", "Select and drag strips", "", "Motion",
+       "Select strips, drag them or their ends. Away from strips, draw a rectangle that selects.", press_strips,
+       needs_shown_strips},
+      {"strips.select_all", "Select all strips", "", "Motion", "Select every strip of the clip.", choose_all,
+       needs_shown_strips},
+      {"strips.select_none", "Deselect strips", "", "Motion", "Deselect all strips.",
+       [](Editor& e) { strip_view(e).chosen.clear(), strip_view(e).active.clear(); }, needs_chosen},
+      {"strips.pan", "Pan the strips", "", "Motion", "Move the shown frames and tracks.", pan_strips,
+       needs_shown_strips},
+      {"strips.move", "Move strips", icon::kMove, "Motion",
+       "Move the selected strips in time with the pointer, or by a typed number of frames.", begin_moving_strips,
+       needs_chosen},
+      {"strips.duplicate", "Duplicate strips", icon::kDuplicate, "Motion",
+       "Copy the selected strips and move the copies with the pointer.", begin_duplicating_strips, needs_chosen},
+      {"strips.split", "Split strips", icon::kCut, "Motion",
+       "Split the selected strips at the play head, or all that play there.", split_at_head, needs_shown_strips},
+      {"strips.mute", "Mute strips", "", "Motion", "Switch the selected strips off, or on again.", mute_chosen,
+       needs_chosen},
+      {"strips.delete", "Delete strips", icon::kTrash, "Motion", "Delete the selected strips. Their clips stay.",
+       delete_chosen, needs_chosen},
+      {"strips.bones_selected", "Strip on selected bones", "", "Motion",
+       "Let the active strip change only the selected bones, and all that hang on them.",
+       [](Editor& e) { set_bones(e, false); }, needs_bones},
+      {"strips.bones_all", "Strip on all bones", "", "Motion", "Let the active strip change every bone.",
+       [](Editor& e) { set_bones(e, true); }, needs_active},
+      {"strips.begin_here", "Begin strip where the body is", "", "Motion",
+       "Move and turn the active strip along the ground to where the body is as it begins.", begin_where_body_is,
+       needs_active_and_rig},
+      {"strips.clear_place", "Begin strip at its own place", "", "Motion",
+       "Let the active strip begin at the place and with the heading of its clip.",
+       [](Editor& e) {
+         change_active_strip(e, "Begin strip at its own place", [](Strip& strip) { strip.place = {}; });
+       },
+       needs_active},
+      {"strips.bake", "Bake strips to clip", "", "Motion", "Add a clip that plays what the strips play together.",
+       bake_strips, needs_strips_and_rig},
+  };
+  for (Operator& op : track_operators()) all.push_back(std::move(op));
+  return all;
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/strip_panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "editor/context/operator_button.h"
+#include "editor/motion/timeline_ruler.h"
+#include "editor/motion/timeline_tool.h"
+#include "editor/ui/icons.h"
+#include "editor/ui/section.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr float kList = 176, kSwitch = 20;  // widths of the list of tracks and of a track's switch, pixels at scale 1
+constexpr float kRounding = 4, kLeastName = 18;
+constexpr float kLeastCycle = 6;  // narrower cycles of a strip get no lines between them, pixels at scale 1
+
+// ---- The list of tracks
+
+// Draws a switch of a track and runs its operator when it is pressed. Returns whether the strips were changed.
+bool draw_switch(Editor& editor, const StripTrack& track, const Rect& place, const char* letter, const char* id,
+                 bool on) {
+  const Look& look = editor.look;
+  const Pressed pressed = press_area(editor, letter, place);
+  fill(place, pressed.hovered ? look.theme.hover : on ? look.theme.accent_soft : look.theme.raised, look.px(3));
+  if (on) outline(place, look.theme.accent, look.px(3), look.line());
+  put_text(editor, look.fonts.small, on ? look.theme.accent_text : look.theme.text2, place, letter, Align::Centre);
+  const Operator* op = find_operator(editor, id);
+  if (pressed.hovered) operator_tooltip(editor, *op, place);
+  if (!pressed.clicked) return false;
+  strip_view(editor).track = track.name;
+  run(editor, *op);
+  return true;
+}
+
+void draw_tracks(Editor& editor, const Rect& area) {
+  const Look& look = editor.look;
+  const auto active = active_track(editor);
+  bool renames = false;
+  ImGui::PushClipRect(im(area.low), im(area.high), true);
+  for (std::size_t t = shown_strips(editor)->tracks.size(); t-- > 0;) {
+    const StripTrack& track = shown_strips(editor)->tracks[t];
+    const Rect line = track_rect(editor, t);
+    const Rect row{{area.low.x, line.low.y}, {area.high.x, line.high.y}};
+    if (intersection(row, area).empty()) continue;
+    const PathScope path(editor, "track " + track.name);
+    const bool is_active = active == t;
+    fill(row, is_active ? look.theme.accent_soft : t % 2 ? look.theme.panel : look.theme.row_alt);
+    const float high = row.high.y - look.px(3), low = row.low.y + look.px(3);
+    const Rect solo{{row.high.x - look.px(kSwitch + 6), low}, {row.high.x - look.px(6), high}};
+    const Rect mute{{solo.low.x - look.px(kSwitch + 3), low}, {solo.low.x - look.px(3), high}};
+    const Rect name{{row.low.x, row.low.y}, {mute.low.x - look.px(4), row.high.y}};
+    const Pressed pressed = press_area(editor, "name", intersection(name, area));
+    if (pressed.clicked) strip_view(editor).track = track.name;
+    put_text(editor, is_active ? look.fonts.semibold : look.fonts.regular,
+             plays(*shown_strips(editor), t) ? look.theme.text : look.theme.text3,
+             Rect{{row.low.x + look.px(12), row.low.y}, name.high}, track.name);
+    renames = renames || pressed.double_clicked;
+    if (draw_switch(editor, track, mute, "M", "strips.mute_track", track.muted)) break;
+    if (draw_switch(editor, track, solo, "S", "strips.solo_track", track.solo)) break;
+  }
+  ImGui::PopClipRect();
+  if (renames) run(editor, "strips.rename_track");
+}
+
+// ---- The strips
+
+// Darkens the corner of a strip above the line along which its influence grows or goes.
+void draw_fade(const Look& look, const glm::vec2& end, const glm::vec2& full, Colour line) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const glm::vec2 corner(end.x, full.y);
+  list.AddTriangleFilled(im(corner), im(full), im(end), with_alpha(look.theme.panel, 0.75f));
+  list.AddLine(im(end), im(full), line, 1.2f * look.scale);
+}
+
+std::string title_of(const Strip& strip) {
+  const char* sign = strip.blend == StripBlend::Replace ? "" : "+ ";
+  return sign + strip.name;
+}
+
+// Draws lines between the cycles of a strip that repeats.
+void draw_cycles(Editor& editor, const Strip& strip, const Rect& place, Colour colour) {
+  const double steps = strip.last - strip.first, ratio = frames_per_frame(strip, strips_rate(editor));
+  const Look& look = editor.look;
+  const double width = steps / ratio / editor.timeline->window.count * editor.timeline->ruler.width();
+  if (steps <= 0 || width < look.px(kLeastCycle)) return;
+  for (double cycle = std::floor(strip.skip / steps) + 1; cycle < strip.repeat; ++cycle) {
+    const float x = std::round(x_of(*editor.timeline, strip.start + (cycle * steps - strip.skip) / ratio));
+    if (x > place.high.x) return;
+    if (x > place.low.x) fill({{x, place.low.y + look.px(3)}, {x + look.line(), place.high.y - look.px(3)}}, colour);
+  }
+}
+
+void draw_strip(Editor& editor, const StripPlace& where) {
+  const Look& look = editor.look;
+  const StripView& view = strip_view(editor);
+  const StripTrack& track = shown_strips(editor)->tracks[where.track];
+  const Strip& strip = track.strips[where.index];
+  const Rect place = strip_rect(editor, where), seen = intersection(place, view.rows);
+  if (seen.empty()) return;
+  const bool sounds = plays(*shown_strips(editor), where.track) && !strip.muted,
+             chosen = view.chosen.contains(strip.name);
+  const float alpha = sounds ? 1.0f : 0.4f, round = look.px(kRounding);
+  const Colour edge = with_alpha(chosen ? look.theme.select : look.theme.accent, chosen ? 1.0f : alpha);
+  fill(place, look.theme.panel, round);  // what lies below does not shine through
+  fill(place, with_alpha(look.theme.accent_soft, alpha), round);
+  draw_cycles(editor, strip, place, with_alpha(look.theme.accent_text, 0.5f * alpha));
+  const int fade_in = fade_in_of(track, where.index, strips_rate(editor));
+  const auto frames_wide = [&](int frames) {
+    return static_cast<float>(frames / editor.timeline->window.count) * editor.timeline->ruler.width();
+  };
+  ImGui::PushClipRect(im(seen.low), im(seen.high), true);
+  if (fade_in > 0)
+    draw_fade(look, {place.low.x, place.high.y}, {place.low.x + frames_wide(fade_in), place.low.y}, edge);
+  if (strip.blend_out > 0)
+    draw_fade(look, {place.high.x, place.high.y}, {place.high.x - frames_wide(strip.blend_out), place.low.y}, edge);
+  ImGui::PopClipRect();
+  outline(place, edge, round, chosen ? 2 * look.line() : look.line());
+  const Rect words{{std::max(place.low.x, view.rows.low.x) + look.px(8), place.low.y},
+                   {std::min(place.high.x, view.rows.high.x) - look.px(6), place.high.y}};
+  if (words.width() > look.px(kLeastName))
+    put_text(editor, view.active == strip.name ? look.fonts.semibold : look.fonts.regular,
+             sounds ? look.theme.text : look.theme.text2, words, title_of(strip));
+}
+
+// Draws a line from the end of a strip to the next one of its track, where its last pose is held.
+void draw_hold(Editor& editor, const StripPlace& where) {
+  const Look& look = editor.look;
+  const StripView& view = strip_view(editor);
+  const StripTrack& track = shown_strips(editor)->tracks[where.track];
+  const Strip& strip = track.strips[where.index];
+  const int end = end_of(strip, strips_rate(editor));
+  float until = view.rows.high.x;
+  for (const Strip& other : track.strips) {
+    if (other.muted) continue;
+    if (end_of(other, strips_rate(editor)) > end && other.start <= end) return;
+    if (other.start > end) until = std::min(until, x_of(*editor.timeline, other.start));
+  }
+  const Rect row = track_rect(editor, where.track);
+  const float y = std::round(row.centre().y), from = std::max(x_of(*editor.timeline, end), view.rows.low.x);
+  if (until > from) fill({{from, y}, {until, y + look.line()}}, look.theme.line2);
+}
+
+void draw_rows(Editor& editor) {
+  const Look& look = editor.look;
+  const StripView& view = strip_view(editor);
+  const Strips& strips = *shown_strips(editor);
+  for (std::size_t t = 0; t < strips.tracks.size(); ++t)
+    fill(intersection(track_rect(editor, t), view.rows), t % 2 ? look.theme.panel : look.theme.row_alt);
+  for (std::size_t t = 0; t < strips.tracks.size(); ++t)
+    for (std::size_t i = 0; i < strips.tracks[t].strips.size(); ++i)
+      if (const Strip& strip = strips.tracks[t].strips[i]; strip.holds && !strip.muted) draw_hold(editor, {t, i});
+  for (std::size_t t = 0; t < strips.tracks.size(); ++t)
+    for (std::size_t i = 0; i < strips.tracks[t].strips.size(); ++i) {
+      const Rect place = intersection(strip_rect(editor, {t, i}), view.rows);
+      if (!place.empty()) register_widget(editor, "strip " + strips.tracks[t].strips[i].name, place);
+      draw_strip(editor, {t, i});
+    }
+  if (!view.box) return;
+  const Rect box = intersection(*view.box, view.rows);
+  fill(box, with_alpha(look.theme.select, 0.15f));
+  outline(box, look.theme.select, 0, look.line());
+}
+
+void place_rows(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  const float left = rect.low.x + look.px(kList), right = rect.high.x - look.px(kRulerEnds);
+  timeline.marks = timeline.lane = timeline.keys = {};
+  timeline.ruler = {{left, rect.low.y}, {right, rect.low.y + look.px(kRulerHeight)}};
+  strip_view(editor).rows = {{left, timeline.ruler.high.y}, {right, std::max(timeline.ruler.high.y + 1, rect.high.y)}};
+  editor.timeline_area = timeline.area = {timeline.ruler.low, strip_view(editor).rows.high};
+}
+
+}  // namespace
+
+void draw_strips(Editor& editor, const Rect& rect) {
+  const Look& look = editor.look;
+  Timeline& timeline = *editor.timeline;
+  place_rows(editor, rect);
+  StripView& view = strip_view(editor);
+  const Rect list{{rect.low.x, timeline.ruler.high.y}, {rect.low.x + look.px(kList), rect.high.y}};
+  const float top = rect.low.y + look.px(1), bottom = rect.low.y + look.px(kRulerHeight - 1);
+  operator_button(editor, "strips.add", {{list.high.x - look.px(97), top}, {list.high.x - look.px(33), bottom}},
+                  "Strip");
+  operator_button(editor, "strips.add_track", {{list.high.x - look.px(30), top}, {list.high.x - look.px(4), bottom}},
+                  "");
+  fill({{list.high.x, rect.low.y}, {list.high.x + look.line(), rect.high.y}}, look.theme.line);
+  register_widget(editor, "ruler", timeline.ruler);
+  ImGui::PushClipRect(im(timeline.area.low), im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
+  draw_ruler(editor);
+  ImGui::PopClipRect();
+  if (!shown_strips(editor) || shown_strips(editor)->tracks.empty()) {
+    const bool has_strips = shown_strips(editor) != nullptr;
+    const Rect all{{list.low.x, list.low.y}, view.rows.high};
+    const Operator* op = find_operator(editor, has_strips ? "strips.add" : "strips.make");
+    if (empty_state(editor, all, has_strips ? "No strips yet" : "This clip has no strips", op->label)) run(editor, *op);
+    return;
+  }
+  scroll_tracks(editor, 0);  // fewer tracks may be left than were scrolled over
+  register_widget(editor, "strips", view.rows);
+  draw_tracks(editor, list);
+  if (!shown_strips(editor)) return;  // a switch of a track may have replaced the document
+  ImGui::PushClipRect(im(view.rows.low), im(view.rows.high + glm::vec2(look.px(kRulerEnds), 0)), true);
+  draw_rows(editor);
+  ImGui::PopClipRect();
+  ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)),
+                      im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
+  draw_play_head(editor, {});
+  ImGui::PopClipRect();
+}
+
+}  // namespace limber::editor

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Draws the strips' view in place of the timeline's rows: the tracks' names with their switches, and the strips.
+#pragma once
+
+#include "editor/motion/strip_view.h"
+
+namespace limber::editor {
+
+void draw_strips(Editor& editor, const Rect& rect);
+
+}  // namespace limber::editor

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/motion/strip_properties_panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/clip_speed.h"
+#include "editor/context/operator.h"
+#include "editor/context/operator_button.h"
+#include "editor/motion/strip_view.h"
+#include "editor/ui/input_fields.h"
+
+namespace limber::editor {
+
+namespace {
+
+constexpr double kFar = 1e6;  // farthest frame that can be typed
+
+// A number of the active strip that the panel shows and changes.
+struct StripNumber {
+  const char *title, *tip;
+  double shown = 0, low = 0, high = 1;
+  const char *format = "%.0f", *unit = "";
+  bool filled = false;
+  std::function<void(Strip&, double)> set;
+};
+
+// Draws the field. View and body show the change while the user edits the number, and one edit is committed at the end.
+void draw_number(Editor& editor, const Rect& rect, const StripNumber& number) {
+  auto& edited = editor.edited_number;
+  const std::string name = std::string("Strip ") + number.title;
+  double value = edited.name == name ? edited.value : number.shown;
+  bool committed = false;
+  if (number_field(editor, name, rect, value, number.low, number.high, number.format, number.unit, number.filled,
+                   committed)) {
+    edited = {name, value};
+    preview_active_strip(editor, [&](Strip& strip) { number.set(strip, value); });
+  }
+  if (rect.contains(editor.input.pointer) && !editor.drag) tooltip(editor, rect, number.title, number.tip);
+  if (!committed || edited.name != name) return;
+  const double wanted = edited.value;
+  edited = {};
+  attempt(editor, "Strip", [&](Editor& e) {
+    change_active_strip(e, std::string("Set strip's ") + number.title,
+                        [&](Strip& strip) { number.set(strip, wanted); });
+  });
+}
+
+void draw_row(Editor& editor, Column& column, const StripNumber& number) {
+  if (active_strip(editor)) draw_number(editor, column.property(number.title), number);
+}
+
+int whole(double value) { return static_cast<int>(std::lround(value)); }
+
+// Draws a check box for a flag of the strip.
+void draw_flag(Editor& editor, const Rect& rect, const char* name, const char* tip, bool Strip::*flag) {
+  const Strip* strip = active_strip(editor);
+  if (!strip) return;
+  bool on = strip->*flag;
+  const bool pressed = checkbox(editor, name, rect, name, on);
+  if (rect.contains(editor.input.pointer)) tooltip(editor, rect, name, tip);
+  if (pressed)
+    change_active_strip(editor, std::string("Set strip's ") + name, [&](Strip& changed) { changed.*flag = on; });
+}
+
+std::pair<Rect, Rect> halves(const Editor& editor, const Rect& rect) {
+  const float middle = std::round(rect.centre().x), gap = editor.look.px(3);
+  return {{rect.low, {middle - gap, rect.high.y}}, {{middle + gap, rect.low.y}, rect.high}};
+}
+
+void draw_name(Editor& editor, Column& column, const Strip& strip) {
+  std::string name = strip.name;
+  if (!text_field(editor, "Strip name", column.property("Name"), name) || name.empty() || name == strip.name) return;
+  const std::string before = strip.name;
+  const std::string unique = unique_strip_name(*shown_strips(editor), name);
+  change_active_strip(editor, "Rename strip", [&](Strip& changed) { changed.name = unique; });
+  StripView& view = strip_view(editor);
+  view.chosen.erase(before);
+  view.chosen.insert(unique);
+  view.active = unique;
+}
+
+void draw_clip(Editor& editor, Column& column, const Strip& strip) {
+  std::vector<std::shared_ptr<const Clip>> sources;
+  std::vector<std::string> names;
+  int chosen = 0;
+  for (const auto& clip : editor.document().clips) {
+    if (clip->strips) continue;
+    if (clip == strip.clip) chosen = static_cast<int>(sources.size());
+    sources.push_back(clip);
+    names.push_back(clip->name);
+  }
+  const PathScope path(editor, "Strip clip");
+  if (!choice_field(editor, column.property("Clip"), names, chosen)) return;
+  change_active_strip(editor, "Set strip's clip", [&](Strip& changed) {
+    changed.clip = sources[static_cast<std::size_t>(chosen)];
+    changed.first = changed.clip->range_start;
+    changed.last = std::max(changed.first, changed.clip->range_end);
+    changed.skip = 0;
+  });
+}
+
+void draw_time(Editor& editor, Column& column, const Strip& strip) {
+  draw_row(editor, column,
+           {"Start", "The frame at which the strip begins.", double(strip.start), -kFar, kFar, "%.0f", "", false,
+            [](Strip& s, double value) { s.start = whole(value); }});
+  if (!active_strip(editor)) return;
+  const auto [first, last] = halves(editor, column.property("Frames"));
+  draw_number(editor, first,
+              {"First frame", "The clip's frame at which a cycle of the strip begins.", double(strip.first), -kFar,
+               kFar, "%.0f", "", false, [](Strip& s, double value) { s.first = std::min(whole(value), s.last); }});
+  if (!active_strip(editor)) return;
+  draw_number(
+      editor, last,
+      {"Last frame", "The clip's frame at which a cycle of the strip ends.", double(active_strip(editor)->last), -kFar,
+       kFar, "%.0f", "", false, [](Strip& s, double value) { s.last = std::max(whole(value), s.first); }});
+  if (const Strip* now = active_strip(editor))
+    draw_row(editor, column,
+             {"Speed", "2 plays twice as fast, 0.5 half as fast.", now->speed, kSlowest, kFastest, "%.2f", "\u00d7",
+              false, [](Strip& s, double value) { s.speed = value; }});
+  if (const Strip* now = active_strip(editor))
+    draw_row(editor, column,
+             {"Repeat", "How many cycles of its frames the strip plays.", now->repeat, 0.01, 1000, "%.2f", "\u00d7",
+              false, [](Strip& s, double value) { s.repeat = value; }});
+}
+
+void draw_blend(Editor& editor, Column& column, const Strip& strip) {
+  {
+    int chosen = static_cast<int>(strip.blend);
+    const PathScope path(editor, "Strip blend");
+    if (choice_field(editor, column.property("Blend"), {"Replace", "Add", "Add change"}, chosen))
+      change_active_strip(editor, "Set strip's blend",
+                          [&](Strip& changed) { changed.blend = static_cast<StripBlend>(chosen); });
+  }
+  if (const Strip* now = active_strip(editor))
+    draw_row(editor, column,
+             {"Influence", "How much the strip changes the pose below it.", now->influence, 0, 1, "%.2f", "", true,
+              [](Strip& s, double value) { s.influence = value; }});
+  if (!active_strip(editor)) return;
+  const auto [in, out] = halves(editor, column.property("Fade in, out"));
+  draw_number(editor, in,
+              {"Fade in", "Frames over which its influence grows. Over a strip of its track it fades in by itself.",
+               double(active_strip(editor)->blend_in), 0, kLongestBlend, "%.0f", "", false,
+               [](Strip& s, double value) { s.blend_in = whole(value); }});
+  if (!active_strip(editor)) return;
+  draw_number(editor, out,
+              {"Fade out", "Frames over which its influence goes at its end.", double(active_strip(editor)->blend_out),
+               0, kLongestBlend, "%.0f", "", false, [](Strip& s, double value) { s.blend_out = whole(value); }});
+}
+
+void draw_flags(Editor& editor, Column& column) {
+  // Over the whole width, as these names need more room than a field has.
+  const auto row = [&] {
+    const Rect all = column.row(26);
+    const float edge = editor.look.px(10), gap = editor.look.px(2);
+    return Rect{{all.low.x + edge, all.low.y + gap}, {all.high.x - edge, all.high.y - gap}};
+  };
+  const auto [backwards, mirrored] = halves(editor, row());
+  draw_flag(editor, backwards, "Backwards", "The strip plays from its last frame to its first.", &Strip::reversed);
+  draw_flag(editor, mirrored, "Mirrored", "Left and right are swapped.", &Strip::mirrored);
+  const auto [holds, muted] = halves(editor, row());
+  draw_flag(editor, holds, "Holds", "Its last pose stays when it has ended, below the strips that follow.",
+            &Strip::holds);
+  draw_flag(editor, muted, "Muted", "The strip does not play.", &Strip::muted);
+  draw_flag(editor, row(), "Cycles go on",
+            "Each cycle begins at the place and with the heading at which the one before it ended.", &Strip::goes_on);
+}
+
+// Draws two buttons of operators.
+void draw_deeds(Editor& editor, Column& column, const std::string& title, const char* set, const char* words,
+                const char* clear) {
+  const Look& look = editor.look;
+  const Rect rect = column.property(title);
+  const float gap = look.px(4), reset = look.px(52);
+  const Rect second{{rect.high.x - reset, rect.low.y}, rect.high};
+  const Rect first{rect.low, {second.low.x - gap, rect.high.y}};
+  operator_button(editor, set, first, words);
+  if (active_strip(editor)) operator_button(editor, clear, second, "Clear");
+}
+
+void draw_reach(Editor& editor, Column& column, const Strip& strip) {
+  const std::string bones = strip.bones ? std::to_string(strip.bones->size()) : "all";
+  draw_deeds(editor, column, "Bones: " + bones, "strips.bones_selected", "Selected", "strips.bones_all");
+  if (const Strip* now = active_strip(editor))
+    draw_deeds(editor, column, now->place == GroundMove{} ? "Place: own" : "Place: moved", "strips.begin_here",
+               "Body's", "strips.clear_place");
+}
+
+}  // namespace
+
+void draw_strip_properties(Editor& editor, Column& column) {
+  if (!active_strip(editor)) return;
+  if (column.begin_section("Strip", active_strip(editor)->name)) {
+    column.space(4);
+    // Read again before each row, because an edit replaces the strips.
+    draw_name(editor, column, *active_strip(editor));
+    if (const Strip* strip = active_strip(editor)) draw_clip(editor, column, *strip);
+    if (const Strip* strip = active_strip(editor)) draw_time(editor, column, *strip);
+    if (const Strip* strip = active_strip(editor)) draw_blend(editor, column, *strip);
+    if (active_strip(editor)) draw_flags(editor, column);
+    if (const Strip* strip = active_strip(editor)) draw_reach(editor, column, *strip);
+    column.space(6);
+  }
+  column.end_section();
+}
+
+}  // namespace limber::editor

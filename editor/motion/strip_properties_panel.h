@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Section of the Pose workspace with the settings of the active strip, while strips are shown.
+#pragma once
+
+#include "editor/context/editor.h"
+#include "editor/ui/section.h"
+
+namespace limber::editor {
+
+void draw_strip_properties(Editor& editor, Column& column);
+
+}  // namespace limber::editor

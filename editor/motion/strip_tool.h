@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the pointer does in the strips' view: it selects, moves and trims strips, draws selection rectangles and pans.
+//
+// Dragged strips snap to the ends of others and to the play head; with Ctrl they do not. They stop beside others; with
+// Shift they go over them, and those of one track then cross-fade.
+#pragma once
+
+#include "editor/motion/strip_view.h"
+
+namespace limber::editor {
+
+// Handles a press of the left button. On an end of a strip, trims it. On a strip, selects it (Shift: adds it to the
+// selection, or removes it when the button is released at once) and drags the selected strips. Elsewhere, begins a
+// rectangle that selects the strips that it touches.
+void press_strips(Editor& editor);
+// Begins a modal tool that moves the selected strips in time by the pointer or a typed number.
+void begin_moving_strips(Editor& editor);
+// Copies the selected strips and begins to move the copies.
+void begin_duplicating_strips(Editor& editor);
+void pan_strips(Editor& editor);
+
+}  // namespace limber::editor
