@@ -149,7 +149,7 @@ void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   focus_ = false;
- const auto commands = std::count_if(found_.begin(), found_.end(), [](const FoundRow& row) { return row.command; });
+  const auto commands = std::count_if(found_.begin(), found_.end(), [](const FoundRow& row) { return row.command; });
   const std::string count = std::to_string(commands) + " of " + std::to_string(count_commands(editor));
   put_text(editor, look.fonts.small, look.theme.text2,
            Rect{{rect.high.x - look.px(90), rect.low.y}, {rect.high.x - look.px(14), rect.high.y}}, count,
@@ -237,7 +237,10 @@ void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
   float x = left;
   const float y = rect.high.y - look.px(18);
   const std::pair<std::vector<std::string>, const char*> hints[] = {
-      {{"Enter"}, chosen_ < std::ssize(found_) && !found_[chosen_].command ? "read" : "run"}, {{"Up", "Down"}, "select"}, {{"Ctrl", "K"}, "assign a key"}, {{"Esc"}, "close"}};
+      {{"Enter"}, chosen_ < std::ssize(found_) && !found_[chosen_].command ? "read" : "run"},
+      {{"Up", "Down"}, "select"},
+      {{"Ctrl", "K"}, "assign a key"},
+      {{"Esc"}, "close"}};
   for (const auto& [caps, words] : hints) {
     x = put_key_caps(editor, x, y, caps) + look.px(7);
     x = put_text(editor, look.fonts.small, look.theme.text2, glm::vec2(x, y - look.fonts.small->FontSize / 2), words) +
