@@ -7,9 +7,11 @@
 
 #include "core/autorig/joint_axis_fit.h"
 #include "core/body/glide_poses.h"
+#include "core/deform/bake_source.h"
 #include "core/report/whole_bones.h"
 #include "core/resample/fem_shape.h"
 #include "core/resample/pose_path.h"
+#include "core/resample/posed_voxels.h"
 
 namespace limber {
 
@@ -68,6 +70,14 @@ void note_foreign_weights(const Warnings& warnings, const Body& body, const Boun
       whole_bones(body.file.volume, bound.tissue, body.tissues, posed.rig, bound.weights, motions, body.bone_map)));
 }
 
+// Throws Error for a joint that was baked from another body.
+void check_baked(const BakedJoints& baked, const Body& body, const BoundBody& bound) {
+  if (baked.empty()) return;
+  const BakeSource source =
+      bake_source(body.file.volume, bound.tissue, LabelSets(body.tissues).bone, body.rig, bound.weights);
+  for (const std::shared_ptr<const BakedJoint>& joint : baked) check_source(*joint, source);
+}
+
 Method method_of(const PosingSettings& settings, const PosingEvents& events) {
   const DeformationMethod* method = find_method(settings.method);
   if (!method) throw Error("there is no such method", settings.method, "write " + method_summaries(Methods::All));
@@ -120,6 +130,7 @@ void note_results(const Body& body, const BoundBody& bound, const PosingSettings
   if (const std::string overlap = overlap_warning(posed.report.glide, deform.bone_overlap_voxels); !overlap.empty())
     warnings.note({overlap});
   note_shape(warnings, deform, posed.pose, settings.has_contact());
+  warnings.note(doubts_of_baked(deform.baked, settings.glide));
   for (const ObjectReport& object : deform.objects)
     if (object.crossings > 0)
       warnings.note({object.name + " crosses the skin in " + std::to_string(object.crossings) + " pairs of triangles"});
@@ -136,6 +147,7 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
                Progress& progress) {
   const LabelVolume& volume = body.file.volume;
   const Method method = method_of(settings, events);
+  check_baked(settings.resample.baked, body, bound);
   const glm::dvec3 voxel = volume.grid.spacing;
   const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), "glide " + settings.glide);
   Report base = report;

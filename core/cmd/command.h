@@ -21,6 +21,7 @@ struct Report;
 
 namespace limber::cmd {
 
+void add_bake_joint(CLI::App& app);
 void add_batch(CLI::App& app);
 void add_clean_motion(CLI::App& app);
 void add_convert(CLI::App& app);

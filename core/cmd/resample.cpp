@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // limber resample VOLUME --rig RIG [--tissues T] [--bones L,L] [--weights W] [--seams FILE|none] POSE-OPTIONS
-//   [--method lbs|dqs|mix|fem] [--glide off|voxel|joint|MM] [--fit-joints] [--contact] [--quality draft|normal|fine]
+//   [--method lbs|dqs|mix|fem] [--baked JOINT.bake]... [--glide off|voxel|joint|MM] [--fit-joints] [--contact]
+//   [--quality draft|normal|fine]
 //   [--mesher lattice|tetgen] [--obstacle SHAPE]... [--gravity X,Y,Z] [--pressure OUT.csv] [--mesh-out NAME
 //   [--mesh-unit mm|cm]] [--steps NAME] -o OUT [--report R.json]
 //   [--spacing MM] [--nearest] [--mass-exact [--mass-limit PERCENT]] [--with GREY=OUT2] [--landmarks IN.csv=OUT.csv]
@@ -12,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/bake/baked_joint_io.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "core/body/glide_poses.h"
@@ -19,12 +21,14 @@
 #include "core/cmd/body_options.h"
 #include "core/cmd/command.h"
 #include "core/cmd/command_files.h"
+#include "core/cmd/companion.h"
 #include "core/cmd/fem_options.h"
 #include "core/cmd/frame_names.h"
 #include "core/cmd/glide_options.h"
 #include "core/cmd/mesh_share.h"
 #include "core/cmd/pose_options.h"
 #include "core/cmd/seam_options.h"
+#include "core/deform/blend_rule.h"
 #include "core/export/exporter.h"
 #include "core/export/tet_phantom.h"
 #include "core/fem/solve_pose.h"
@@ -52,28 +56,11 @@ struct Options {
                        seams, glide;
   std::string frames;  // frames of the motion, FIRST:LAST[:STEP]
   std::optional<double> spacing;
+  std::vector<std::string> baked;  // names of files of baked joints
   double mass_limit = ResampleSettings{}.mass_limit_percent;
   bool nearest = false, mass_exact = false, fit_joints = false, strict = false;
   std::shared_ptr<FemOptions> fem = std::make_shared<FemOptions>();
 };
-
-// The value IN=OUT of --with or --landmarks: a file that is posed together with the volume, and its output file.
-struct Companion {
-  std::string from, to;
-};
-Companion companion(const std::string& request, const char* what, const char* example) {
-  const size_t equals = request.rfind('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == request.size())
-    throw Error(std::string("this is no ") + what + " and output", request,
-                std::string("write IN=OUT, as in ") + example);
-  return {request.substr(0, equals), request.substr(equals + 1)};
-}
-Companion grey_paths(const std::string& request) {
-  return companion(request, "grey volume", "--with ct.nii.gz=posed-ct.nii.gz");
-}
-Companion landmark_paths(const std::string& request) {
-  return companion(request, "list of landmarks", "--landmarks points.csv=posed-points.csv");
-}
 
 // Returns the options for one frame of a sequence, with the frame's number in the names of all output files.
 Options of_frame(const Options& options, int frame) {
@@ -175,6 +162,9 @@ void check_method(const Options& options) {
   if (options.mass_exact && options.nearest)
     throw Error("--mass-exact needs interpolated labels, which --nearest does not compute", "--mass-exact",
                 "leave one of the two out");
+  if (!options.baked.empty() && options.method != rule_of(Blend::DualQuaternion).word)
+    throw Error("baked joints correct dual quaternions only", "--method " + options.method,
+                "use --method dqs, or leave --baked out");
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
   std::string given = given_fem_option(*options.fem);
@@ -252,6 +242,7 @@ void describe(Report& report, const Options& options) {
   if (!options.pose.flex.empty()) settings["flex"] = options.pose.flex;
   if (!options.pose.motion.empty()) settings["frame"] = std::int64_t{options.pose.frame.value_or(0)};
   if (options.pose.up != "y") settings["up"] = options.pose.up;
+  for (const std::string& path : options.baked) report.inputs.push_back(describe_input(path));
   for (const std::string& path : {options.body.volume, options.body.rig, options.body.tissues, options.weights,
                                   options.pose.pose, options.pose.motion, options.pose.map})
     if (!path.empty()) report.inputs.push_back(describe_input(path));
@@ -300,6 +291,9 @@ std::vector<Landmark> posed_landmarks(const std::vector<Landmark>& landmarks, co
 }
 
 PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
+  BakedJoints baked;
+  for (const std::string& file : options.baked)
+    baked.push_back(std::make_shared<const BakedJoint>(read_baked_joint(file)));
   return {.method = options.method,
           .contact = options.fem->contact,
           .quality = options.fem->quality,
@@ -317,7 +311,8 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
                        .tiled_displacement = options.field.empty() && (!options.report.empty() || options.strict),
                        .jacobian = !options.jacobian.empty(),
                        .overlap = !options.overlap.empty(),
-                       .grey = grey}};
+                       .grey = grey,
+                       .baked = std::move(baked)}};
 }
 
 // Writes the outputs and the report of one posed volume. Returns false if a gate failed that makes --strict fail.
@@ -449,6 +444,11 @@ void add_resample(CLI::App& app) {
          files_written_to(options, {".mesh", ".step"}))
       ->type_name("NAME");
   add_glide_option(*command, options->glide);
+  command
+      ->add_option("--baked", options->baked,
+                   "a joint of limber bake-joint, whose flesh takes the shape of finite elements; for --method dqs; "
+                   "may be repeated")
+      ->type_name("JOINT.bake");
   command->add_flag(
       "--fit-joints", options->fit_joints,
       "first fits the axis of each bent joint so that its bones do not collide, as 'limber fit-joint' does");

@@ -30,6 +30,7 @@ void add_commands(CLI::App& app, const std::string& commit) {
              "\n"
              "limber COMMAND --xml describes a command for 3D Slicer (Slicer Execution Model).");
   app.set_version_flag("--version", LIMBER_VERSION + (commit.empty() ? "" : ", commit " + commit));
+  add_bake_joint(app);
   add_batch(app);
   add_clean_motion(app);
   add_convert(app);

@@ -7,7 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/deform/brick_motions.h"
-#include "core/deform/settled_flesh.h"
+#include "core/deform/flesh_shifts.h"
 #include "core/deform/split_corners.h"
 #include "core/platform/memory.h"
 
@@ -54,14 +54,14 @@ FourNumbers numbers_of(const FourIntegers& four) { return __builtin_convertvecto
 
 PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                            const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
-                           Progress& progress, const SettledFlesh* settled)
+                           Progress& progress, const FleshShifts* shifts)
     : volume_(&volume),
       tissue_(&tissue),
       weights_(&weights),
       world_from_voxel_(world_from_voxel(volume.grid)),
       voxel_from_world_(voxel_from_world(volume.grid)),
       poser_(volume.grid, weights.bones(), posed_from_rest, blend),
-      settled_(settled),
+      shifts_(shifts),
       output_{ratio} {
   const std::int64_t count = std::ssize(tissue.bricks());
   bounds_.resize(count);
@@ -70,6 +70,8 @@ PosedLattice::PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue
   BrickMotions brick_motions(tissue, weights, posed_from_rest);
   moves_as_ = std::move(brick_motions.moves_as);
   rigid_ = std::move(brick_motions.around);
+  for (std::int64_t brick = 0; shifts && brick < count; ++brick)
+    if (shifts->bends(brick)) rigid_[brick] = kSeveral;
   kept_ = KeptCorners(rigid_, available_memory() / kShareForCorners);
   if (count == 0) return;
   output_.base = base(posed_from_rest[weights.chunk(0).front().bone[0]]);
@@ -104,7 +106,7 @@ void PosedLattice::split_corners(std::int64_t brick, SplitBrick& corners) const 
     FixedPoint* own = &corners[8 * (v.x + 8 * (v.y + 8 * v.z))];
     for (int c = 0; c < 8; ++c) {
       const glm::ivec3 corner = voxel + glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
-      const glm::dvec3 shift = settled_ ? settled_->corner_shift(corner - 1, split.joined_voxels(v, c)) : glm::vec3(0);
+      const glm::dvec3 shift = shifts_ ? shifts_->corner_shift(corner - 1, split.joined_voxels(v, c)) : glm::vec3(0);
       own[c] = poser_.posed(corner, split.at(v, c), shift);
     }
   });
@@ -239,8 +241,8 @@ PosedLattice::BrickBounds PosedLattice::compute(std::int64_t brick, Corners& cor
 void PosedLattice::pose_bent(std::int64_t brick, CollectedCorners& corners) const {
   const TissueVoxels::Brick& cells = tissue_->bricks()[brick];
   CornerWeights weights(*tissue_, *weights_, moves_as_, brick);
-  SettledFlesh::CornerShifts shifts;
-  const bool shifted = settled_ && settled_->corner_shifts(brick, shifts);
+  FleshShifts::CornerShifts shifts;
+  const bool shifted = shifts_ && shifts_->corner_shifts(brick, shifts);
 
   constexpr int kCorners = kSide * kSide * kSide + 3;
   std::array<std::uint8_t, kCorners> x, y, z;

@@ -33,7 +33,7 @@
 
 namespace limber {
 
-class SettledFlesh;
+class FleshShifts;
 
 // The box of voxels from `low` to `high`, both included; empty if high < low on any axis.
 struct VoxelRange {
@@ -61,13 +61,13 @@ class PosedLattice {
   // air voxels are not set.
   using SplitBrick = std::array<FixedPoint, 8 * TissueVoxels::kBrick * TissueVoxels::kBrick * TissueVoxels::kBrick>;
 
-  // Keeps references to `volume`, `tissue`, `weights` and `settled`, which must outlive the lattice.
+  // Keeps references to `volume`, `tissue`, `weights` and `shifts`, which must outlive the lattice.
   //   posed_from_rest  motions of the bones of `weights`
-  //   settled          corrections of flesh that are added to the blended positions; nullptr: none
+  //   shifts           corrections of flesh that are added to the blended positions; nullptr: none
   //   throws Error if the pose moves tissue further than 32 000 output voxels or to a position that is not finite
   PosedLattice(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                const std::vector<RigidTransform>& posed_from_rest, Blend blend, const glm::dvec3& ratio,
-               Progress& progress = no_progress(), const SettledFlesh* settled = nullptr);
+               Progress& progress = no_progress(), const FleshShifts* shifts = nullptr);
 
   const OutputLattice& output() const { return output_; }
   const LabelVolume& volume() const { return *volume_; }
@@ -108,7 +108,7 @@ class PosedLattice {
   const SkinWeights* weights_;
   AffineTransform world_from_voxel_, voxel_from_world_;
   CornerPoser poser_;
-  const SettledFlesh* settled_;
+  const FleshShifts* shifts_;
   OutputLattice output_;
   std::vector<FixedBox> bounds_;
   std::vector<std::uint8_t> still_, split_;       // values of is_still() and is_split() for each brick

@@ -24,10 +24,11 @@
 
 #include "core/base/progress.h"
 #include "core/deform/flesh_cells.h"
+#include "core/deform/flesh_shifts.h"
 
 namespace limber {
 
-class SettledFlesh {
+class SettledFlesh final : public FleshShifts {
  public:
   struct Report {
     std::int64_t cells = 0;
@@ -45,16 +46,11 @@ class SettledFlesh {
 
   const Report& report() const { return report_; }
 
-  // The shifts of the 9^3 corners of a brick's voxels, in the order of PosedLattice::Corners, in voxels along the
-  // volume's axes. If the cells around a corner have different shifts, the corner has their mean.
-  using CornerShifts = std::array<glm::vec3, 729>;
-  // Computes the corner shifts of a brick. Returns false, and writes nothing, if the pose does not bend the brick.
-  bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const;
-  // Returns the shift of one corner of a voxel near a seam.
-  //   lowest  the lowest of the eight voxels around the corner
-  //   around  one bit for each of the eight voxels, x fastest, bit 0 for the lowest: 1 if the voxel's cell contributes;
-  //           not 0
-  glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const;
+  // Where the cells around a corner have different shifts, the corner has the mean shift. A brick has shifts where it
+  // bends.
+  bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const override;
+  glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const override;
+  bool bends(std::int64_t) const override { return false; }
 
  private:
   // The nodes of a cell whose trilinear weight at a voxel corner is above zero, with these weights.

@@ -112,6 +112,9 @@ void print_report(std::ostream& out, const Report& report) {
       out << line("flesh settled: mean volume error of cells %.1f %% before, %.1f %% after; moved by up to %.1f mm",
                   100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
                   deform.settled->largest_shift_mm);
+    for (const BakedJointReport& joint : deform.baked)
+      out << line("baked %.60s at %+.1f degrees: between baked angles 95 %% of flesh within %.2f mm of finite elements",
+                  joint.bone.c_str(), joint.degrees, joint.worst_between.flesh_mm);
     std::int64_t moved = 0;
     for (const auto& [_, voxels] : deform.kept_organs) moved += std::abs(voxels);
     if (moved > 0)

@@ -82,6 +82,21 @@ Json total(const Report& report) {
   return row;
 }
 
+Json baked_of(const BakedJointReport& joint) {
+  const BakeError& worst = joint.worst_between;
+  return {{"bone", joint.bone},
+          {"degrees", joint.degrees},
+          {"other_degrees", joint.other_degrees},
+          {"baked_at_degrees", joint.baked_at},
+          {"beyond_baked_range", joint.is_beyond()},
+          {"glide", joint.glide},
+          {"error_between",
+           {{"degrees", worst.degrees},
+            {"flesh_95_mm", worst.flesh_mm},
+            {"skin_95_mm", worst.skin_mm},
+            {"largest_mm", worst.largest_mm}}}};
+}
+
 Json settled_of(const SettledFlesh::Report& settled) {
   return {{"cells", settled.cells},
           {"volume_error_before", settled.volume_error_before},
@@ -356,6 +371,8 @@ std::string to_json(const Report& report) {
       json["bones"].push_back({{"name", bone.name}, {"rigid_residual_mm", bone.rigid_residual_mm}});
   add_body(report, json);
   if (report.deform && report.deform->settled) json["settled_flesh"] = settled_of(*report.deform->settled);
+  if (report.deform)
+    for (const BakedJointReport& joint : report.deform->baked) json["baked_joints"].push_back(baked_of(joint));
   if (report.deform)
     for (const auto& [label, voxels] : report.deform->kept_organs) json["kept_organs"][key_of(report, label)] = voxels;
   if (report.deform && report.deform->mass_exact)

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/base/error.h"
+#include "core/deform/baked_flesh.h"
 #include "core/deform/blend_rule.h"
 #include "core/deform/inverse_map.h"
 #include "core/deform/settled_flesh.h"
@@ -34,6 +36,13 @@ Blend blend_of(const Method& method) {
 
 bool settles_flesh(const Method& method) {
   return std::holds_alternative<Blend>(method) && rule_of(std::get<Blend>(method)).settles_flesh;
+}
+
+void check_baked(const Method& method, const BakedJoints& baked) {
+  const Blend* blend = std::get_if<Blend>(&method);
+  if (baked.empty() || (blend && *blend == Blend::DualQuaternion)) return;
+  throw Error("baked joints correct dual quaternions only", blend ? rule_of(*blend).word : "finite elements",
+              "pose by dual quaternions (dqs), or without baked joints");
 }
 
 // Returns true if regions of the body may overlap in the pose: at least two bones have different motions.
@@ -105,8 +114,11 @@ std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, 
   if (settles_flesh(method) && can_fold(motions))
     report.settled =
         settled.emplace(volume, body.tissue, weights, labels.bone, motions, blend_of(method), progress).report();
-  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress,
-                             settled ? &*settled : nullptr);
+  const BakedFlesh baked(body.tissue, volume.grid, joints_in_pose(settings.baked, body.armature, pose));
+  report.baked = report_of_baked(settings.baked, body.armature, pose);
+  const FleshShifts* shifts = baked.empty() ? nullptr : &baked;
+  if (settled) shifts = &*settled;
+  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress, shifts);
   const RigidBones bones(lattice, weights, labels.bone, motions);
   std::optional<PosedTets> tets;
   if (posed.shape)
@@ -157,6 +169,7 @@ void resample_sequence(const LabelVolume& volume, const TissueTable& tissues, co
                        const SkinWeights& weights, const std::vector<Pose>& poses, const Method& method,
                        const ResampleSettings& settings,
                        const std::function<void(std::size_t place, Posed posed)>& on_posed, Progress& progress) {
+  check_baked(method, settings.baked);
   const Seconds preparing;
   const RigidBody body(volume, tissues, armature, weights, settings.seams, progress);
   const double prepared = preparing();

@@ -16,6 +16,7 @@
 
 #include "core/base/progress.h"
 #include "core/deform/settled_flesh.h"
+#include "core/resample/baked_pose.h"
 #include "core/resample/fem.h"
 #include "core/rig/pose.h"
 #include "core/skin/skin_weights.h"
@@ -43,6 +44,8 @@ struct ResampleSettings {
   const GreyVolume* grey = nullptr;  // grey values to move together with the labels; nullptr: none
   // Voxel faces at which limbs touch without being connected. Null: all tissue that touches is connected.
   std::shared_ptr<const Seams> seams;
+  // Joints whose flesh is shifted as finite elements were found to do; only with blending by dual quaternions.
+  BakedJoints baked;
 };
 
 // Report of the correction by mass_exact, which gives soft tissues their volumes at rest.
@@ -80,6 +83,7 @@ struct DeformReport {
   };
   std::vector<BoneResidual> bones;              // one entry for each rig bone with posed bone tissue
   std::optional<SettledFlesh::Report> settled;  // set only by mixed blending; none: the pose bends nothing
+  std::vector<BakedJointReport> baked;          // one for each of ResampleSettings::baked
   // Number of voxels that each organ gained (positive) or lost (negative) to keep its volume (organ_volumes.h), by
   // label.
   std::map<Label, std::int64_t> kept_organs;
@@ -106,8 +110,8 @@ struct Posed {
 };
 
 // Returns the posed volume. With finite elements, a pose may be out of reach: then the result is the last pose reached
-// on the way from rest, and report.solve says so. Throws Error when mass_exact would have to change a soft tissue of
-// 5000 voxels or more by more than mass_limit_percent.
+// on the way from rest, and report.solve says so. Throws Error for baked joints without dual quaternions, and when
+// mass_exact would have to change a soft tissue of 5000 voxels or more by more than mass_limit_percent.
 Posed resample(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                const SkinWeights& weights, const Pose& pose, const Method& method,
                const ResampleSettings& settings = {}, Progress& progress = no_progress());

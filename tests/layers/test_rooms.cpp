@@ -23,10 +23,10 @@ struct Floor {
 
 const std::vector<Floor> kFloors = {
     {"core",
-     {"platform", "base",          "volume",     "tissue", "volume_io",     "rig",     "motion",   "rig_io",  "pose",
-      "phantom",  "measure",       "mesh",       "bones",  "prepare",       "autorig", "skin",     "binding", "seams",
-      "paint",    "paint/brushes", "label_edit", "deform", "deform/blends", "fem",     "resample", "export",  "report",
-      "repair",   "body",          "project",    "batch",  "study",         "cmd",     "python"}},
+     {"platform", "base",          "volume",     "tissue",  "volume_io",     "rig",     "motion",   "rig_io",  "pose",
+      "phantom",  "measure",       "mesh",       "bones",   "prepare",       "autorig", "skin",     "binding", "seams",
+      "paint",    "paint/brushes", "label_edit", "deform",  "deform/blends", "fem",     "resample", "export",  "report",
+      "repair",   "body",          "bake",       "project", "batch",         "study",   "cmd",      "python"}},
     {"render", {"gl", "scene", "textures", "passes", ""}},
     {"editor", {"input",  "ui",       "context", "dialogs", "guide",  "file_browser", "shown",     "viewport",
                 "volume", "measure",  "seams",   "rig",     "motion", "pose",         "selection", "labels",

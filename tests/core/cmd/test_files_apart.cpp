@@ -97,6 +97,8 @@ TEST_CASE("command files: an output that is also an input is refused by every co
            Words{"convert", "@tissues.json", "@tissues.json"},
            Words{"convert", "@rig.json", "@rig.json"},
            Words{"fit-joint", "@volume.nrrd", "--rig", "@rig.json", "--bone", "Forearm", "-o", "@rig.json"},
+           Words{"bake-joint", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "--bone", "Forearm",
+                 "-o", "@weights.nrrd"},
            Words{"repair-joint", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "--bone",
                  "Forearm", "-o", "@weights.nrrd"},
            Words{"clean-motion", "@rig.json", "--motion", "@motion.bvh", "-o", "@motion.bvh"},

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/bake/bake_joint.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include <glm/gtc/packing.hpp>
+
+#include "core/bake/corner_fit.h"
+#include "core/bake/joint_corners.h"
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/body/glide_poses.h"
+#include "core/deform/bake_source.h"
+#include "core/deform/baked_flesh.h"
+#include "core/resample/fem_shape.h"
+#include "core/resample/pose_path.h"
+#include "core/resample/posed_voxels.h"
+#include "core/resample/rigid_weights.h"
+
+namespace limber {
+
+namespace {
+
+constexpr double kLeastRange = 5, kWidest = 170;  // degrees
+constexpr double kNodesPerTet = 2;   // nodes of the lattice along a tet's edge: the tets' shifts are linear inside
+constexpr int kLargestStep = 8;      // voxels between nodes
+constexpr double kNothing = 0.02;    // mm: nodes that never shift further are left out
+constexpr float kBoneCorner = 0.1f;  // weight of a corner inside bone, which is posed rigidly all the same
+
+// One angle that is solved, on one side of rest.
+struct SolvedAngle {
+  double degrees = 0;
+  bool is_baked = false;  // false: only to tell the error
+  Pose pose;
+  std::vector<RigidTransform> motions;  // of the bones of the weights
+  Eigen::MatrixX3d V;
+};
+// The solves on one side of rest, which share a mesh.
+struct SolvedSide {
+  std::vector<SolvedAngle> angles;  // from rest outwards
+  std::shared_ptr<const TetMesh> mesh;
+  TissueMask meshed;
+  double tet_mm = 0;
+};
+
+// What the solves need of the body.
+struct RigidTissue {
+  const Body& body;
+  const BoundBody& bound;
+  LabelSets labels;
+  SkinWeights weights;  // rigid in bone tissue
+};
+
+std::string in_degrees(double degrees) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%+.4g degrees", degrees);
+  return text;
+}
+
+void check(const Armature& rig, int bone, const BakeSettings& settings) {
+  if (rig.bones[bone].parent < 0)
+    throw Error("this bone has no joint to bake", rig.bones[bone].name, "choose a bone that has a parent");
+  const bool is_range = settings.low <= 0 && settings.high >= 0 && settings.low >= -kWidest &&
+                        settings.high <= kWidest && settings.high - settings.low >= kLeastRange;
+  if (!is_range)
+    throw Error(
+        "a joint is not baked over this range", in_degrees(settings.low) + " to " + in_degrees(settings.high),
+        "write two angles from rest, such as -20,100: the first -170 to 0, the second 0 to 170, 5 or more apart");
+  if (settings.angles < 1 || settings.angles > 30)
+    throw Error("a joint is not baked at so many angles", std::to_string(settings.angles), "write a number of 1 to 30");
+}
+
+// Returns the angles to solve on one side of rest: the baked ones, and one before each of them to tell the error.
+std::vector<SolvedAngle> angles_to(double end, const BakeSettings& settings) {
+  const double share = std::abs(end) / (settings.high - settings.low);
+  const int baked = end == 0 ? 0 : std::max(1, static_cast<int>(std::lround(share * settings.angles)));
+  std::vector<SolvedAngle> angles;
+  for (int i = 1; i <= baked; ++i)
+    for (const double back : {0.5, 0.0}) {
+      SolvedAngle angle;
+      angle.degrees = end * (i - back) / baked;
+      angle.is_baked = back == 0;
+      angles.push_back(std::move(angle));
+    }
+  return angles;
+}
+
+// Solves the angles on one side of rest, as far as they are reached.
+SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axis, std::vector<SolvedAngle> angles,
+                      const BakeSettings& settings, JointBake& bake, Progress& progress) {
+  const Body& body = tissue.body;
+  const glm::dvec3 voxel = body.file.volume.grid.spacing;
+  std::vector<Pose> poses;
+  for (const SolvedAngle& angle : angles) {
+    poses.push_back(rest_pose(body.rig));
+    poses.back().rotation[bone] = glm::angleAxis(glm::radians(angle.degrees), axis);
+  }
+  SkinWeights weights = tissue.weights;
+  if (const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), settings.glide))
+    glide_poses(poses, *glide, body, body.rig, tissue.bound.tissue, weights, progress);
+  FemSequence sequence(body.file.volume, tissue.bound.tissue, body.tissues, tissue.labels.bone, tissue.weights,
+                       body.rig, poses, {.contact = settings.contact, .quality = settings.quality}, progress);
+  SolvedSide side;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const std::shared_ptr<const FemShape> shape = sequence.next(progress);
+    if (!shape)
+      throw Error("the joint bends no tissue, so there is nothing to bake", body.rig.bones[bone].name,
+                  "choose another bone, or check the weights");
+    if (!side.mesh) {
+      side.mesh = std::make_shared<const TetMesh>(shape->model.fem.mesh);
+      side.meshed = shape->moving.meshed;
+      side.tet_mm = shape->solve.parameters.finest_tet_mm;
+      if (!shape->mesh.fallback.empty()) bake.warnings.push_back(shape->mesh.fallback);
+    }
+    if (shape->reached < 1) {
+      bake.all_reached = false;
+      bake.warnings.push_back(in_degrees(angles[i].degrees) +
+                              " could not be reached, so no angle from there on is baked" +
+                              (shape->solve.blocked_by.empty() ? "" : ": " + shape->solve.blocked_by));
+      break;
+    }
+    if (!shape->solve.converged)
+      bake.warnings.push_back("the shape at " + in_degrees(angles[i].degrees) +
+                              " has not settled: " + shape->solve.blocked_by);
+    angles[i].pose = shape->pose;
+    angles[i].motions = bone_motions(tissue.weights.bones(), body.rig, shape->pose);
+    angles[i].V = shape->V;
+    side.angles.push_back(std::move(angles[i]));
+    if (settings.on_solved) settings.on_solved({.degrees = side.angles.back().degrees}, side.angles.back().is_baked);
+  }
+  while (!side.angles.empty() && !side.angles.back().is_baked) side.angles.pop_back();
+  return side;
+}
+
+glm::ivec3 step_for(double tet_mm, const Grid& grid) {
+  return glm::clamp(glm::ivec3(glm::floor(tet_mm / kNodesPerTet / grid.spacing)), glm::ivec3(1),
+                    glm::ivec3(kLargestStep));
+}
+
+glm::vec3 in_half_precision(const glm::dvec3& v) {
+  glm::vec3 half;
+  for (int axis = 0; axis < 3; ++axis) half[axis] = glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(v[axis])));
+  return half;
+}
+
+// Fills in the lattice and its shifts.
+//   differences  #baked angles without rest by #corners: solved minus blended place, mm
+void fit_lattice(const JointCorners& corners, const glm::ivec3& step,
+                 const std::vector<std::vector<glm::vec3>>& differences, BakedJoint& joint) {
+  std::vector<float> weight(corners.size());
+  for (std::int64_t c = 0; c < corners.size(); ++c) weight[c] = corners.is_soft[c] ? 1 : kBoneCorner;
+  const CornerFit fit(corners.corner, std::move(weight), step);
+  std::vector<std::vector<glm::dvec3>> fitted(differences.size());
+  parallel_for(std::ssize(differences), 1, [&](std::int64_t begin, std::int64_t end) {
+    for (auto a = begin; a < end; ++a) fitted[a] = fit.fit(differences[a]);
+  });
+  joint.step = step;
+  joint.first = fit.first();
+  joint.size = fit.size();
+  std::vector<std::size_t> kept;
+  for (std::size_t n = 0; n < fit.nodes().size(); ++n)
+    if (std::any_of(fitted.begin(), fitted.end(),
+                    [&](const auto& shift) { return glm::length(shift[n]) > kNothing; })) {
+      kept.push_back(n);
+      joint.nodes.push_back(fit.nodes()[n]);
+    }
+  std::size_t next = 0;
+  for (const double degrees : joint.degrees) {
+    std::vector<glm::vec3>& shifts = joint.shifts.emplace_back();
+    if (degrees == 0) continue;
+    for (const std::size_t n : kept) shifts.push_back(in_half_precision(fitted[next][n]));
+    ++next;
+  }
+}
+
+double most_of(std::vector<double> distances, double share) {
+  if (distances.empty()) return 0;
+  const auto at = distances.begin() + static_cast<std::ptrdiff_t>(share * (std::ssize(distances) - 1));
+  std::nth_element(distances.begin(), at, distances.end());
+  return *at;
+}
+
+// Returns the error of the baked joint at a solved angle.
+//   difference  of each corner: solved minus blended place, mm
+BakeError error_at(const std::shared_ptr<const BakedJoint>& joint, double degrees, const JointCorners& corners,
+                   const std::vector<glm::vec3>& difference, const TissueVoxels& tissue, const Grid& grid) {
+  const BakedFlesh flesh(tissue, grid, {{.baked = joint, .degrees = degrees}});
+  const glm::dmat3 to_world = world_from_voxel(grid).linear;
+  std::vector<double> all, skin;
+  for (std::int64_t c = 0; c < corners.size(); ++c) {
+    if (!corners.is_soft[c]) continue;
+    const glm::dvec3 shift = to_world * glm::dvec3(flesh.shift_at(glm::dvec3(corners.corner[c])));
+    const double mm = glm::distance(shift, glm::dvec3(difference[c]));
+    // Tissue that neither moves at all is no part of the joint.
+    if (mm < kNothing && glm::length(difference[c]) < kNothing) continue;
+    all.push_back(mm);
+    if (corners.is_skin[c]) skin.push_back(mm);
+  }
+  return {.degrees = degrees,
+          .flesh_mm = most_of(all, 0.95),
+          .skin_mm = most_of(skin, 0.95),
+          .largest_mm = most_of(all, 1)};
+}
+
+}  // namespace
+
+JointBake bake_joint(const Body& body, const BoundBody& bound, int bone, const BakeSettings& settings,
+                     Progress& progress) {
+  check(body.rig, bone, settings);
+  const LabelVolume& volume = body.file.volume;
+  JointBake bake;
+  BakedJoint& joint = bake.joint;
+  joint.bone = body.rig.bones[bone].name;
+  joint.axis = flex_axis(body.rig, bone);
+  joint.glide = settings.glide;
+  joint.contact = settings.contact;
+  joint.quality = settings.quality == FemQuality::Draft  ? "draft"
+                  : settings.quality == FemQuality::Fine ? "fine"
+                                                         : "normal";
+  const LabelSets labels(body.tissues);
+  joint.source = bake_source(volume, bound.tissue, labels.bone, body.rig, bound.weights);
+  const RigidTissue tissue{
+      body, bound, labels,
+      with_rigid_bones(bound.weights, volume, bound.tissue, body.tissues, labels.bone, body.rig, progress)};
+  std::vector<SolvedSide> sides;
+  for (const double end : {settings.low, settings.high})
+    if (end != 0)
+      sides.push_back(solve_side(tissue, bone, joint.axis, angles_to(end, settings), settings, bake, progress));
+  std::erase_if(sides, [](const SolvedSide& side) { return side.angles.empty(); });
+  if (sides.empty())
+    throw Error("no angle of the joint could be reached, so nothing is baked", joint.bone,
+                bake.warnings.empty() ? "choose another range" : bake.warnings.front());
+
+  std::vector<std::vector<RigidTransform>> ends;
+  std::vector<const TissueMask*> meshed;
+  double tet_mm = sides.front().tet_mm;
+  for (const SolvedSide& side : sides) {
+    ends.push_back(side.angles.back().motions);
+    meshed.push_back(&side.meshed);
+    tet_mm = std::min(tet_mm, side.tet_mm);
+  }
+  const JointCorners corners =
+      joint_corners(volume, bound.tissue, tissue.weights, labels.bone, labels.skin, ends, meshed);
+  std::vector<std::pair<const SolvedAngle*, std::vector<glm::vec3>>> solved;  // ascending by angle
+  for (const SolvedSide& side : sides) {
+    const CarriedCorners carried(corners, bound.tissue, volume.grid, side.meshed, side.mesh, side.tet_mm);
+    for (const SolvedAngle& angle : side.angles) {
+      const std::vector<glm::dvec3> blended = blended_corners(corners, angle.motions),
+                                    posed = carried.posed(angle.V, angle.motions);
+      std::vector<glm::vec3> difference(corners.size());
+      for (std::int64_t c = 0; c < corners.size(); ++c)
+        difference[c] = corners.is_soft[c] ? posed[c] - blended[c] : glm::dvec3(0);
+      solved.emplace_back(&angle, std::move(difference));
+    }
+  }
+  std::sort(solved.begin(), solved.end(),
+            [](const auto& a, const auto& b) { return a.first->degrees < b.first->degrees; });
+  std::vector<std::vector<glm::vec3>> baked;
+  joint.degrees.push_back(0);
+  for (const auto& [angle, difference] : solved)
+    if (angle->is_baked) joint.degrees.push_back(angle->degrees), baked.push_back(difference);
+  std::sort(joint.degrees.begin(), joint.degrees.end());
+  fit_lattice(corners, step_for(tet_mm, volume.grid), baked, joint);
+  const auto shared = std::make_shared<const BakedJoint>(joint);
+  for (const auto& [angle, difference] : solved)
+    (angle->is_baked ? joint.at_baked : joint.between)
+        .push_back(error_at(shared, angle->degrees, corners, difference, bound.tissue, volume.grid));
+  return bake;
+}
+
+}  // namespace limber

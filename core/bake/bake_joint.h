@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Bakes a joint (deform/baked_joint.h): solves it by finite elements at angles from rest to either end of its range,
+// each from the shape of the angle before, and keeps what the solves do beyond blending. The angles halfway between the
+// baked ones are solved too, and used only to tell the error there.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/body/bind_body.h"
+#include "core/body/body.h"
+#include "core/deform/baked_joint.h"
+#include "core/resample/fem.h"
+
+namespace limber {
+
+struct BakeSettings {
+  double low = 0, high = 90;  // degrees from rest; low <= 0 <= high, and at least 5 degrees from end to end
+  int angles = 7;             // baked angles beside rest, from end to end; at least one on either side that has a range
+  bool contact = true;        // skin touches skin instead of passing through
+  FemQuality quality = FemQuality::Normal;
+  std::string glide = "joint";                                                 // a word of core/body/glide_poses.h
+  std::function<void(const BakeError& solved, bool is_baked)> on_solved = {};  // after each solve; the errors are 0
+};
+
+struct JointBake {
+  BakedJoint joint;
+  bool all_reached = true;            // false: the range ends where the solves did
+  std::vector<std::string> warnings;  // tell the user what differs from the request
+};
+
+// Throws Error for a bone without a parent or without an axis, for a bad range, when the tissue cannot be meshed, when
+// no angle can be reached, and where the joint bends nothing.
+JointBake bake_joint(const Body& body, const BoundBody& bound, int bone, const BakeSettings& settings,
+                     Progress& progress);
+
+}  // namespace limber

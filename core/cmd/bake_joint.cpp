@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// limber bake-joint VOLUME --rig RIG --bone B [--range LOW,HIGH] [--angles N] [--weights W] [--tissues T]
+//   [--bones L,L] [--quality draft|normal|fine] [--no-contact] [--glide off|voxel|joint|MM] [--seams FILE|none]
+//   -o JOINT.bake: solves a joint by finite elements at a few angles and keeps what they do beyond blending, for
+//   limber resample --baked.
+#include "core/bake/bake_joint.h"
+
+#include <memory>
+#include <optional>
+
+#include "core/bake/baked_joint_io.h"
+#include "core/base/parallel.h"
+#include "core/body/glide_poses.h"
+#include "core/cmd/body_options.h"
+#include "core/cmd/command.h"
+#include "core/cmd/command_files.h"
+#include "core/cmd/seam_options.h"
+
+namespace limber::cmd {
+
+namespace {
+
+struct Options {
+  BodyOptions body;
+  std::string weights, bone, seams, glide, quality = "normal", output;
+  std::vector<double> range;
+  int angles = BakeSettings{}.angles;
+  bool no_contact = false;
+  RunOptions run;
+};
+
+BakeSettings settings_of(const Options& options) {
+  BakeSettings settings;
+  if (!options.range.empty()) settings.low = options.range[0], settings.high = options.range[1];
+  settings.angles = options.angles;
+  settings.contact = !options.no_contact;
+  settings.glide = options.glide.empty() ? settings.glide : options.glide;
+  settings.quality = options.quality == "draft"  ? FemQuality::Draft
+                     : options.quality == "fine" ? FemQuality::Fine
+                                                 : FemQuality::Normal;
+  return settings;
+}
+
+void print_errors(const char* name, const std::vector<BakeError>& errors) {
+  for (const BakeError& error : errors)
+    print("%-8s %+9.1f %9.2f %9.2f %9.2f\n", name, error.degrees, error.flesh_mm, error.skin_mm, error.largest_mm);
+}
+
+// Prints how far the baked joint is from finite elements, at the baked angles and between them.
+void print_bake(const BakedJoint& joint) {
+  print("%-8s %9s %9s %9s %9s\n", "", "degrees", "flesh mm", "skin mm", "most mm");
+  print_errors("baked", joint.at_baked);
+  print_errors("between", joint.between);
+  const BakeError worst = worst_between(joint);
+  print(
+      "%s is baked from %+.4g to %+.4g degrees, %lld nodes at %lld angles. Between them, at %+.4g degrees, 95 %% of "
+      "flesh is within %.2f mm and of skin within %.2f mm of finite elements.\n",
+      one_line(joint.bone).c_str(), joint.degrees.front(), joint.degrees.back(),
+      static_cast<long long>(joint.nodes.size()), static_cast<long long>(joint.degrees.size() - 1), worst.degrees,
+      worst.flesh_mm, worst.skin_mm);
+}
+
+void bake(const Options& options) {
+  std::optional<ThreadCount> threads;
+  if (options.run.threads > 0) threads.emplace(options.run.threads);
+  CommandProgress progress(options.run.progress);
+
+  check_place(options.output);
+  const BakeSettings settings = settings_of(options);
+  glide_settings(settings.glide, 1, "--glide " + settings.glide);
+  const Body body = read_body(options.body, progress);
+  const int bone = require_bone(body.rig, options.bone);
+  const SeamChoice seams = read_seam_choice(options.seams, body.file.volume, progress);
+  const BoundBody bound = options.weights.empty() ? bind_body(body, Binding::Heat, seams, progress)
+                                                  : read_bound_body(body, options.weights, seams, progress);
+  warn(bound.warnings);
+  const JointBake baked = bake_joint(body, bound, bone, settings, progress);
+  warn(baked.warnings);
+  write_baked_joint(baked.joint, options.output);
+  print_bake(baked.joint);
+  if (!baked.all_reached) throw PoseNotReached();
+}
+
+}  // namespace
+
+void add_bake_joint(CLI::App& app) {
+  auto* command = app.add_subcommand(
+      "bake-joint", "a joint solved once by finite elements, so that poses have their shapes as fast as by blending");
+  auto options = std::make_shared<Options>();
+  add_body_options(*command, options->body);
+  command->add_option("--bone", options->bone, "the bone below the joint")->required();
+  command
+      ->add_option("--range", options->range,
+                   "range of the joint in degrees from rest, as --flex counts them, e.g. -20,100 (default: 0,90)")
+      ->delimiter(',')
+      ->expected(2);
+  command
+      ->add_option("--angles", options->angles,
+                   "baked angles beside rest; as many more are solved between them to tell the error")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 30));
+  command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
+  add_seam_option(*command, options->seams);
+  command->add_option("--quality", options->quality, "how small the tets are: draft, normal, or fine around the joint")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"draft", "normal", "fine"}));
+  command->add_flag("--no-contact", options->no_contact, "skin may pass through skin: solves faster");
+  command
+      ->add_option("--glide", options->glide,
+                   "how far the joint is shifted where its bones would enter each other, as resample does: joint "
+                   "(5 percent of the shorter bone), voxel, mm, or off (default: joint)")
+      ->type_name("off|voxel|joint|MM");
+  writes(command->add_option("-o,--output", options->output, "JOINT.bake"))->required();
+  add_run_options(*command, options->run);
+  command->callback([options] { bake(*options); });
+}
+
+}  // namespace limber::cmd

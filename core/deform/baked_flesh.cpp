@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/baked_flesh.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace limber {
+
+namespace {
+
+constexpr int kCorners = TissueVoxels::kBrick + 1;  // corners along a brick's edge
+
+glm::ivec3 floor_divided(const glm::ivec3& a, const glm::ivec3& b) {
+  return glm::ivec3(glm::floor(glm::dvec3(a) / glm::dvec3(b)));
+}
+
+// Throws Error if nodes lie outside the volume, by more than the cell around its last corner.
+void check_inside(const BakedJoint& joint, const Grid& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t low = std::int64_t{joint.first[axis]} * joint.step[axis];
+    const std::int64_t high = (std::int64_t{joint.first[axis]} + joint.size[axis] - 1) * joint.step[axis];
+    if (low < -joint.step[axis] || high > std::int64_t{grid.size[axis]} + joint.step[axis])
+      throw Error("the joint was baked from another volume", joint.bone, "bake it again: limber bake-joint");
+  }
+}
+
+}  // namespace
+
+BakedFlesh::BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::vector<BentJoint>& joints)
+    : tissue_(&tissue) {
+  const glm::dmat3 to_voxels = voxel_from_world(grid).linear;
+  for (const BentJoint& bent : joints) {
+    const BakedJoint& joint = *bent.baked;
+    check_inside(joint, grid);
+    const auto shares = shares_at(joint.degrees, bent.degrees);
+    if (shares.empty() || joint.nodes.empty()) continue;
+    const glm::mat3 turn(to_voxels * glm::mat3_cast(bent.parent_turn));
+    Field& field = fields_.emplace_back(Field{joint.step, joint.first, joint.size, {}});
+    field.shift.assign(std::size_t(joint.size.x) * joint.size.y * joint.size.z, glm::vec3(0));
+    parallel_for(std::ssize(joint.nodes), 4096, [&](std::int64_t begin, std::int64_t end) {
+      for (auto n = begin; n < end; ++n) {
+        glm::vec3 sum(0);
+        for (const auto& [angle, share] : shares) sum += static_cast<float>(share) * joint.shifts[angle][n];
+        field.shift[joint.nodes[n]] = turn * sum;
+      }
+    });
+  }
+  const std::int64_t count = std::ssize(tissue.bricks());
+  bends_.assign(count, 0);
+  parallel_for(count, 64, [&](std::int64_t begin, std::int64_t end) {
+    for (auto brick = begin; brick < end; ++brick) {
+      const glm::ivec3 low = tissue.bricks()[brick].corner;
+      for (const Field& field : fields_) bends_[brick] |= field.touches(low, low + TissueVoxels::kBrick);
+    }
+  });
+}
+
+// Returns whether any corner from `low` to `high` has a shift.
+bool BakedFlesh::Field::touches(const glm::ivec3& low, const glm::ivec3& high) const {
+  const glm::ivec3 from = glm::max(floor_divided(low, step) - first, glm::ivec3(0));
+  const glm::ivec3 to = glm::min(-floor_divided(-high, step) - first, size - 1);
+  for (int z = from.z; z <= to.z; ++z)
+    for (int y = from.y; y <= to.y; ++y)
+      for (int x = from.x; x <= to.x; ++x)
+        if (shift[x + std::size_t(size.x) * (y + std::size_t(size.y) * z)] != glm::vec3(0)) return true;
+  return false;
+}
+
+// Returns the shift at a place, in units of voxels: place c is the lowest corner of voxel c.
+glm::vec3 BakedFlesh::Field::at(const glm::dvec3& place) const {
+  const glm::dvec3 node = place / glm::dvec3(step) - glm::dvec3(first);
+  const glm::ivec3 low(glm::floor(node));
+  if (glm::any(glm::lessThan(low, glm::ivec3(-1))) || glm::any(glm::greaterThanEqual(low, size))) return glm::vec3(0);
+  const glm::vec3 high = glm::vec3(node - glm::dvec3(low)), rest = 1.0f - high;
+  glm::vec3 sum(0);
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 n = low + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+    const float share = (i & 1 ? high.x : rest.x) * (i & 2 ? high.y : rest.y) * (i & 4 ? high.z : rest.z);
+    if (share == 0 || glm::any(glm::lessThan(n, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(n, size))) continue;
+    sum += share * shift[n.x + std::size_t(size.x) * (n.y + std::size_t(size.y) * n.z)];
+  }
+  return sum;
+}
+
+void BakedFlesh::Field::add(const glm::ivec3& low, CornerShifts& shifts) const {
+  std::size_t to = 0;
+  for (int k = 0; k < kCorners; ++k)
+    for (int j = 0; j < kCorners; ++j)
+      for (int i = 0; i < kCorners; ++i) shifts[to++] += at(glm::dvec3(low + glm::ivec3(i, j, k)));
+}
+
+bool BakedFlesh::corner_shifts(std::int64_t brick, CornerShifts& shifts) const {
+  if (!bends_[brick]) return false;
+  shifts.fill(glm::vec3(0));
+  const glm::ivec3 low = tissue_->bricks()[brick].corner;
+  for (const Field& field : fields_)
+    if (field.touches(low, low + TissueVoxels::kBrick)) field.add(low, shifts);
+  return true;
+}
+
+glm::vec3 BakedFlesh::corner_shift(const glm::ivec3& lowest, unsigned) const {
+  return shift_at(glm::dvec3(lowest + 1));
+}
+
+glm::vec3 BakedFlesh::shift_at(const glm::dvec3& place) const {
+  glm::vec3 sum(0);
+  for (const Field& field : fields_) sum += field.at(place);
+  return sum;
+}
+
+}  // namespace limber

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The shifts of baked joints (baked_joint.h) in one pose. Shifts of several joints add up.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/deform/baked_joint.h"
+#include "core/deform/flesh_shifts.h"
+#include "core/volume/tissue_voxels.h"
+
+namespace limber {
+
+// A baked joint in a pose.
+struct BentJoint {
+  std::shared_ptr<const BakedJoint> baked;
+  double degrees = 0;                  // its turn about the baked axis
+  glm::dquat parent_turn{1, 0, 0, 0};  // rotation, from rest, of the bone above the joint
+};
+
+class BakedFlesh final : public FleshShifts {
+ public:
+  // Keeps a reference to `tissue`, which must outlive this object. Joints at rest have no shifts.
+  //   grid  of the volume
+  //   throws Error when a joint was baked from a larger volume
+  BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::vector<BentJoint>& joints);
+
+  bool empty() const { return fields_.empty(); }  // true if no corner has a shift
+
+  bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const override;
+  glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const override;
+  bool bends(std::int64_t brick) const override { return bends_[brick]; }
+  // Returns the shift at a place in units of voxels, where the lowest corner of voxel v is v.
+  glm::vec3 shift_at(const glm::dvec3& place) const;
+
+ private:
+  // The shifts of one joint.
+  struct Field {
+    glm::ivec3 step, first, size;
+    std::vector<glm::vec3> shift;  // of each node of the box, voxels; zero for nodes without one
+
+    bool touches(const glm::ivec3& low, const glm::ivec3& high) const;
+    void add(const glm::ivec3& low, CornerShifts& shifts) const;
+    glm::vec3 at(const glm::dvec3& place) const;
+  };
+
+  const TissueVoxels* tissue_;
+  std::vector<Field> fields_;
+  std::vector<std::uint8_t> bends_;  // by brick
+};
+
+}  // namespace limber
