@@ -26,10 +26,12 @@ namespace limber {
 namespace {
 
 constexpr double kLeastRange = 5, kWidest = 170;  // degrees
-constexpr double kNodesPerTet = 2;   // nodes of the lattice along a tet's edge: the tets' shifts are linear inside
-constexpr int kLargestStep = 8;      // voxels between nodes
-constexpr double kNothing = 0.02;    // mm: nodes that never shift further are left out
-constexpr float kBoneCorner = 0.1f;  // weight of a corner inside bone, which is posed rigidly all the same
+const double kNodesPerTet = getenv("NPT")
+                                ? atof(getenv("NPT"))
+                                : 2;  // nodes of the lattice along a tet's edge: the tets' shifts are linear inside
+constexpr int kLargestStep = 8;       // voxels between nodes
+constexpr double kNothing = 0.02;     // mm: nodes that never shift further are left out
+constexpr float kBoneCorner = 0.1f;   // weight of a corner inside bone, which is posed rigidly all the same
 
 // One angle that is solved, on one side of rest.
 struct SolvedAngle {
@@ -43,7 +45,7 @@ struct SolvedAngle {
 struct SolvedSide {
   std::vector<SolvedAngle> angles;  // from rest outwards
   std::shared_ptr<const TetMesh> mesh;
-  TissueMask meshed;
+  DeformingRegion moving;
   double tet_mm = 0;
 };
 
@@ -102,8 +104,9 @@ SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axi
   SkinWeights weights = tissue.weights;
   if (const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), settings.glide))
     glide_poses(poses, *glide, body, body.rig, tissue.bound.tissue, weights, progress);
-  FemSequence sequence(body.file.volume, tissue.bound.tissue, body.tissues, tissue.labels.bone, tissue.weights,
-                       body.rig, poses, {.contact = settings.contact, .quality = settings.quality}, progress);
+  FemSequence sequence(
+      body.file.volume, tissue.bound.tissue, body.tissues, tissue.labels.bone, tissue.weights, body.rig, poses,
+      {.contact = settings.contact, .quality = settings.quality, .is_exact = !getenv("LOOSE")}, progress);
   SolvedSide side;
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const std::shared_ptr<const FemShape> shape = sequence.next(progress);
@@ -112,7 +115,7 @@ SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axi
                   "choose another bone, or check the weights");
     if (!side.mesh) {
       side.mesh = std::make_shared<const TetMesh>(shape->model.fem.mesh);
-      side.meshed = shape->moving.meshed;
+      side.moving = shape->moving;
       side.tet_mm = shape->solve.parameters.finest_tet_mm;
       if (!shape->mesh.fallback.empty()) bake.warnings.push_back(shape->mesh.fallback);
     }
@@ -240,20 +243,19 @@ JointBake bake_joint(const Body& body, const BoundBody& bound, int bone, const B
   double tet_mm = sides.front().tet_mm;
   for (const SolvedSide& side : sides) {
     ends.push_back(side.angles.back().motions);
-    meshed.push_back(&side.meshed);
+    meshed.push_back(&side.moving.meshed);
     tet_mm = std::min(tet_mm, side.tet_mm);
   }
   const JointCorners corners =
       joint_corners(volume, bound.tissue, tissue.weights, labels.bone, labels.skin, ends, meshed);
   std::vector<std::pair<const SolvedAngle*, std::vector<glm::vec3>>> solved;  // ascending by angle
   for (const SolvedSide& side : sides) {
-    const CarriedCorners carried(corners, bound.tissue, volume.grid, side.meshed, side.mesh, side.tet_mm);
+    const CarriedCorners carried(corners, volume, bound.tissue, tissue.weights, side.moving, side.mesh, side.tet_mm);
     for (const SolvedAngle& angle : side.angles) {
       const std::vector<glm::dvec3> blended = blended_corners(corners, angle.motions),
                                     posed = carried.posed(angle.V, angle.motions);
       std::vector<glm::vec3> difference(corners.size());
-      for (std::int64_t c = 0; c < corners.size(); ++c)
-        difference[c] = corners.is_soft[c] ? posed[c] - blended[c] : glm::dvec3(0);
+      for (std::int64_t c = 0; c < corners.size(); ++c) difference[c] = posed[c] - blended[c];
       solved.emplace_back(&angle, std::move(difference));
     }
   }

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/deform/brick_motions.h"
 #include "core/deform/corner_weights.h"
+#include "core/deform/posed_tets.h"
 
 namespace limber {
 
@@ -37,6 +38,10 @@ std::vector<std::uint8_t> bricks_around_joint(const TissueVoxels& tissue, const 
           if (const int near = tissue.brick_at(glm::ivec3(x, y, z) * kBrick); near >= 0) around[near] = 1;
   }
   return around;
+}
+
+std::int64_t place_of(const glm::ivec3& corner, const Grid& grid) {
+  return corner.x + (grid.size.x + std::int64_t{1}) * (corner.y + (grid.size.y + std::int64_t{1}) * corner.z);
 }
 
 // Calls body(voxel) for each tissue voxel around a corner.
@@ -101,22 +106,44 @@ std::vector<glm::dvec3> blended_corners(const JointCorners& corners, const std::
   return posed;
 }
 
-CarriedCorners::CarriedCorners(const JointCorners& corners, const TissueVoxels& tissue, const Grid& grid,
-                               const TissueMask& meshed, std::shared_ptr<const TetMesh> mesh, double furthest_mm)
+CarriedCorners::CarriedCorners(const JointCorners& corners, const LabelVolume& volume, const TissueVoxels& tissue,
+                               const SkinWeights& weights, const DeformingRegion& moving,
+                               std::shared_ptr<const TetMesh> mesh, double furthest_mm)
     : corners_(corners),
-      world_from_voxel_(world_from_voxel(grid)) {
+      volume_(volume),
+      tissue_(tissue),
+      weights_(with_rigid_rest(weights, tissue, moving)),
+      moving_(moving),
+      mesh_(std::move(mesh)) {
   std::vector<PointToCarry> points;
   for (std::int64_t c = 0; c < corners.size(); ++c) {
     bool is_meshed = false;
     for_each_around(tissue, corners.corner[c], [&](const glm::ivec3& v) {
-      is_meshed |= meshed[tissue.brick_at(v)][v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1;
+      is_meshed |= moving.meshed[tissue.brick_at(v)][v.z & 7] >> ((v.x & 7) + 8 * (v.y & 7)) & 1;
     });
-    if (!is_meshed || !corners.is_soft[c]) continue;
+    if (!is_meshed) continue;
     const glm::dvec3 at = glm::dvec3(corners.corner[c]) - 0.5;
     points.push_back({at, at});
     in_mesh_.push_back(c);
+    index_.emplace(place_of(corners.corner[c], volume.grid), c);
   }
-  points_ = std::make_unique<CarriedPoints>(std::move(mesh), grid, points, furthest_mm);
+  points_ = std::make_unique<CarriedPoints>(mesh_, volume.grid, points, furthest_mm);
+}
+
+// Poses the corners of voxels that stick out of the mesh.
+void CarriedCorners::press_riders(const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& motions,
+                                  std::vector<glm::dvec3>& posed) const {
+  const PosedLattice lattice(volume_, tissue_, weights_, motions, Blend::Linear, glm::dvec3(1));
+  const PosedTets tets(*mesh_, V, lattice, moving_.meshed);
+  const AffineTransform to_world = world_from_voxel(volume_.grid);
+  for (const PosedTets::Rider& rider : tets.riders())
+    for (int i = 0; i < 8; ++i) {
+      const glm::ivec3 corner = rider.voxel + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+      const auto at = index_.find(place_of(corner, volume_.grid));
+      if (at == index_.end()) continue;
+      const glm::dvec3 there = glm::dvec3(rider.corners[i]) / double(kFixedOne);
+      posed[at->second] = to_world * lattice.output().to_rest(there);
+    }
 }
 
 std::vector<glm::dvec3> CarriedCorners::posed(const Eigen::MatrixX3d& V,
@@ -142,7 +169,8 @@ std::vector<glm::dvec3> CarriedCorners::posed(const Eigen::MatrixX3d& V,
   });
   const auto carried = points_->posed(V);
   for (std::size_t i = 0; i < carried.size(); ++i)
-    if (carried[i]) posed[in_mesh_[i]] = world_from_voxel_ * *carried[i];
+    if (carried[i]) posed[in_mesh_[i]] = world_from_voxel(volume_.grid) * *carried[i];
+  press_riders(V, motions, posed);
   return posed;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 #include "core/deform/carried_points.h"
@@ -38,22 +39,34 @@ std::vector<glm::dvec3> blended_corners(const JointCorners& corners, const std::
 // The corners as a mesh carries them.
 class CarriedCorners {
  public:
-  // Keeps a reference to `corners`, which must outlive this object.
-  //   meshed       tissue that the mesh carries
+  // Keeps references to all arguments, which must outlive this object.
+  //   weights      rigid in bone tissue
+  //   moving       the tissue that the mesh carries
   //   furthest_mm  corners of this tissue that are further outside the mesh follow a bone
-  CarriedCorners(const JointCorners& corners, const TissueVoxels& tissue, const Grid& grid, const TissueMask& meshed,
-                 std::shared_ptr<const TetMesh> mesh, double furthest_mm);
+  CarriedCorners(const JointCorners& corners, const LabelVolume& volume, const TissueVoxels& tissue,
+                 const SkinWeights& weights, const DeformingRegion& moving, std::shared_ptr<const TetMesh> mesh,
+                 double furthest_mm);
 
-  // Returns the posed corners, world, mm. Corners of soft tissue in the mesh move with it. All others follow the bone
-  // whose motion has most of their weight.
+  // Returns the posed corners, world, mm. Corners of tissue in the mesh move with it, and those just outside are
+  // pressed flat where another part of the mesh is near, as in posed_tets.h. Corners in bone do so too, so that the
+  // cells of bone and of the flesh around it stay neighbours; bone is painted where its own motion has it. All others
+  // follow the bone whose motion has most of their weight.
   //   V        #V by 3 posed nodes, world, mm
   //   motions  of the bones of the weights in this pose
   std::vector<glm::dvec3> posed(const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& motions) const;
 
  private:
+  void press_riders(const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& motions,
+                    std::vector<glm::dvec3>& posed) const;
+
   const JointCorners& corners_;
-  AffineTransform world_from_voxel_;
-  std::vector<std::int64_t> in_mesh_;  // indices of the corners that the mesh carries
+  const LabelVolume& volume_;
+  const TissueVoxels& tissue_;
+  SkinWeights weights_;  // rigid in tissue that does not deform, too
+  const DeformingRegion& moving_;
+  std::shared_ptr<const TetMesh> mesh_;
+  std::unordered_map<std::int64_t, std::int64_t> index_;  // of each corner in the mesh, by its place in the volume
+  std::vector<std::int64_t> in_mesh_;                     // indices of the corners that the mesh carries
   std::unique_ptr<CarriedPoints> points_;
 };
 

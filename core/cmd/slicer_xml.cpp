@@ -43,6 +43,7 @@ const std::map<std::string, Element>& inputs() {
       {"--bone-map", file_of(".json")},
       {"--properties", file_of(".csv")},
       {"--play", file_of(".txt")},
+      {"--baked", file_of(".bake")},
   };
   return kInputs;
 }
@@ -53,6 +54,7 @@ const std::map<std::string, Element>& outputs() {
       {"convert OUT", file_of("*")},
       {"weights --output", file_of(".nrrd")},
       {"repair-joint --output", file_of(".nrrd")},
+      {"bake-joint --output", file_of(".bake")},
       {"clean-motion --output", file_of(".bvh")},
       {"fit-rig --output", file_of(".json")},
       {"fit-joint --output", file_of(".json")},

@@ -40,6 +40,11 @@ class PosedTets {
 
   // Returns the voxels that the lattice must not pose because they move with the mesh.
   const TissueMask& instead_of() const { return instead_of_; }
+  struct Rider {
+    glm::ivec3 voxel;
+    std::array<FixedPoint, 8> corners;  // posed corners; bits 0, 1, 2 of the index are x, y, z
+  };
+  const std::vector<Rider>& riders() const { return riders_; }
   std::int64_t rider_count() const { return std::ssize(riders_); }
   // Returns true if any of the brick's tissue moves with the mesh.
   bool shares(std::int64_t brick) const { return in_mesh_[brick] != std::array<std::uint64_t, 8>{}; }
@@ -54,10 +59,6 @@ class PosedTets {
   bool reaches(const VoxelRange& range) const;
 
  private:
-  struct Rider {
-    glm::ivec3 voxel;
-    std::array<FixedPoint, 8> corners;  // posed corners; bits 0, 1, 2 of the index are x, y, z
-  };
   struct BrickOutcome;
   class Border;
 

@@ -34,6 +34,9 @@ struct Fem {
   // Length in mm that scales how far around a bent joint tissue is meshed, and how far from other bones a bone belongs
   // to a joint. None: the edge length of the tets, but at least that of normal quality.
   std::optional<double> reach_mm;
+  // Exact shapes depend on the pose alone and change smoothly with it: no tissue moves rigidly until contact may reach
+  // it, and each solve ends when Newton moves no node by more than a tenth of the usual length.
+  bool is_exact = false;
   Mesher mesher = Mesher::lattice;
   bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
   std::vector<FemObject> objects;  // rigid objects that press on the posed body; `contact` must be true

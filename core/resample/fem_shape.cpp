@@ -55,6 +55,7 @@ constexpr double kContact = 1.4;  // distance below which skin is pushed apart, 
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
 // Cosine of half of 3 degrees. With fine quality, tets are smaller around joints that turn by more than 3 degrees.
 constexpr double kBent = 0.9997;
+constexpr double kExact = 0.1;  // multiple of the usual tolerance with Fem::is_exact
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -267,7 +268,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   last_.model =
       tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
                    {.joint_mm = kJoint * reach_, .motions = motions_on(way), .closing_mm = kClosing * reach_});
-  waiting_ = last_.model.fem.waiting;
+  if (!fem_.is_exact) waiting_ = last_.model.fem.waiting;
   if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
   if (!objects_.empty()) {
     weight_n_ = weight_of(volume, tissue, tissues);
@@ -316,7 +317,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
                                .gravity = {fem_.gravity.x, fem_.gravity.y, fem_.gravity.z},
                                .has_weight_at_start = has_weight_,
                                .step_tolerance_mm = finest_ / 2,
-                               .tolerance_mm = size_ * SolveSettings().tolerance_mm,
+                               .tolerance_mm = (fem_.is_exact ? kExact : 1) * size_ * SolveSettings().tolerance_mm,
                                .bone_drift_mm = std::max(size_ * kDrift, spacing_ / 2),
                                .size = size_};
   double angle = largest_angle_degrees(from, to);

@@ -79,7 +79,7 @@ class PosedVoxels {
         settings_(settings),
         output_(body.output),
         mends_(body.mends),
-        has_tets_(body.tets != nullptr),
+        keeps_flesh_(body.mends && body.keeps_flesh),
         posed_(posed),
         rest_points_(output_.range, mends_ ? room_for_rest(body.lattice.tissue()) : 0,
                      [this](InverseMap& map, const VoxelRange& range) { fill(map, range); }),
@@ -239,7 +239,7 @@ class PosedVoxels {
   }
 
   void forget_corners_below(int z) const {
-    const bool fills_again = settings_.mass_exact || (mends_ && has_tets_);  // soft_borders() needs these corners later
+    const bool fills_again = settings_.mass_exact || keeps_flesh_;  // soft_borders() needs these corners later
     if (!fills_again) lattice_.forget_corners_below(z);
   }
 
@@ -462,7 +462,7 @@ class PosedVoxels {
   const TissueDepth* depth_;
   const ResampleSettings& settings_;
   const OutputGrid& output_;
-  const bool mends_, has_tets_;
+  const bool mends_, keeps_flesh_;
   Posed& posed_;
   std::optional<SkinAtRest> skin_;
   LabelSet flesh_;          // soft tissues without skin
@@ -487,7 +487,7 @@ std::optional<TiledLabels> write_voxels(const PosedBody& body, const ResampleSet
   PosedVoxels voxels(body, settings, posed);
   voxels.run(progress);
   if (body.mends) voxels.mend_tears();
-  const bool keeps_flesh = body.mends && body.tets, keeps_organs = body.mends && posed.report.settled;
+  const bool keeps_flesh = body.mends && body.keeps_flesh, keeps_organs = body.mends && posed.report.settled;
   if (!keeps_flesh && !keeps_organs && !settings.mass_exact) return voxels.take_tiles();
   voxels.lay_in_rows();
   if (keeps_flesh) voxels.keep_soft_volumes(progress);

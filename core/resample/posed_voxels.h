@@ -41,7 +41,8 @@ struct PosedBody {
   const PosedTets* tets;     // nullptr: posed without finite elements
   const TissueDepth* depth;  // depth below air at rest, mm; nullptr: no regions of the body can overlap
   const OutputGrid& output;
-  bool mends;  // true: repairs tears and lost volumes
+  bool mends;        // true: repairs tears and lost volumes
+  bool keeps_flesh;  // true: the deformation keeps the volume of soft tissue, so each gets the voxels that come from it
 };
 
 // Fills the fields of `posed` that the settings ask for, and the voxel counts of its report. Returns the posed labels
