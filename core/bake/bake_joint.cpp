@@ -26,12 +26,12 @@ namespace limber {
 namespace {
 
 constexpr double kLeastRange = 5, kWidest = 170;  // degrees
-const double kNodesPerTet = getenv("NPT")
-                                ? atof(getenv("NPT"))
-                                : 2;  // nodes of the lattice along a tet's edge: the tets' shifts are linear inside
-constexpr int kLargestStep = 8;       // voxels between nodes
-constexpr double kNothing = 0.02;     // mm: nodes that never shift further are left out
-constexpr float kBoneCorner = 0.1f;   // weight of a corner inside bone, which is posed rigidly all the same
+// Nodes of the lattice along a tet's edge. Shifts are linear in a tet, but not from tet to tet: with half as many
+// nodes, tens of voxels of a bent elbow's crease are claimed twice.
+constexpr double kNodesPerTet = 4;
+constexpr int kLargestStep = 8;      // voxels between nodes
+constexpr double kNothing = 0.03;    // mm: nodes that never shift further are left out
+constexpr float kBoneCorner = 0.1f;  // weight of a corner inside bone, which is posed rigidly all the same
 
 // One angle that is solved, on one side of rest.
 struct SolvedAngle {
@@ -104,9 +104,9 @@ SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axi
   SkinWeights weights = tissue.weights;
   if (const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), settings.glide))
     glide_poses(poses, *glide, body, body.rig, tissue.bound.tissue, weights, progress);
-  FemSequence sequence(
-      body.file.volume, tissue.bound.tissue, body.tissues, tissue.labels.bone, tissue.weights, body.rig, poses,
-      {.contact = settings.contact, .quality = settings.quality, .is_exact = !getenv("LOOSE")}, progress);
+  FemSequence sequence(body.file.volume, tissue.bound.tissue, body.tissues, tissue.labels.bone, tissue.weights,
+                       body.rig, poses, {.contact = settings.contact, .quality = settings.quality, .is_exact = true},
+                       progress);
   SolvedSide side;
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const std::shared_ptr<const FemShape> shape = sequence.next(progress);
@@ -150,33 +150,48 @@ glm::vec3 in_half_precision(const glm::dvec3& v) {
   return half;
 }
 
-// Fills in the lattice and its shifts.
-//   differences  #baked angles without rest by #corners: solved minus blended place, mm
-void fit_lattice(const JointCorners& corners, const glm::ivec3& step,
-                 const std::vector<std::vector<glm::vec3>>& differences, BakedJoint& joint) {
+// Where a solve has the corners around the joint, minus where blending has them, mm.
+struct SolvedCorners {
+  double degrees = 0;
+  bool is_baked = false;
+  std::vector<glm::vec3> difference;  // #C
+};
+
+// Fills in the baked angles, the lattice and its shifts.
+void fit_lattice(const JointCorners& corners, const glm::ivec3& step, const std::vector<SolvedCorners>& solved,
+                 BakedJoint& joint) {
+  std::vector<const SolvedCorners*> baked;
+  for (const SolvedCorners& each : solved)
+    if (each.is_baked) baked.push_back(&each);
   std::vector<float> weight(corners.size());
   for (std::int64_t c = 0; c < corners.size(); ++c) weight[c] = corners.is_soft[c] ? 1 : kBoneCorner;
   const CornerFit fit(corners.corner, std::move(weight), step);
-  std::vector<std::vector<glm::dvec3>> fitted(differences.size());
-  parallel_for(std::ssize(differences), 1, [&](std::int64_t begin, std::int64_t end) {
-    for (auto a = begin; a < end; ++a) fitted[a] = fit.fit(differences[a]);
+  std::vector<std::vector<glm::dvec3>> fitted(baked.size());
+  parallel_for(std::ssize(baked), 1, [&](std::int64_t begin, std::int64_t end) {
+    for (auto a = begin; a < end; ++a) fitted[a] = fit.fit(baked[a]->difference);
   });
   joint.step = step;
   joint.first = fit.first();
   joint.size = fit.size();
   std::vector<std::size_t> kept;
-  for (std::size_t n = 0; n < fit.nodes().size(); ++n)
-    if (std::any_of(fitted.begin(), fitted.end(),
-                    [&](const auto& shift) { return glm::length(shift[n]) > kNothing; })) {
-      kept.push_back(n);
-      joint.nodes.push_back(fit.nodes()[n]);
+  for (std::size_t n = 0; n < fit.nodes().size(); ++n) {
+    const bool shifts =
+        std::any_of(fitted.begin(), fitted.end(), [&](const auto& shift) { return glm::length(shift[n]) > kNothing; });
+    if (!shifts) continue;
+    kept.push_back(n);
+    joint.nodes.push_back(fit.nodes()[n]);
+  }
+  for (std::size_t a = 0; a <= baked.size(); ++a) {
+    const double before = a == 0 ? -INFINITY : baked[a - 1]->degrees,
+                 here = a < baked.size() ? baked[a]->degrees : INFINITY;
+    if (before < 0 && here > 0) {
+      joint.degrees.push_back(0);
+      joint.shifts.emplace_back();
     }
-  std::size_t next = 0;
-  for (const double degrees : joint.degrees) {
+    if (a == baked.size()) break;
+    joint.degrees.push_back(here);
     std::vector<glm::vec3>& shifts = joint.shifts.emplace_back();
-    if (degrees == 0) continue;
-    for (const std::size_t n : kept) shifts.push_back(in_half_precision(fitted[next][n]));
-    ++next;
+    for (const std::size_t n : kept) shifts.push_back(in_half_precision(fitted[a][n]));
   }
 }
 
@@ -209,68 +224,82 @@ BakeError error_at(const std::shared_ptr<const BakedJoint>& joint, double degree
           .largest_mm = most_of(all, 1)};
 }
 
+// Solves the joint on both sides of rest, as far as it is reached.
+std::vector<SolvedSide> solve_sides(const RigidTissue& tissue, int bone, const BakeSettings& settings, JointBake& bake,
+                                    Progress& progress) {
+  std::vector<SolvedSide> sides;
+  for (const double end : {settings.low, settings.high})
+    if (end != 0)
+      sides.push_back(solve_side(tissue, bone, bake.joint.axis, angles_to(end, settings), settings, bake, progress));
+  std::erase_if(sides, [](const SolvedSide& side) { return side.angles.empty(); });
+  if (sides.empty())
+    throw Error("no angle of the joint could be reached, so nothing is baked", bake.joint.bone,
+                bake.warnings.empty() ? "choose another range" : bake.warnings.front());
+  return sides;
+}
+
+// Returns the corners of each solved angle, ascending by angle.
+std::vector<SolvedCorners> solved_corners(const RigidTissue& tissue, const std::vector<SolvedSide>& sides,
+                                          const JointCorners& corners) {
+  std::vector<SolvedCorners> solved;
+  for (const SolvedSide& side : sides) {
+    const CarriedCorners carried(corners, tissue.body.file.volume, tissue.bound.tissue, tissue.weights, side.moving,
+                                 side.mesh, side.tet_mm);
+    for (const SolvedAngle& angle : side.angles) {
+      const std::vector<glm::dvec3> blended = blended_corners(corners, angle.motions),
+                                    posed = carried.posed(angle.V, angle.motions);
+      SolvedCorners& each = solved.emplace_back(SolvedCorners{angle.degrees, angle.is_baked, {}});
+      each.difference.resize(corners.size());
+      for (std::int64_t c = 0; c < corners.size(); ++c) each.difference[c] = posed[c] - blended[c];
+    }
+  }
+  std::sort(solved.begin(), solved.end(), [](const auto& a, const auto& b) { return a.degrees < b.degrees; });
+  return solved;
+}
+
+const char* word_of(FemQuality quality) {
+  return quality == FemQuality::Draft ? "draft" : quality == FemQuality::Fine ? "fine" : "normal";
+}
+
 }  // namespace
 
 JointBake bake_joint(const Body& body, const BoundBody& bound, int bone, const BakeSettings& settings,
                      Progress& progress) {
   check(body.rig, bone, settings);
   const LabelVolume& volume = body.file.volume;
+  const LabelSets labels(body.tissues);
   JointBake bake;
   BakedJoint& joint = bake.joint;
   joint.bone = body.rig.bones[bone].name;
   joint.axis = flex_axis(body.rig, bone);
-  joint.glide = settings.glide;
-  joint.contact = settings.contact;
-  joint.quality = settings.quality == FemQuality::Draft  ? "draft"
-                  : settings.quality == FemQuality::Fine ? "fine"
-                                                         : "normal";
-  const LabelSets labels(body.tissues);
   joint.source = bake_source(volume, bound.tissue, labels.bone, body.rig, bound.weights);
+  joint.glide = settings.glide;
+  joint.quality = word_of(settings.quality);
+  joint.contact = settings.contact;
+
   const RigidTissue tissue{
       body, bound, labels,
       with_rigid_bones(bound.weights, volume, bound.tissue, body.tissues, labels.bone, body.rig, progress)};
-  std::vector<SolvedSide> sides;
-  for (const double end : {settings.low, settings.high})
-    if (end != 0)
-      sides.push_back(solve_side(tissue, bone, joint.axis, angles_to(end, settings), settings, bake, progress));
-  std::erase_if(sides, [](const SolvedSide& side) { return side.angles.empty(); });
-  if (sides.empty())
-    throw Error("no angle of the joint could be reached, so nothing is baked", joint.bone,
-                bake.warnings.empty() ? "choose another range" : bake.warnings.front());
-
+  const std::vector<SolvedSide> sides = solve_sides(tissue, bone, settings, bake, progress);
   std::vector<std::vector<RigidTransform>> ends;
   std::vector<const TissueMask*> meshed;
-  double tet_mm = sides.front().tet_mm;
+  double tet_mm = INFINITY;
   for (const SolvedSide& side : sides) {
     ends.push_back(side.angles.back().motions);
     meshed.push_back(&side.moving.meshed);
     tet_mm = std::min(tet_mm, side.tet_mm);
   }
+  progress.update("bake", 0);
   const JointCorners corners =
       joint_corners(volume, bound.tissue, tissue.weights, labels.bone, labels.skin, ends, meshed);
-  std::vector<std::pair<const SolvedAngle*, std::vector<glm::vec3>>> solved;  // ascending by angle
-  for (const SolvedSide& side : sides) {
-    const CarriedCorners carried(corners, volume, bound.tissue, tissue.weights, side.moving, side.mesh, side.tet_mm);
-    for (const SolvedAngle& angle : side.angles) {
-      const std::vector<glm::dvec3> blended = blended_corners(corners, angle.motions),
-                                    posed = carried.posed(angle.V, angle.motions);
-      std::vector<glm::vec3> difference(corners.size());
-      for (std::int64_t c = 0; c < corners.size(); ++c) difference[c] = posed[c] - blended[c];
-      solved.emplace_back(&angle, std::move(difference));
-    }
-  }
-  std::sort(solved.begin(), solved.end(),
-            [](const auto& a, const auto& b) { return a.first->degrees < b.first->degrees; });
-  std::vector<std::vector<glm::vec3>> baked;
-  joint.degrees.push_back(0);
-  for (const auto& [angle, difference] : solved)
-    if (angle->is_baked) joint.degrees.push_back(angle->degrees), baked.push_back(difference);
-  std::sort(joint.degrees.begin(), joint.degrees.end());
-  fit_lattice(corners, step_for(tet_mm, volume.grid), baked, joint);
+  const std::vector<SolvedCorners> solved = solved_corners(tissue, sides, corners);
+  fit_lattice(corners, step_for(tet_mm, volume.grid), solved, joint);
+  progress.update("bake", 0.8);
   const auto shared = std::make_shared<const BakedJoint>(joint);
-  for (const auto& [angle, difference] : solved)
-    (angle->is_baked ? joint.at_baked : joint.between)
-        .push_back(error_at(shared, angle->degrees, corners, difference, bound.tissue, volume.grid));
+  for (const SolvedCorners& each : solved)
+    (each.is_baked ? joint.at_baked : joint.between)
+        .push_back(error_at(shared, each.degrees, corners, each.difference, bound.tissue, volume.grid));
+  progress.update("bake", 1);
   return bake;
 }
 

@@ -21,4 +21,12 @@ std::string share_of_body(const TissueModel& model, const LabelVolume& body) {
   return text;
 }
 
+Path mesh_path(const Path& name) {
+  if (name.extension() == ".ele") return Path(name).replace_extension(".node");
+  const Exporter* exporter = exporter_for(name);
+  return exporter && exporter->takes_mesh ? name : Path(name.string() + ".node");
+}
+
+const Exporter& mesh_exporter(const Path& name) { return *exporter_for(mesh_path(name)); }
+
 }  // namespace limber::cmd

@@ -73,15 +73,6 @@ Options of_frame(const Options& options, int frame) {
   return one;
 }
 
-// Returns the path of the mesh file: `name` itself if its extension is that of a mesh format, otherwise NAME.node
-// (TetGen format).
-Path mesh_path(const Path& name) {
-  if (name.extension() == ".ele") return Path(name).replace_extension(".node");
-  const Exporter* exporter = exporter_for(name);
-  return exporter && exporter->takes_mesh ? name : Path(name.string() + ".node");
-}
-const Exporter& mesh_exporter(const Path& name) { return *exporter_for(mesh_path(name)); }
-
 FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
   return [options](const std::string& value) {
     OptionFiles files;
@@ -280,11 +271,12 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
 }
 
 std::vector<Landmark> posed_landmarks(const std::vector<Landmark>& landmarks, const Options& options, const Body& body,
-                                      const BoundBody& bound, const BodyInPose& posed) {
+                                      const BoundBody& bound, const BakedJoints& baked, const BodyInPose& posed) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks) places.push_back(landmark.position);
-  places = posed_points(body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
-                        find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), places);
+  places =
+      posed_points(body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
+                   find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), places, baked);
   std::vector<Landmark> there = landmarks;
   for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
   return there;
@@ -330,7 +322,9 @@ bool finish(const Options& options, const Body& body, const BoundBody& bound, co
   write_outputs(options, body, posed.posed, outputs);
   if (!landmarks.empty()) {
     const std::string to = landmark_paths(options.landmarks).to;
-    outputs.write(to, [&] { write_landmarks(posed_landmarks(landmarks, options, body, bound, posed), to); });
+    outputs.write(to, [&] {
+      write_landmarks(posed_landmarks(landmarks, options, body, bound, settings.resample.baked, posed), to);
+    });
   }
   report.seconds.write = writing.seconds();
   if (!options.report.empty() || options.strict) {

@@ -37,12 +37,15 @@ std::vector<std::optional<glm::dvec3>> carried(const LabelVolume& volume, const 
 
 std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                                      const SkinWeights& weights, const Armature& armature, const Pose& pose,
-                                     Blend blend, const FemShape* shape, std::span<const glm::dvec3> points) {
+                                     Blend blend, const FemShape* shape, std::span<const glm::dvec3> points,
+                                     const BakedJoints& baked) {
   const auto motions =
       skin_transforms(bone_motions(weights.bones(), armature, shape ? part_of_pose(pose, shape->reached) : pose));
   const std::vector<SkinAt> skin = skin_at(volume, tissue, weights, points);
   std::vector<std::optional<glm::dvec3>> by_mesh(points.size());
   if (shape) by_mesh = carried(volume, tissue, *shape, points);
+  const BakedFlesh flesh(tissue, volume.grid, joints_in_pose(baked, armature, pose));
+  const AffineTransform to_voxel = voxel_from_world(volume.grid), to_world = world_from_voxel(volume.grid);
   std::vector<glm::dvec3> posed;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Tissue* at = tissues.find(skin[i].label);
@@ -55,6 +58,8 @@ std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxe
       if (skin[i].influence.weight[k] > 0)
         influences.push_back({skin[i].influence.bone[k], skin[i].influence.weight[k] / 65535.0});
     posed.push_back(blend_point(blend, motions, influences, points[i]));
+    if (!(at && is_bone(at->kind)))
+      posed.back() += to_world.linear * glm::dvec3(flesh.shift_at(to_voxel * points[i] + 0.5));
   }
   return posed;
 }

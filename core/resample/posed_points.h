@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/deform/skinning.h"
+#include "core/resample/baked_pose.h"
 #include "core/resample/fem_shape.h"
 #include "core/skin/skin_weights.h"
 #include "core/tissue/tissue_table.h"
@@ -19,6 +20,7 @@ namespace limber {
 //   shape   a solved shape, or null       points  #P, world, mm, at rest       returns  #P, world, mm
 std::vector<glm::dvec3> posed_points(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                                      const SkinWeights& weights, const Armature& armature, const Pose& pose,
-                                     Blend blend, const FemShape* shape, std::span<const glm::dvec3> points);
+                                     Blend blend, const FemShape* shape, std::span<const glm::dvec3> points,
+                                     const BakedJoints& baked = {});
 
 }  // namespace limber

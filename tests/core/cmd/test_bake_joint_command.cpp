@@ -27,7 +27,7 @@ struct BakedArm {
     REQUIRE(run.exit_code == 0);
     CHECK(run.out.find("Forearm is baked from +0 to +50 degrees") != std::string::npos);
   }
-  Run resample(const std::vector<std::string>& more) const {
+  ProgramRun resample(const std::vector<std::string>& more) const {
     std::vector<std::string> words = {"resample",  volume,  "--rig",   rig,   "--tissues", tissues,
                                       "--weights", weights, "--baked", baked, "-o",        posed};
     words.insert(words.end(), more.begin(), more.end());
