@@ -29,6 +29,31 @@ void check_inside(const BakedJoint& joint, const Grid& grid) {
 
 }  // namespace
 
+BakedSampler::BakedSampler(const BakedJoint& joint, const Grid& grid) : joint_(&joint) {
+  check_inside(joint, grid);
+  index_.assign(std::size_t(joint.size.x) * joint.size.y * joint.size.z, -1);
+  for (std::size_t n = 0; n < joint.nodes.size(); ++n) index_[joint.nodes[n]] = static_cast<std::int32_t>(n);
+}
+
+BakedSampler::Shares BakedSampler::at(const glm::dvec3& place) const {
+  const glm::ivec3& size = joint_->size;
+  const glm::dvec3 node = place / glm::dvec3(joint_->step) - glm::dvec3(joint_->first);
+  const glm::ivec3 low(glm::floor(node));
+  Shares shares;
+  if (glm::any(glm::lessThan(low, glm::ivec3(-1))) || glm::any(glm::greaterThanEqual(low, size))) return shares;
+  const glm::vec3 high = glm::vec3(node - glm::dvec3(low)), rest = 1.0f - high;
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 n = low + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+    const float share = (i & 1 ? high.x : rest.x) * (i & 2 ? high.y : rest.y) * (i & 4 ? high.z : rest.z);
+    if (share == 0 || glm::any(glm::lessThan(n, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(n, size))) continue;
+    const std::int32_t index = index_[n.x + std::size_t(size.x) * (n.y + std::size_t(size.y) * n.z)];
+    if (index < 0) continue;
+    shares.node[shares.count] = index;
+    shares.share[shares.count++] = share;
+  }
+  return shares;
+}
+
 BakedFlesh::BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::vector<BentJoint>& joints)
     : tissue_(&tissue) {
   const glm::dmat3 to_voxels = voxel_from_world(grid).linear;

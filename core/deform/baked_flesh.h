@@ -2,6 +2,7 @@
 // The shifts of baked joints (baked_joint.h) in one pose. Shifts of several joints add up.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,28 @@ struct BentJoint {
   std::shared_ptr<const BakedJoint> baked;
   double degrees = 0;                  // its turn about the baked axis
   glm::dquat parent_turn{1, 0, 0, 0};  // rotation, from rest, of the bone above the joint
+
+  bool operator==(const BentJoint&) const = default;
+};
+
+// The nodes of a baked joint around a place, with their trilinear shares.
+class BakedSampler {
+ public:
+  // Keeps a reference to the joint, which must outlive this object.
+  //   throws Error when the joint was baked from a larger volume
+  BakedSampler(const BakedJoint& joint, const Grid& grid);
+
+  struct Shares {
+    int count = 0;                     // 0: no node with a shift is around the place
+    std::array<std::int32_t, 8> node;  // index into BakedJoint::nodes
+    std::array<float, 8> share;
+  };
+  //   place  in units of voxels, where the lowest corner of voxel v is v
+  Shares at(const glm::dvec3& place) const;
+
+ private:
+  const BakedJoint* joint_;
+  std::vector<std::int32_t> index_;  // of each place of the box in the joint's nodes; -1: none
 };
 
 class BakedFlesh final : public FleshShifts {

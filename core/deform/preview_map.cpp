@@ -426,8 +426,8 @@ LivePreview::LivePreview(std::shared_ptr<const LabelVolume> volume, const Tissue
 }
 
 std::shared_ptr<const PreviewMap> LivePreview::update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
-                                                      const MeshPose& mesh) {
-  if (!pose_vertices(posed_from_rest, blend, mesh)) return map_;
+                                                      const MeshPose& mesh, const std::vector<BentJoint>& baked) {
+  if (!pose_vertices(posed_from_rest, blend, mesh, baked)) return map_;
   bound_cells();
   rasterize();
   Made& made = spare();
@@ -462,14 +462,17 @@ void LivePreview::hold_by(const std::shared_ptr<const TetMesh>& mesh) {
 }
 
 // Poses the vertices and the parts' corners that move. Returns false if nothing moved.
-bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh) {
+bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh,
+                                const std::vector<BentJoint>& baked) {
+  const bool shifts = shifts_.set(lattice_, blend == Blend::DualQuaternion ? baked : std::vector<BentJoint>());
   const bool all = !map_ || blend != blend_ || mesh.rest != mesh_.rest;
   if (all) size_ = glm::ivec3(0);
   bone_moved_.assign(posed_from_rest.size(), all);
   for (size_t b = 0; b < posed_from_rest.size() && !all; ++b)
     bone_moved_[b] = posed_from_rest[b].rotation != posed_from_rest_[b].rotation ||
                      posed_from_rest[b].translation != posed_from_rest_[b].translation;
-  if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_) return false;
+  if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_ && !shifts)
+    return false;
   map_ = nullptr;  // null until this update ends, so that after an exception the next update starts anew
 
   if (mesh.rest != mesh_.rest) hold_by(mesh.rest);
@@ -497,9 +500,13 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
                     "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
+  // Returns whether a baked joint moves a vertex otherwise than before.
+  const auto shifts_anew = [&](std::int64_t place) { return shifts && shifts_.has_changed(place); };
   // Returns the posed position of a vertex. If `motion` is not null, also writes the blended motion of the vertex's
   // bones to it; cells that bend need this motion.
-  const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion) {
+  //   shift  the shift of the vertex by baked joints, in cells
+  const auto posed = [&](const glm::ivec3& vertex, std::span<const BoneWeight> influences, SkinTransform* motion,
+                         const glm::vec3& shift) {
     glm::dvec3 at = glm::dvec3(vertex) - 0.5;
     if (influences.size() == 1) {
       at += moves[influences[0].bone] * glm::dvec3(vertex);
@@ -511,7 +518,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
       at += cell_from_world_ * (blend_point(blend, {&together, 1}, {&whole, 1}, world) - world);
       if (motion) *motion = together;
     }
-    return fixed_at(at);
+    return fixed_at(at + glm::dvec3(shift));
   };
   const auto held_at = [&](std::int64_t point) { return fixed_at((*held[point] + 0.5) / step - 0.5); };
   const auto rests = [&](std::span<const BoneWeight> influences) {
@@ -530,9 +537,10 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
         posed_[place] = fixed;
         continue;
       }
-      if (rests(influences)) continue;
+      if (rests(influences) && !shifts_anew(place)) continue;
       const std::int32_t motion = motion_of_[place];
-      const FixedPoint fixed = posed(lattice_.vertices[i], influences, motion < 0 ? nullptr : &motion_[motion]);
+      const FixedPoint fixed = posed(lattice_.vertices[i], influences, motion < 0 ? nullptr : &motion_[motion],
+                                     shifts_.empty() ? glm::vec3(0) : shifts_.at(place));
       moved_[place] = all || motion >= 0 || fixed != posed_[place];
       posed_[place] = fixed;
     }
@@ -550,10 +558,12 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
         }
         const std::span<const BoneWeight> influences(part_influences_.data() + part_offsets_[corner],
                                                      part_offsets_[corner + 1] - part_offsets_[corner]);
-        if (rests(influences)) continue;
+        const glm::ivec3 vertex = lattice_.cells[lattice_.parts[i].cell] + kCorners[c];
+        const bool may_shift = !shifts_.empty() && !lattice_.parts[i].is_stiff;
+        if (rests(influences) && !(may_shift && shifts_anew(lattice_.place(vertex)))) continue;
         part_moved_[i] = 1;
-        posed_parts_[i][c] = posed(lattice_.cells[lattice_.parts[i].cell] + kCorners[c], influences,
-                                   first_motion_[i] < 0 ? nullptr : &motion_[first_motion_[i] + c]);
+        posed_parts_[i][c] = posed(vertex, influences, first_motion_[i] < 0 ? nullptr : &motion_[first_motion_[i] + c],
+                                   may_shift ? shifts_.at(lattice_.place(vertex)) : glm::vec3(0));
       }
     }
   });
@@ -570,11 +580,15 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   std::array<BoneWeight, 8> corners;
   for (int i = 0; i < 8; ++i) corners[i].bone = motion(cell, i);
   if (std::any_of(corners.begin(), corners.end(), [](const BoneWeight& each) { return each.bone < 0; })) return rest;
+  const bool shifts = !shifts_.empty() && !is_stiff(cell);
   const auto posed = [&](const glm::dvec3& at) {
     const glm::dvec3 t = at - glm::dvec3(middle) + 0.5, world = world_from_cell_ * at;
     for (int i = 0; i < 8; ++i)
       corners[i].weight = (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z);
-    return at + cell_from_world_ * (blend_point(blend_, motion_, corners, world) - world);
+    glm::dvec3 shift(0);
+    for (int i = 0; shifts && i < 8; ++i)
+      shift += corners[i].weight * glm::dvec3(shifts_.at(lattice_.place(middle + kCorners[i])));
+    return at + cell_from_world_ * (blend_point(blend_, motion_, corners, world) - world) + shift;
   };
   glm::dvec3 missing = glm::dvec3(node) - posed(rest);
   const auto is_within = [&](double limit) { return glm::all(glm::lessThan(glm::abs(missing), glm::dvec3(limit))); };

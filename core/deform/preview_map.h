@@ -14,6 +14,8 @@
 // elsewhere. So each node stores its distance from such tissue; where the distance is negative, beyond the sheet's
 // border, the map is empty.
 //
+// Baked joints (preview_shifts.h) shift the vertices around them, and what lies between the vertices with them.
+//
 // Where tissue moves with a tet mesh, as while a FEM solve runs, vertices near the mesh move with the mesh
 // (carried_points.h) instead of with their bones. All cells then use the trilinear map of their corners.
 //
@@ -29,6 +31,7 @@
 #include "core/deform/carried_points.h"
 #include "core/deform/lattice.h"
 #include "core/deform/preview_lattice.h"
+#include "core/deform/preview_shifts.h"
 #include "core/deform/rasterize.h"
 #include "core/tissue/tissue_table.h"
 #include "core/volume/label_volume.h"
@@ -110,9 +113,10 @@ class LivePreview {
   // Returns the map of a pose. If nothing has changed since the last call, returns the same pointer.
   //   posed_from_rest  motions of the bones of the weights
   //   mesh             a mesh with which the tissue near it moves; empty: none
-  //   throws Error if the pose moves tissue too far
+  //   baked            baked joints as the pose turns them, whose shifts are added to blending by dual quaternions
+  //   throws Error if the pose moves tissue too far, and when a joint was baked from a larger volume
   std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
-                                           const MeshPose& mesh = {});
+                                           const MeshPose& mesh = {}, const std::vector<BentJoint>& baked = {});
 
   const PreviewLattice& lattice() const { return lattice_; }
   std::int64_t cells_rasterized() const { return cells_rasterized_; }  // number of cells in the last update
@@ -144,7 +148,8 @@ class LivePreview {
   PosedCell posed_cell(std::int64_t cell) const;
   glm::dvec3 in_bent_cell(std::int64_t cell, const glm::ivec3& node, const glm::dvec3& rest) const;
 
-  bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh);
+  bool pose_vertices(const std::vector<RigidTransform>& posed_from_rest, Blend blend, const MeshPose& mesh,
+                     const std::vector<BentJoint>& baked);
   void hold_by(const std::shared_ptr<const TetMesh>& mesh);
   void bound_cells();
   void rasterize();
@@ -169,6 +174,7 @@ class LivePreview {
   std::vector<RigidTransform> posed_from_rest_;
   Blend blend_ = Blend::Linear;
   MeshPose mesh_;
+  PreviewShifts shifts_;
   // Points that may move with mesh_: all vertices, then eight corners of each part.
   std::optional<CarriedPoints> carried_;
   std::vector<FixedPoint> posed_;      // posed position of each vertex, by PreviewLattice::place(vertex)

@@ -15,6 +15,7 @@
 #include "core/base/parallel.h"
 #include "core/body/pose_body.h"
 #include "core/deform/bake_source.h"
+#include "core/deform/preview_map.h"
 #include "core/phantom/phantom.h"
 #include "core/resample/posed_voxels.h"
 
@@ -161,6 +162,48 @@ TEST_CASE("bake joint: a baked pose keeps more volume than blending, and the res
   CHECK(baked.report.overlap_voxels < 0.1 * double(blended.report.overlap_voxels));
   REQUIRE(baked.report.baked.size() == 1);
   CHECK(baked.report.baked[0].degrees == doctest::Approx(67.5));
+}
+
+TEST_CASE("bake joint: the live preview shows the baked shape") {
+  const BakedElbow& arm = elbow();
+  LivePreview preview(std::make_shared<const LabelVolume>(arm.body.file.volume), arm.body.tissues, arm.bound.tissue,
+                      arm.bound.weights, 2);
+  const Pose pose = arm.bent(60);
+  const auto motions = posed_from_rest(arm.body.rig, pose);
+  const auto bent = joints_in_pose({arm.joint}, arm.body.rig, pose);
+  const Posed posed = arm.posed(60, Blend::DualQuaternion, {arm.joint});
+  const LabelSets labels(arm.body.tissues);
+  const glm::dvec3 shift = glm::round(voxel_from_world(arm.body.file.volume.grid) * posed.volume.grid.origin);
+  // The median distance at rest from what the posed volume shows, over soft tissue that the pose moves, mm.
+  const auto off = [&](const PreviewMap& map) {
+    std::vector<double> found;
+    std::int64_t i = 0;
+    glm::ivec3 v;
+    for (v.z = 0; v.z < posed.volume.grid.size.z; ++v.z)
+      for (v.y = 0; v.y < posed.volume.grid.size.y; ++v.y)
+        for (v.x = 0; v.x < posed.volume.grid.size.x; ++v.x, ++i) {
+          const Label label = posed.volume.voxels[i];
+          if (label == 0 || !labels.soft[label] || glm::length(posed.displacement[i]) < 1) continue;
+          const glm::dvec3 at = glm::dvec3(v) + shift;
+          const auto rest = map.rest_at(at);
+          if (!rest) continue;
+          const AffineTransform world = world_from_voxel(arm.body.file.volume.grid);
+          found.push_back(glm::distance(world.linear * (at - *rest), glm::dvec3(posed.displacement[i])));
+        }
+    REQUIRE(found.size() > 1000);
+    std::sort(found.begin(), found.end());
+    return std::pair(part_of(found, 0.5), part_of(found, 0.9));
+  };
+  const auto plain = off(*preview.update(motions, Blend::DualQuaternion));
+  const auto baked = off(*preview.update(motions, Blend::DualQuaternion, {}, bent));
+  CHECK(baked.second < 2.5);
+  CHECK(baked.second < 0.5 * plain.second);
+  // A joint that is no longer given leaves nothing behind, and the way to a pose does not matter.
+  const auto without = preview.update(motions, Blend::DualQuaternion);
+  CHECK(off(*without) == plain);
+  preview.update(posed_from_rest(arm.body.rig, arm.bent(20)), Blend::DualQuaternion, {},
+                 joints_in_pose({arm.joint}, arm.body.rig, arm.bent(20)));
+  CHECK(off(*preview.update(motions, Blend::DualQuaternion, {}, bent)) == baked);
 }
 
 TEST_CASE("bake joint: what cannot be baked is said in one line") {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/deform/preview_shifts.h"
+
+#include <algorithm>
+
+#include "core/base/parallel.h"
+
+namespace limber {
+
+// Returns the shifts of the vertices that lie between nodes of the joint's lattice.
+PreviewShifts::Table PreviewShifts::sampled(const PreviewLattice& lattice, const BakedJoint& joint) {
+  const BakedSampler sampler(joint, lattice.grid);
+  std::vector<std::int32_t> places;
+  std::vector<BakedSampler::Shares> shares;
+  glm::ivec3 v;
+  for (v.z = 0; v.z <= lattice.size.z; ++v.z)
+    for (v.y = 0; v.y <= lattice.size.y; ++v.y)
+      for (v.x = 0; v.x <= lattice.size.x; ++v.x) {
+        const glm::ivec3 vertex = lattice.first + v;
+        const BakedSampler::Shares around = sampler.at(glm::dvec3(vertex * lattice.step));
+        if (around.count == 0) continue;
+        places.push_back(static_cast<std::int32_t>(lattice.place(vertex)));
+        shares.push_back(around);
+      }
+  Table table{std::move(places), std::vector<std::vector<glm::vec3>>(joint.degrees.size())};
+  for (std::size_t a = 0; a < joint.degrees.size(); ++a)
+    if (joint.degrees[a] != 0)
+      for (const BakedSampler::Shares& around : shares) {
+        glm::vec3 sum(0);
+        for (int i = 0; i < around.count; ++i) sum += around.share[i] * joint.shifts[a][around.node[i]];
+        table.by_angle[a].push_back(sum);
+      }
+  return table;
+}
+
+bool PreviewShifts::set(const PreviewLattice& lattice, const std::vector<BentJoint>& joints) {
+  const auto same_joints = [](const BentJoint& a, const BentJoint& b) { return a.baked == b.baked; };
+  if (!std::equal(joints.begin(), joints.end(), joints_.begin(), joints_.end(), same_joints)) {
+    tables_.clear();
+    for (const BentJoint& joint : joints) tables_.push_back(sampled(lattice, *joint.baked));
+  } else if (joints == joints_) {
+    before_ = shift_;
+    return false;
+  }
+  joints_ = joints;
+  before_ = std::move(shift_);
+  shift_.assign(lattice.places(), glm::vec3(0));
+  before_.resize(shift_.size(), glm::vec3(0));
+  const glm::dmat3 to_cells = voxel_from_world(lattice.grid).linear / double(lattice.step);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const Table& table = tables_[j];
+    const auto shares = shares_at(joints[j].baked->degrees, joints[j].degrees);
+    const glm::mat3 turn(to_cells * glm::mat3_cast(joints[j].parent_turn));
+    parallel_for(std::ssize(table.places), 1024, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = begin; i < end; ++i) {
+        glm::vec3 sum(0);
+        for (const auto& [angle, share] : shares) sum += static_cast<float>(share) * table.by_angle[angle][i];
+        shift_[table.places[i]] += turn * sum;
+      }
+    });
+  }
+  return true;
+}
+
+}  // namespace limber
