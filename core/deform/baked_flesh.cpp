@@ -94,27 +94,43 @@ bool BakedFlesh::Field::touches(const glm::ivec3& low, const glm::ivec3& high) c
   return false;
 }
 
-// Returns the shift at a place, in units of voxels: place c is the lowest corner of voxel c.
-glm::vec3 BakedFlesh::Field::at(const glm::dvec3& place) const {
-  const glm::dvec3 node = place / glm::dvec3(step) - glm::dvec3(first);
-  const glm::ivec3 low(glm::floor(node));
-  if (glm::any(glm::lessThan(low, glm::ivec3(-1))) || glm::any(glm::greaterThanEqual(low, size))) return glm::vec3(0);
-  const glm::vec3 high = glm::vec3(node - glm::dvec3(low)), rest = 1.0f - high;
+BakedFlesh::Field::Along BakedFlesh::Field::along(int axis, double place) const {
+  const double node = place / step[axis] - first[axis], low = std::floor(node);
+  // Places beyond the box come to lie just outside it.
+  return {static_cast<int>(std::clamp(low, -2.0, double(size[axis]))), static_cast<float>(node - low)};
+}
+
+// Returns the shift between eight nodes. Nodes outside the box have none.
+glm::vec3 BakedFlesh::Field::between(const Along& x, const Along& y, const Along& z) const {
   glm::vec3 sum(0);
-  for (int i = 0; i < 8; ++i) {
-    const glm::ivec3 n = low + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
-    const float share = (i & 1 ? high.x : rest.x) * (i & 2 ? high.y : rest.y) * (i & 4 ? high.z : rest.z);
-    if (share == 0 || glm::any(glm::lessThan(n, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(n, size))) continue;
-    sum += share * shift[n.x + std::size_t(size.x) * (n.y + std::size_t(size.y) * n.z)];
+  for (int k = 0; k < 2; ++k) {
+    const float share_z = k ? z.share : 1 - z.share;
+    if (share_z == 0 || z.low + k < 0 || z.low + k >= size.z) continue;
+    for (int j = 0; j < 2; ++j) {
+      const float share_yz = (j ? y.share : 1 - y.share) * share_z;
+      if (share_yz == 0 || y.low + j < 0 || y.low + j >= size.y) continue;
+      const glm::vec3* row = shift.data() + std::size_t(size.x) * (y.low + j + std::size_t(size.y) * (z.low + k));
+      for (int i = 0; i < 2; ++i) {
+        const float share = (i ? x.share : 1 - x.share) * share_yz;
+        if (share != 0 && x.low + i >= 0 && x.low + i < size.x) sum += share * row[x.low + i];
+      }
+    }
   }
   return sum;
 }
 
+glm::vec3 BakedFlesh::Field::at(const glm::dvec3& place) const {
+  return between(along(0, place.x), along(1, place.y), along(2, place.z));
+}
+
 void BakedFlesh::Field::add(const glm::ivec3& low, CornerShifts& shifts) const {
+  std::array<std::array<Along, kCorners>, 3> places;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < kCorners; ++i) places[axis][i] = along(axis, low[axis] + i);
   std::size_t to = 0;
-  for (int k = 0; k < kCorners; ++k)
-    for (int j = 0; j < kCorners; ++j)
-      for (int i = 0; i < kCorners; ++i) shifts[to++] += at(glm::dvec3(low + glm::ivec3(i, j, k)));
+  for (const Along& z : places[2])
+    for (const Along& y : places[1])
+      for (const Along& x : places[0]) shifts[to++] += between(x, y, z);
 }
 
 bool BakedFlesh::corner_shifts(std::int64_t brick, CornerShifts& shifts) const {

@@ -59,12 +59,19 @@ class BakedFlesh final : public FleshShifts {
  private:
   // The shifts of one joint.
   struct Field {
+    // The two nodes around a place along one axis: `low` and the next; `share` is that of the next.
+    struct Along {
+      int low;
+      float share;
+    };
     glm::ivec3 step, first, size;
     std::vector<glm::vec3> shift;  // of each node of the box, voxels; zero for nodes without one
 
     bool touches(const glm::ivec3& low, const glm::ivec3& high) const;
     void add(const glm::ivec3& low, CornerShifts& shifts) const;
     glm::vec3 at(const glm::dvec3& place) const;
+    Along along(int axis, double place) const;
+    glm::vec3 between(const Along& x, const Along& y, const Along& z) const;
   };
 
   const TissueVoxels* tissue_;

@@ -559,11 +559,11 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
         const std::span<const BoneWeight> influences(part_influences_.data() + part_offsets_[corner],
                                                      part_offsets_[corner + 1] - part_offsets_[corner]);
         const glm::ivec3 vertex = lattice_.cells[lattice_.parts[i].cell] + kCorners[c];
-        const bool may_shift = !shifts_.empty() && !lattice_.parts[i].is_stiff;
-        if (rests(influences) && !(may_shift && shifts_anew(lattice_.place(vertex)))) continue;
+        const bool is_stiff = lattice_.parts[i].is_stiff;
+        if (rests(influences) && (is_stiff || !shifts_anew(lattice_.place(vertex)))) continue;
         part_moved_[i] = 1;
         posed_parts_[i][c] = posed(vertex, influences, first_motion_[i] < 0 ? nullptr : &motion_[first_motion_[i] + c],
-                                   may_shift ? shifts_.at(lattice_.place(vertex)) : glm::vec3(0));
+                                   is_stiff || shifts_.empty() ? glm::vec3(0) : shifts_.at(lattice_.place(vertex)));
       }
     }
   });
@@ -580,14 +580,18 @@ glm::dvec3 LivePreview::in_bent_cell(std::int64_t cell, const glm::ivec3& node, 
   std::array<BoneWeight, 8> corners;
   for (int i = 0; i < 8; ++i) corners[i].bone = motion(cell, i);
   if (std::any_of(corners.begin(), corners.end(), [](const BoneWeight& each) { return each.bone < 0; })) return rest;
-  const bool shifts = !shifts_.empty() && !is_stiff(cell);
+  std::array<glm::dvec3, 8> shifts;
+  bool is_shifted = false;
+  for (int i = 0; i < 8 && !shifts_.empty() && !is_stiff(cell); ++i) {
+    shifts[i] = shifts_.at(lattice_.place(middle + kCorners[i]));
+    is_shifted |= shifts[i] != glm::dvec3(0);
+  }
   const auto posed = [&](const glm::dvec3& at) {
     const glm::dvec3 t = at - glm::dvec3(middle) + 0.5, world = world_from_cell_ * at;
     for (int i = 0; i < 8; ++i)
       corners[i].weight = (i & 1 ? t.x : 1 - t.x) * (i & 2 ? t.y : 1 - t.y) * (i & 4 ? t.z : 1 - t.z);
     glm::dvec3 shift(0);
-    for (int i = 0; shifts && i < 8; ++i)
-      shift += corners[i].weight * glm::dvec3(shifts_.at(lattice_.place(middle + kCorners[i])));
+    for (int i = 0; is_shifted && i < 8; ++i) shift += corners[i].weight * shifts[i];
     return at + cell_from_world_ * (blend_point(blend_, motion_, corners, world) - world) + shift;
   };
   glm::dvec3 missing = glm::dvec3(node) - posed(rest);

@@ -34,18 +34,26 @@ PreviewShifts::Table PreviewShifts::sampled(const PreviewLattice& lattice, const
 }
 
 bool PreviewShifts::set(const PreviewLattice& lattice, const std::vector<BentJoint>& joints) {
+  if (joints == joints_) return false;
   const auto same_joints = [](const BentJoint& a, const BentJoint& b) { return a.baked == b.baked; };
-  if (!std::equal(joints.begin(), joints.end(), joints_.begin(), joints_.end(), same_joints)) {
+  shift_.resize(lattice.places());
+  is_near_.resize(lattice.places());
+  const bool same = std::equal(joints.begin(), joints.end(), joints_.begin(), joints_.end(), same_joints);
+  if (same) {
+    for (const Table& table : tables_)
+      for (const std::int32_t place : table.places) shift_[place] = glm::vec3(0);
+  } else {
+    std::fill(shift_.begin(), shift_.end(), glm::vec3(0));
+    std::fill(is_near_.begin(), is_near_.end(), 0);
+    // Vertices of joints that are no longer given have changed, too.
+    for (const Table& table : tables_)
+      for (const std::int32_t place : table.places) is_near_[place] = 1;
     tables_.clear();
     for (const BentJoint& joint : joints) tables_.push_back(sampled(lattice, *joint.baked));
-  } else if (joints == joints_) {
-    before_ = shift_;
-    return false;
+    for (const Table& table : tables_)
+      for (const std::int32_t place : table.places) is_near_[place] = 1;
   }
   joints_ = joints;
-  before_ = std::move(shift_);
-  shift_.assign(lattice.places(), glm::vec3(0));
-  before_.resize(shift_.size(), glm::vec3(0));
   const glm::dmat3 to_cells = voxel_from_world(lattice.grid).linear / double(lattice.step);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const Table& table = tables_[j];

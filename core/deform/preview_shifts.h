@@ -20,8 +20,8 @@ class PreviewShifts {
   // Returns the shift of a vertex, in cells along the axes of the volume.
   //   place  PreviewLattice::place(vertex)
   const glm::vec3& at(std::int64_t place) const { return shift_[place]; }
-  // Returns whether the last set() has changed the shift of a vertex.
-  bool has_changed(std::int64_t place) const { return shift_[place] != before_[place]; }
+  // Returns whether the last set() may have changed the shift of a vertex.
+  bool has_changed(std::int64_t place) const { return is_near_[place]; }
 
  private:
   struct Table {
@@ -31,8 +31,9 @@ class PreviewShifts {
   static Table sampled(const PreviewLattice& lattice, const BakedJoint& joint);
 
   std::vector<BentJoint> joints_;
-  std::vector<Table> tables_;              // one for each joint
-  std::vector<glm::vec3> shift_, before_;  // by place; empty without joints
+  std::vector<Table> tables_;          // one for each joint
+  std::vector<glm::vec3> shift_;       // by place; empty until the first joint
+  std::vector<std::uint8_t> is_near_;  // by place: 1 for vertices with shifts in this or the last pose
 };
 
 }  // namespace limber
