@@ -135,10 +135,10 @@ std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, 
 
   const Seconds rasterize_seconds;
   const bool mends = can_fold(motions) && !settings.nearest;
-  std::optional<TiledLabels> posed_labels = write_voxels(
-      {volume, body.tissues, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr, output, mends,
-       tets.has_value() || !baked.empty()},
-      settings, posed, progress);
+  std::optional<TiledLabels> posed_labels =
+      write_voxels({volume, body.tissues, labels, lattice, bones, tets ? &*tets : nullptr, depth ? &*depth : nullptr,
+                    output, mends, tets.has_value() || !baked.empty()},
+                   settings, posed, progress);
   std::erase_if(report.bones, [](const auto& bone) { return bone.voxels == 0; });
   report.seconds_rasterize = rasterize_seconds();
   return posed_labels;
