@@ -36,8 +36,7 @@ constexpr float kBoneCorner = 0.1f;  // weight of a corner inside bone, which is
 // One angle that is solved, on one side of rest.
 struct SolvedAngle {
   double degrees = 0;
-  bool is_baked = false;  // false: only to tell the error
-  Pose pose;
+  bool is_baked = false;                // false: only to tell the error
   std::vector<RigidTransform> motions;  // of the bones of the weights
   Eigen::MatrixX3d V;
 };
@@ -129,11 +128,9 @@ SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axi
     if (!shape->solve.converged)
       bake.warnings.push_back("the shape at " + in_degrees(angles[i].degrees) +
                               " has not settled: " + shape->solve.blocked_by);
-    angles[i].pose = shape->pose;
     angles[i].motions = bone_motions(tissue.weights.bones(), body.rig, shape->pose);
     angles[i].V = shape->V;
     side.angles.push_back(std::move(angles[i]));
-    if (settings.on_solved) settings.on_solved({.degrees = side.angles.back().degrees}, side.angles.back().is_baked);
   }
   while (!side.angles.empty() && !side.angles.back().is_baked) side.angles.pop_back();
   return side;
