@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/bake/baked_joint_io.h"
 #include "core/base/error.h"
 #include "core/base/json_text.h"
 #include "core/cmd/command.h"
@@ -82,10 +83,34 @@ Json describe_weights(const Path& path) {
   return {{"kind", "weights"}, {"bones", bones}, {"voxels", weights.voxels}};
 }
 
+Json describe_baked_joint(const Path& path) {
+  const BakedJoint joint = read_baked_joint(path);
+  const auto errors = [](const std::vector<BakeError>& given) {
+    Json list = Json::array();
+    for (const BakeError& error : given)
+      list.push_back({{"degrees", error.degrees},
+                      {"flesh_95_mm", error.flesh_mm},
+                      {"skin_95_mm", error.skin_mm},
+                      {"largest_mm", error.largest_mm}});
+    return list;
+  };
+  return {{"kind", "baked joint"},
+          {"bone", joint.bone},
+          {"axis", as_json(joint.axis)},
+          {"baked_at_degrees", joint.degrees},
+          {"quality", joint.quality},
+          {"contact", joint.contact},
+          {"glide", joint.glide},
+          {"nodes", joint.nodes.size()},
+          {"errors_baked", errors(joint.at_baked)},
+          {"errors_between", errors(joint.between)}};
+}
+
 Json describe(const Path& path) {
   if (is_project(path) || path.extension() == ".limber") return Json::parse(describe_project(path));
   if (is_tissue_table(path)) return describe_tissues(path);
   if (path.extension() == ".json" || is_rig_or_motion(path)) return Json::parse(describe_rig_or_motion(path));
+  if (path.extension() == kBakeEnding) return describe_baked_joint(path);
   if (is_weights_path(path)) return describe_weights(path);
   return describe_volume(path);
 }
@@ -99,8 +124,9 @@ void add_info(CLI::App& app) {
   auto* command = app.add_subcommand("info", "prints what a file contains: header, labels, bones, joints");
   auto options = std::make_shared<Options>();
   command
-      ->add_option("FILE", options->file,
-                   "a volume, a folder with DICOM images, a rig, motion, weights, mesh, label table or project")
+      ->add_option(
+          "FILE", options->file,
+          "a volume, a folder with DICOM images, a rig, motion, weights, baked joint, mesh, label table or project")
       ->required();
   command->add_flag("--json", options->json, "as JSON");
   command->callback([options] {

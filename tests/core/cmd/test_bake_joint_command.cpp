@@ -59,6 +59,17 @@ TEST_CASE("bake-joint command: the report of a pose names the baked joint, its a
   CHECK(is_input);
 }
 
+TEST_CASE("bake-joint command: info tells what a baked joint is and how far it is from finite elements") {
+  const auto run = run_limber({"info", arm().baked, "--json"});
+  REQUIRE(run.exit_code == 0);
+  const auto json = nlohmann::json::parse(run.out);
+  CHECK(json["kind"] == "baked joint");
+  CHECK(json["bone"] == "Forearm");
+  CHECK(json["baked_at_degrees"] == nlohmann::json({0, 25, 50}));
+  CHECK(json["errors_between"].size() == 2);
+  CHECK(json["contact"] == false);
+}
+
 TEST_CASE("bake-joint command: a pose that the stated error does not hold for is warned of") {
   for (const auto& [more, says] :
        {std::pair<std::vector<std::string>, const char*>{{"--flex", "Forearm=70"}, "baked from +0 to +50 only"},
