@@ -2,6 +2,7 @@
 #include "core/deform/baked_flesh.h"
 
 #include <algorithm>
+#include <climits>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -52,6 +53,28 @@ BakedSampler::Shares BakedSampler::at(const glm::dvec3& place) const {
     shares.share[shares.count++] = share;
   }
   return shares;
+}
+
+BakedSampler::Shares BakedSampler::nearest(const glm::ivec3& place, int reach) const {
+  const BakedJoint& joint = *joint_;
+  const glm::ivec3 low = glm::max(-floor_divided(reach - place, joint.step) - joint.first, glm::ivec3(0));
+  const glm::ivec3 high = glm::min(floor_divided(place + reach, joint.step) - joint.first, joint.size - 1);
+  Shares nearest;
+  int least = INT_MAX;
+  for (int z = low.z; z <= high.z; ++z)
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        const std::int32_t node = index_[x + std::size_t(joint.size.x) * (y + std::size_t(joint.size.y) * z)];
+        if (node < 0) continue;
+        const glm::ivec3 away = (joint.first + glm::ivec3(x, y, z)) * joint.step - place;
+        const int squared = away.x * away.x + away.y * away.y + away.z * away.z;
+        if (squared >= least) continue;
+        least = squared;
+        nearest.count = 1;
+        nearest.node[0] = node;
+        nearest.share[0] = 1;
+      }
+  return nearest;
 }
 
 BakedFlesh::BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::vector<BentJoint>& joints)

@@ -35,6 +35,8 @@ class BakedSampler {
   };
   //   place  in units of voxels, where the lowest corner of voxel v is v
   Shares at(const glm::dvec3& place) const;
+  // Returns the nearest node with a shift, at most `reach` voxels away along each axis, with the whole share.
+  Shares nearest(const glm::ivec3& place, int reach) const;
 
  private:
   const BakedJoint* joint_;

@@ -7,9 +7,13 @@
 
 namespace limber {
 
-// Returns the shifts of the vertices that lie between nodes of the joint's lattice.
+// Returns the shifts of the vertices of cells. The nodes of a joint may lie in tissue alone, but the cells around the
+// skin have vertices in air: these take the shift of the nearest node.
 PreviewShifts::Table PreviewShifts::sampled(const PreviewLattice& lattice, const BakedJoint& joint) {
   const BakedSampler sampler(joint, lattice.grid);
+  std::vector<std::uint8_t> is_vertex(lattice.places(), 0);
+  for (const glm::ivec3& cell : lattice.cells)
+    for (int i = 0; i < 8; ++i) is_vertex[lattice.place(cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2))] = 1;
   std::vector<std::int32_t> places;
   std::vector<BakedSampler::Shares> shares;
   glm::ivec3 v;
@@ -17,9 +21,12 @@ PreviewShifts::Table PreviewShifts::sampled(const PreviewLattice& lattice, const
     for (v.y = 0; v.y <= lattice.size.y; ++v.y)
       for (v.x = 0; v.x <= lattice.size.x; ++v.x) {
         const glm::ivec3 vertex = lattice.first + v;
-        const BakedSampler::Shares around = sampler.at(glm::dvec3(vertex * lattice.step));
+        const std::int64_t place = lattice.place(vertex);
+        if (!is_vertex[place]) continue;
+        BakedSampler::Shares around = sampler.at(glm::dvec3(vertex * lattice.step));
+        if (around.count == 0) around = sampler.nearest(vertex * lattice.step, 2 * lattice.step);
         if (around.count == 0) continue;
-        places.push_back(static_cast<std::int32_t>(lattice.place(vertex)));
+        places.push_back(static_cast<std::int32_t>(place));
         shares.push_back(around);
       }
   Table table{std::move(places), std::vector<std::vector<glm::vec3>>(joint.degrees.size())};

@@ -4,7 +4,8 @@
 //   limber render VOLUME|PROJECT -o PNG [--size WxH] [--view front|back|left|right|top|bottom] [--turn DEG]
 //     [--tilt DEG] [--zoom FACTOR] [--orthographic] [--display solid|xray|tissue] [--shading fine|draft] [--hide L,L]
 //     [--opacity L=A] [--clip-box X,Y,Z,X,Y,Z] [--clip-plane X,Y,Z,NX,NY,NZ] [--rig RIG]
-//     [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs|mix] [--preview]
+//     [--armature octahedron|stick|cylinder|none] [--weights W] [POSE-OPTIONS] [--method lbs|dqs|mix]
+//     [--baked JOINT.bake]... [--preview]
 //     [--slice axial|coronal|sagittal [--at MM] [--outline]] [--turntable N] [--transparent] [--light] [--grid]
 //     [--figure WxH [--dpi N] [--letter A] [--title T] [--paper white|black|transparent] [--no-legend]
 //       [--no-scale-bar]]
@@ -34,6 +35,7 @@
 #include "core/seams/find_seams.h"
 #include "core/skin/weights_io.h"
 #include "core/volume_io/grey_image.h"
+#include "editor/cli/baked_option.h"
 #include "editor/cli/command.h"
 #include "editor/cli/figure_options.h"
 #include "editor/cli/posed_box.h"
@@ -63,7 +65,7 @@ struct Options {
   Light shading = Light::Fine;
   double turn = 0, tilt = 0, zoom = 1;
   std::vector<double> hide, clip_box, clip_plane;
-  std::vector<std::string> opacity;
+  std::vector<std::string> opacity, baked;
   std::optional<double> at;
   std::optional<int> turntable;
   FigureFlags figure;
@@ -199,9 +201,11 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   const Blend blend = *find_blend(options.method);
   const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
+  const BakedJoints baked = baked_joints_for(options.baked, options.method, document, tissue, weights);
+  cmd::warn(doubts_of_baked(report_of_baked(baked, *document.armature, pose), ""));
   if (options.preview) {
     LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));
-    scene.pose = preview.update(scene.posed_from_rest, blend);
+    scene.pose = preview.update(scene.posed_from_rest, blend, {}, joints_in_pose(baked, *document.armature, pose));
     result.tissue =
         box_of_posed(document.volume->grid, document.volume->grid, tissue, weights, scene.posed_from_rest, blend);
     return result;
@@ -209,7 +213,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   const BoneParts parts = split_bones(*document.volume, tissue, *document.tissues, *document.armature, progress,
                                       usable_bone_map(seam_source(document)));
   Posed posed = resample(*document.volume, *document.tissues, *document.armature, weights, pose, blend,
-                         {.seams = seams_of(document, tissue, parts, progress)}, progress);
+                         {.seams = seams_of(document, tissue, parts, progress), .baked = baked}, progress);
   scene.volume = std::make_shared<const LabelVolume>(std::move(posed.volume));
   result.tissue =
       box_of_posed(document.volume->grid, scene.volume->grid, tissue, weights, scene.posed_from_rest, blend);
@@ -463,6 +467,8 @@ void add_render(CLI::App& app) {
   command->add_option("--method", options->method, "how the pose moves tissue: " + method_summaries(Methods::Blends))
       ->check(CLI::IsMember(method_words(Methods::Blends)))
       ->capture_default_str();
+  command->add_option("--baked", options->baked, "a joint of limber bake-joint, for --method dqs; may be repeated")
+      ->type_name("JOINT.bake");
   command->add_flag("--preview", options->preview, "draws the editor's coarse preview of the pose, which is fast");
   command->add_option("--slice", options->slice, "draws a slice instead of a 3D picture")
       ->check(CLI::IsMember({"axial", "coronal", "sagittal"}));

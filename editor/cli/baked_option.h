@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The option --baked of `limber render`: joints of `limber bake-joint`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/project/document.h"
+#include "core/resample/baked_pose.h"
+
+namespace limber::editor {
+
+// Reads the files of baked joints. Throws Error for a file that is none, for one that was baked from another body, and
+// for a method other than dual quaternions.
+BakedJoints baked_joints_for(const std::vector<std::string>& files, const std::string& method, const Document& document,
+                             const TissueVoxels& tissue, const SkinWeights& weights);
+
+}  // namespace limber::editor
