@@ -164,5 +164,5 @@ TEST_CASE("command files: every command that takes -o says that it is written") 
       CHECK_NOTHROW(option->get_validator("files"));
       ++outputs;
     }
-  CHECK(outputs == 13);
+  CHECK(outputs == 14);
 }
