@@ -84,6 +84,7 @@ Method method_of(const PosingSettings& settings, const PosingEvents& events) {
   if (method->blend) return *method->blend;
   Fem fem;
   fem.contact = settings.has_contact();
+  fem.slides = settings.slides;
   fem.estimates_error = settings.estimates_error;
   fem.objects = settings.objects;
   fem.gravity = settings.gravity;

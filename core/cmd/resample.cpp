@@ -290,6 +290,7 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
           .contact = options.fem->contact,
           .quality = options.fem->quality,
           .mesher = options.fem->mesher,
+          .slides = !options.fem->stick,
           .estimates_error = options.fem->error_estimate,
           .objects = objects_of(*options.fem),
           .gravity = gravity_of(*options.fem),

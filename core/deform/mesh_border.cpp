@@ -24,7 +24,7 @@ MeshBorder::MeshBorder(const TetMesh& mesh, const Grid& grid)
       grid_(grid),
       world_from_voxel_(world_from_voxel(grid)) {
   const AffineTransform voxel = voxel_from_world(grid);
-  const auto neighbours = neighbours_of(mesh.T);
+  const auto neighbours = neighbours_of(mesh);
   std::vector<VoxelRange> boxes;
   for (int t = 0; t < mesh.T.rows(); ++t)
     for (int f = 0; f < 4; ++f) {

@@ -20,6 +20,7 @@ constexpr int kPosedBin = 16;  // edge of a search bin, voxels: a quarter of an 
 // overlapping if they are at most this far apart at rest, voxels. A crease may press them together: riders stick out by
 // two voxels on both sides, and the crease is one voxel wide.
 constexpr int kCrease = 5;
+constexpr int kSlides = 1 << 20;  // the same for flesh that slides over bone, which may come from anywhere
 constexpr int kSide = TissueVoxels::kBrick + 1;
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
@@ -61,6 +62,16 @@ glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& corners, const glm::dvec3&
   const glm::dmat3 edges(corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
   const glm::dvec3 s = glm::inverse(edges) * (point - corners[0]);
   return {1 - s.x - s.y - s.z, s};
+}
+
+// Returns 1 for each tet of bone with a node at which flesh has a node of its own (TetMesh::copy_of).
+std::vector<char> slid_over(const TetMesh& mesh) {
+  std::vector<char> has_copy(mesh.V.rows(), 0), result(mesh.T.rows(), 0);
+  for (std::size_t v = 0; v < mesh.copy_of.size(); ++v)
+    if (mesh.copy_of[v] != int(v)) has_copy[mesh.copy_of[v]] = 1;
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    for (const int v : mesh.T.row(t)) result[t] |= has_copy[v];
+  return result;
 }
 
 std::uint32_t index_of(const Grid& grid, const glm::ivec3& voxel) {
@@ -163,6 +174,7 @@ PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const P
     : mesh_(&mesh),
       lattice_(&lattice),
       in_mesh_(std::move(in_mesh)),
+      is_slid_over_(slid_over(mesh)),
       moved_(posed - mesh.V) {
   place_nodes();
   find_instead_of();
@@ -334,6 +346,8 @@ void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, con
   Claims claims(map, volume, priority, depth);
   std::vector<int> near;
   bins_.meeting(map.range, near);
+  // Tets of bone over which flesh slides come last, since the flesh's tets may enter them by a fraction of a tet.
+  std::stable_partition(near.begin(), near.end(), [&](int t) { return !is_slid_over_[t]; });
   for (int t : near) {
     const auto posed = posed_corners(t);
     std::optional<TetMap> tet;
@@ -343,7 +357,9 @@ void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, con
       const glm::dvec3 rest(glm::vec3(tet->rest(voxel)));
       const glm::ivec3 rest_voxel(glm::floor(rest + 0.5));
       if (!is_in_mesh(rest_voxel)) return;
-      claims.claim(index_of(volume.grid, rest_voxel), rest_voxel, {voxel, rest, tet->posed_per_rest});
+      const CellClaim claim{voxel, rest, tet->posed_per_rest};
+      if (is_slid_over_[t]) claims.claim_empty(index_of(volume.grid, rest_voxel), rest_voxel, claim, kSlides);
+      else claims.claim(index_of(volume.grid, rest_voxel), rest_voxel, claim);
     });
   }
 }

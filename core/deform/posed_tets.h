@@ -13,6 +13,9 @@
 // overlap, unless the two were within a few voxels of each other at rest, on both sides of a crease, where the fold
 // presses them together.
 //
+// Where flesh slides over bone, tets of flesh may enter those of the bone by a little. There the bone's tets fill only
+// voxels that no other tet covers, and this counts as no overlap.
+//
 // A mesh need not contain the whole body. The lattice (lattice.h) poses all other tissue. It also poses the layer of
 // the mesh's voxels next to that tissue: there lattice and mesh have the same motion, so no rounding error opens a gap.
 #pragma once
@@ -74,7 +77,8 @@ class PosedTets {
   const TetMesh* mesh_;
   const PosedLattice* lattice_;
   TissueMask in_mesh_, instead_of_;
-  std::vector<glm::dvec3> rest_;   // #V node positions at rest, voxel coordinates, rounded to 1/65536
+  std::vector<char> is_slid_over_;  // #T: 1 for tets of bone over which flesh slides
+  std::vector<glm::dvec3> rest_;    // #V node positions at rest, voxel coordinates, rounded to 1/65536
   std::vector<FixedPoint> posed_;  // #V posed node positions
   Eigen::MatrixX3d moved_;         // #V motions of the nodes (posed - rest), world, mm
   BoxBins bins_, rider_bins_;      // posed bounding boxes of the tets and of the riders, in output voxels

@@ -131,7 +131,7 @@ double FemEnergy::value(const NodePositions& x) {
   {
     const CpuTimer timer(seconds_.search);
     find_ratios(x);
-    sum = flesh_.value(x, J_) + patches_.value(J_) + pins_.value(x);
+    sum = flesh_.value(x, J_) + patches_.value(J_) + pins_.value(x) + slide_.value(x);
     if (load_.rows()) sum -= load_.cwiseProduct(x).sum();
   }
   if (contact_.empty()) return sum;
@@ -147,6 +147,7 @@ void FemEnergy::gradient(const NodePositions& x, NodePositions& gradient) {
   contact_.update_active_pairs(x);
   contact_.add_gradient(gradient);
   pins_.add_gradient(x, gradient);
+  slide_.add_gradient(x, gradient);
   if (load_.rows()) gradient -= load_;
 }
 
@@ -166,8 +167,10 @@ void FemEnergy::assemble(const NodePositions& x, HessianKind curvature, NodePosi
   contact_.add_gradient(gradient);
   contact_.add_curvature(values);
   pins_.add_gradient(x, gradient);
+  slide_.add_gradient(x, gradient);
   if (load_.rows()) gradient -= load_;
   pins_.add_curvature(*matrix_, unknown_, values);
+  slide_.add_curvature(x, curvature, *matrix_, unknown_, values);
 }
 
 bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodePositions& step, double& slope,

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The total energy that a solve minimises: the energy of flesh (elastic_form.h) with its patches (patch_form.h), of the
-// bones' springs (pin_form.h), and of contact (contact_form.h), if it is on. FemEnergy also owns the Hessian matrix.
-// Nodes deep in a bone, whose tets all belong to that bone, are not unknowns: they move with the bone.
+// bones' springs (pin_form.h), of flesh that slides along bones (slide_form.h), and of contact (contact_form.h), if it
+// is on. FemEnergy also owns the Hessian matrix. Nodes deep in a bone, whose tets all belong to that bone, are not
+// unknowns: they move with the bone.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "core/fem/material.h"
 #include "core/fem/patch_form.h"
 #include "core/fem/pin_form.h"
+#include "core/fem/slide_form.h"
 #include "core/fem/step_bound.h"
 
 namespace limber {
@@ -57,6 +59,15 @@ class FemEnergy {
   // Adds tets that have no energy but that no step may invert.
   void add_inversion_guard(const Eigen::MatrixX4i& guarded);
   void set_contact(ContactForm contact);
+  // Sets the flesh that slides along bones, which begins with the bones at rest.
+  void set_slide(SlideForm slide) { slide_ = std::move(slide); }
+  // Moves the bones along which flesh slides.
+  //   moved  motion that is subtracted from the nodes' positions first (SlideForm::moved); empty: none
+  void move_slide(std::vector<RigidTransform> posed_from_rest, NodePositions moved = {}) {
+    slide_.posed_from_rest = std::move(posed_from_rest);
+    slide_.moved = std::move(moved);
+  }
+  const SlideForm& slide() const { return slide_; }
   // Sets a constant force on each node, such as its weight, mN.
   void set_load(NodePositions load) { load_ = std::move(load); }
 
@@ -118,6 +129,7 @@ class FemEnergy {
   ElasticForm flesh_;
   PatchForm patches_;
   PinForm pins_;
+  SlideForm slide_;
   ContactForm contact_;
   NodePositions load_;  // force on each node, mN; empty: none
   std::vector<int> carried_;

@@ -20,7 +20,6 @@ namespace {
 constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the final pose
 constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers of the last solve, a share of the nodes
 constexpr double kTight = 0.25;       // factor on step_tolerance_mm for the solve before a part is tried again
-constexpr double kWorth = 0.125;      // smallest number of nodes to free at a time, as a share of the free nodes
 constexpr double kLeastPart = 0.1;    // a part that moves objects by less than this share of the shortest one fails
 constexpr double kRough = 0.5;        // if limits allow less than this share of an initial guess, the guess is smoothed
 // Strength, kPa, of the barrier that keeps tets from becoming nearly flat. It halves the iterations of a deep bend.
@@ -43,6 +42,10 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
       }))
     wrong("waiting nodes and free nodes");
   if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences and nodes");
+  for (const FemModel::Sliding& each : model.sliding)
+    if (each.node < 0 || each.node >= std::ssize(model.held_by) || model.held_by[each.node] >= 0 || each.bone < 0 ||
+        each.bone >= std::ssize(model.bone_surface) || !model.bone_surface[each.bone])
+      wrong("sliding nodes and surfaces of bones");
   if (start && start->rows() != model.mesh.V.rows()) wrong("nodes at the start and nodes");
   if (count_inverted(model.mesh.T, model.mesh.V))
     throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
@@ -58,27 +61,6 @@ NodePositions with_objects(const NodePositions& body, const NodePositions& objec
   NodePositions all(body.rows() + objects.rows(), 3);
   all << body, objects;
   return all;
-}
-
-// Returns the nodes that wait until a path position before they become free. A small group of nodes becomes free
-// earlier, together with the group before it, since each group needs a new analysis of the matrix.
-std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
-  std::vector<FemModel::Waiting> waiting = model.waiting;
-  std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
-  double solved_for = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size()),
-         more = 0, since = 0;
-  for (auto begin = waiting.begin(); begin != waiting.end() && begin->until < 1;) {
-    const auto end = std::find_if(begin, waiting.end(), [&](const auto& each) { return each.until > begin->until; });
-    more += double(end - begin);
-    if (more < kWorth * solved_for) {
-      for (auto each = begin; each != end; ++each) each->until = since;
-    } else {
-      since = begin->until;
-      solved_for += std::exchange(more, 0);
-    }
-    begin = end;
-  }
-  return waiting;
 }
 
 class PoseSolve {
@@ -106,6 +88,8 @@ class PoseSolve {
     result_.converged = result_.reached == 1 && result_.blocked_by.empty();
     result_.V = x_.topRows(nodes_);
     if (!model_.objects.empty()) measure_objects();
+    energy_->move_slide(path_(result_.reached));
+    result_.slide = energy_->slide().largest(x_);
     result_.min_det_f = energy_->min_ratio(x_);
     count_spent();
     return std::move(result_);
@@ -187,10 +171,11 @@ void PoseSolve::free_for(double place) {
   energy_.emplace(rest_, parts_.elastic, parts_.material, kWeakBarrier);
   energy_->add_inversion_guard(parts_.rigid);
   if (settings_.contact) energy_->set_contact(contact());
+  if (!model_.sliding.empty()) energy_->set_slide(slide_form_of(model_, settings_));
 }
 
 ContactForm PoseSolve::contact() const {
-  const Eigen::MatrixX3i skin = boundary_of(model_.mesh.T);
+  const Eigen::MatrixX3i skin = boundary_of(model_.mesh);
   Eigen::MatrixX3i F(skin.rows() + model_.objects.F.rows(), 3);
   F << skin, model_.objects.F.array() + int(nodes_);
   return {F,
@@ -233,6 +218,7 @@ void PoseSolve::hold_at(double at, const NodePositions* less) {
   NodePositions carried(parts_.carried.size(), 3);
   for (std::size_t k = 0; k < parts_.carried.size(); ++k) carried.row(k) = place_of(parts_.carried[k]);
   energy_->set_constraints(std::move(pins), parts_.carried, std::move(carried));
+  energy_->move_slide(pose);
   if (!model_.mass.empty()) energy_->set_load(weight_at(at));
 }
 
@@ -299,6 +285,7 @@ double PoseSolve::follow(double from, double to, NodePositions& x) {
   const NodePositions turns = blended - pace;
   double slope = 0;
   hold_at(to, &turns);
+  energy_->move_slide(start, pace);
   energy_->build_broad_phase(x);
   if (!energy_->newton_step(x, HessianKind::Projected, way, slope, &pace)) return from;
   for (double share = 1;; share /= 2) {

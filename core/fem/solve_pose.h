@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,14 @@ struct FemModel {
   // Nodes that move rigidly with a bone up to the path position `until`, because nothing can press on them before.
   // After it they are free.
   std::vector<Waiting> waiting;
+  // Nodes of soft tissue that slide along a bone (slide_form.h). They are free in held_by, and are nodes of no tet of
+  // bone (TetMesh::copy_of).
+  struct Sliding {
+    int node, bone;
+    double mm2;  // area of the surface around the node
+  };
+  std::vector<Sliding> sliding;
+  std::vector<std::shared_ptr<const DistanceField>> bone_surface;  // by rig bone, null if nothing slides on it
   // #V lists of bone weights that sum to 1. They give the initial guess of a step; the result does not depend on them.
   std::vector<std::vector<BoneWeight>> influences;
   std::vector<std::string> bone_names;  // names for messages; a bone without a name is called "bone 3"
@@ -58,6 +67,11 @@ struct SolveSettings {
   double shortest_step_degrees = 0.9;  // shortest part of a step; if it fails, the solve stops short of the pose
   double bone_drift_mm = 2;            // if a bone's node is further than this from its rigid position, the step fails
   double size = 1;  // size of the body relative to an adult (1); the springs' stiffness is divided by its square
+  // Where flesh slides along bone: the stiffness of the springs that keep its distance, for an adult's size, in kPa per
+  // mm. Flesh that presses with 50 kPa comes 0.1 mm nearer.
+  double slide_kpa_per_mm = 500;
+  // The loose layer between flesh and bone, for an adult: its shear modulus, kPa, and its thickness, mm.
+  double fascia_kpa = 0.1, fascia_mm = 2;
 };
 
 // The state of a solve after an iteration. V is valid only during the callback.
@@ -78,6 +92,7 @@ struct SolvedPose {
   double min_det_f = 1;          // smallest det F of the tets of flesh in V
   double min_det_f_of_path = 1;  // smallest det F of tets of flesh at the ends of all steps
   double bone_drift_mm = 0;      // largest distance in V of a bone's node from its rigidly moved position
+  SlideForm::Slide slide;        // the largest slide of a node in V, and the largest change of its distance to its bone
   // Contact forces between skin and objects, mN: on each node of the mesh, and on each node of the objects. Empty if
   // there are no objects.
   NodePositions force_on_skin, force_on_objects;

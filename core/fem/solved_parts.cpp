@@ -16,6 +16,9 @@ constexpr double kJointPinStiffness = 0.1;
 // Material of tets whose nodes are all held by one bone but that share nodes with flesh; shear modulus in kPa.
 constexpr TetMaterial kBoneTet{100, 0.3};
 
+// Least number of nodes to free at a time, as a share of the free nodes.
+constexpr double kWorth = 0.125;
+
 bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {
   const int bone = held_by[tet[0]];
   return bone >= 0 && std::all_of(tet.begin(), tet.end(), [&](int v) { return held_by[v] == bone; });
@@ -32,7 +35,7 @@ SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by,
   // The force between an object and a node that nothing can move would grow without limit. So springs also hold the
   // nodes of bone at the surface.
   if (!model.objects.empty()) {
-    const Eigen::MatrixX3i surface = boundary_of(T);
+    const Eigen::MatrixX3i surface = boundary_of(model.mesh);
     for (const int v : surface.reshaped()) in_flesh[v] = 1;
   }
 
@@ -71,6 +74,41 @@ SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by,
     const double spring = (in_joint[v] ? kJointPinStiffness : kPinStiffness) / (size * size);
     if (in_elastic[v]) pin_stiffness.push_back(spring * volume[v]);
   }
+}
+
+std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {
+  std::vector<FemModel::Waiting> waiting = model.waiting;
+  std::stable_sort(waiting.begin(), waiting.end(), [](const auto& a, const auto& b) { return a.until < b.until; });
+  double solved_for = double(std::count(model.held_by.begin(), model.held_by.end(), -1)) - double(waiting.size()),
+         more = 0, since = 0;
+  for (auto begin = waiting.begin(); begin != waiting.end() && begin->until < 1;) {
+    const auto end = std::find_if(begin, waiting.end(), [&](const auto& each) { return each.until > begin->until; });
+    more += double(end - begin);
+    if (more < kWorth * solved_for) {
+      for (auto each = begin; each != end; ++each) each->until = since;
+    } else {
+      since = begin->until;
+      solved_for += std::exchange(more, 0);
+    }
+    begin = end;
+  }
+  return waiting;
+}
+
+SlideForm slide_form_of(const FemModel& model, const SolveSettings& settings) {
+  SlideForm form;
+  form.surface = model.bone_surface;
+  form.posed_from_rest.resize(form.surface.size());
+  for (const FemModel::Sliding& each : model.sliding) {
+    const Eigen::RowVector3d rest = model.mesh.V.row(each.node);
+    form.nodes.push_back({.node = each.node,
+                          .bone = each.bone,
+                          .normal = settings.slide_kpa_per_mm / settings.size * each.mm2,
+                          .fascia = settings.fascia_kpa / (settings.fascia_mm * settings.size) * each.mm2,
+                          .rest = rest,
+                          .rest_mm = form.surface[each.bone]->at(rest).mm});
+  }
+  return form;
 }
 
 }  // namespace limber

@@ -26,4 +26,11 @@ struct SolvedParts {
   SolvedParts(const FemModel& model, const std::vector<int>& held_by, double size);
 };
 
+// Returns the nodes that wait until a position on the path before they become free. Small groups of nodes become free
+// earlier, together with the group before, since each group that becomes free costs a new analysis of the matrix.
+std::vector<FemModel::Waiting> worth_waiting(const FemModel& model);
+
+// Returns the energy of the model's sliding nodes, with the bones at rest.
+SlideForm slide_form_of(const FemModel& model, const SolveSettings& settings);
+
 }  // namespace limber

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Measures how much a pose stretches and compresses each tissue, by the singular values of F in the tets that contain
-// its voxels. Skin on the outside of a bent joint is stretched. Real skin would also slide over the tissue below it.
-// The model cannot slide, so the stretch in the model, and in this measure, is larger than in real skin.
+// its voxels. Skin on the outside of a bent joint is stretched. Real skin would also slide over the tissue below it. In
+// the model, tissue slides over bone only (sliding_nodes.h), so skin over muscle is stretched more than real skin is.
 #pragma once
 
 #include <array>

@@ -251,9 +251,11 @@ void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
 }
 
 // Selects the bone that holds each node: the bone of the bone tets around the node or, in soft tissue that moves
-// rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints.
-void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
-                    const SkinWeights& weights, const DeformingRegion& moving, const TissueModelSettings& settings) {
+// rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints. Returns the nodes of bone
+// over which soft tissue slides (sliding_nodes.h).
+std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
+                                         const TissueTable& tissues, const SkinWeights& weights,
+                                         const DeformingRegion& moving, const TissueModelSettings& settings) {
   const TetMesh& mesh = model.fem.mesh;
   std::vector<int> bone(mesh.V.rows(), kNone);
   for (int t = 0; t < mesh.T.rows(); ++t) {
@@ -266,6 +268,11 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
   }
   std::vector<std::uint8_t> in_joint = nodes_of_joints(mesh, bone, settings.joint_mm);
   mark_closing_bones(mesh, bone, settings.motions, settings.closing_mm, in_joint);
+  SlidingSettings sliding = settings.sliding;
+  sliding.motions = settings.motions, sliding.joint_mm = settings.joint_mm, sliding.closing_mm = settings.closing_mm;
+  const std::vector<std::uint8_t> slides = sliding_nodes(volume, tissues, mesh, bone, sliding);
+  for (std::size_t i = 0; i < slides.size(); ++i)
+    if (slides[i]) in_joint[i] = 0;  // no other bone lies in front of it, however near
   for (int t = 0; t < mesh.T.rows(); ++t) {
     int first = kNone;
     bool between = false, inside = true;
@@ -295,6 +302,7 @@ void choose_holders(TissueModel& model, const LabelVolume& volume, const TissueV
     else model.fem.influences.push_back({{std::max(holder, 0), 1.0}});
     if (holder >= 0) model.fem.influences.back() = {{holder, 1.0}};
   }
+  return slides;
 }
 
 }  // namespace
@@ -319,7 +327,8 @@ TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, 
   TissueModel model;
   model.fem.mesh = std::move(mesh);
   model.fem.bone_names = weights.bones();
-  choose_holders(model, volume, tissue, weights, moving, settings);
+  let_slide(model.fem, choose_holders(model, volume, tissue, tissues, weights, moving, settings),
+            settings.sliding.tet_mm);
   find_parts(model, volume);
   choose_materials(model, volume, tissues, settings);
   return model;

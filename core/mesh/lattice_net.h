@@ -35,6 +35,13 @@ struct LatticeNetSettings {
   std::vector<glm::dvec3> fine_around;  // positions of joints that bend, world, mm
   // Within this distance of the joints in fine_around, samples are half as far apart.
   double fine_radius_mm = 40;
+  // Near these places bones keep away from the surface by a cell at least, so that tissue over them can slide: the
+  // samples of bone next to air become soft tissue.
+  struct Covered {
+    glm::dvec3 place;  // world, mm
+    double mm;         // distance from it up to which bones are covered
+  };
+  std::vector<Covered> covered;
   double least_near = 0.9995;  // share of the tissue voxels that must be inside the surface or within kNearVoxels of it
 };
 

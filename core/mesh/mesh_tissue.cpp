@@ -36,7 +36,8 @@ void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSetting
   LatticeNet net = lattice_net(voxels,
                                {.spacing_mm = settings.spacing_mm * (by_tetgen ? 1 : kLatticePerSpacing),
                                 .fine_around = settings.fine_around,
-                                .fine_radius_mm = settings.fine_radius_mm},
+                                .fine_radius_mm = settings.fine_radius_mm,
+                                .covered = settings.covered},
                                progress);
   result.spacing_mm = net.spacing_mm;
   progress.update("tetrahedra", 0);

@@ -197,9 +197,22 @@ struct Candidate {
   std::uint16_t region;
 };
 
+// Returns whether the cells around a sample that is near one of the places to cover have a sample of air.
+bool shows_at_air(const SampleLattice& lattice, const glm::ivec3& p, const LatticeNetSettings& settings) {
+  const glm::dvec3 place = lattice.world_from_lattice * (glm::dvec3(p) * lattice.step);
+  if (std::none_of(settings.covered.begin(), settings.covered.end(),
+                   [&](const auto& covered) { return glm::length(covered.place - place) < covered.mm; }))
+    return false;
+  for (const auto& cell : lattice.cells_around(p))
+    for (int corner = 0; corner < 8; ++corner)
+      if (lattice.at(cell.corner + cell.size * glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)) == kAir)
+        return true;
+  return false;
+}
+
 // Assigns to each bone the samples of which the bone fills the largest share, until their volume matches the bone's.
 // Samples of two bones never share a cell.
-void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
+void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all, const LatticeNetSettings& settings) {
   std::map<std::uint16_t, std::vector<Candidate>> by_bone;
   for (const Candidate& candidate : all) by_bone[candidate.region].push_back(candidate);
   const auto fuller = [](const Candidate& a, const Candidate& b) {
@@ -221,7 +234,8 @@ void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
   wanted.insert(wanted.begin(), seeds.begin(),
                 seeds.end());  // every bone first gets one sample, so that no bone is left out
   std::unordered_map<std::int64_t, std::uint16_t> bone_of_cell;
-  for (const Candidate& candidate : wanted) {
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const Candidate& candidate = wanted[i];
     const glm::ivec3 p(candidate.at % lattice.size.x, candidate.at / lattice.size.x % lattice.size.y,
                        candidate.at / (std::int64_t{lattice.size.x} * lattice.size.y));
     const auto around = lattice.cells_around(p);
@@ -229,7 +243,7 @@ void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all) {
       const auto known = bone_of_cell.find(lattice.index(cell.corner));
       return known == bone_of_cell.end() || known->second == candidate.region;
     });
-    if (!free) continue;
+    if (!free || (i >= seeds.size() && shows_at_air(lattice, p, settings))) continue;
     lattice.label[candidate.at] = candidate.region;
     for (const auto& cell : around) bone_of_cell[lattice.index(cell.corner)] = candidate.region;
   }
@@ -315,7 +329,7 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
         }
     if (lattice.usual == 1) break;
   }
-  give_bones(lattice, bones);
+  give_bones(lattice, bones, settings);
   for (int size = lattice.usual; size < kLargest * lattice.usual; size *= 2) coarsen(lattice, size);
   return lattice;
 }

@@ -88,6 +88,15 @@ Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::a
   return F;
 }
 
+std::vector<std::array<int, 4>> neighbours_of(const TetMesh& mesh) {
+  if (mesh.copy_of.empty()) return neighbours_of(mesh.T);
+  Eigen::MatrixX4i T = mesh.T;
+  for (int& node : T.reshaped()) node = mesh.copy_of[node];
+  return neighbours_of(T);
+}
+
+Eigen::MatrixX3i boundary_of(const TetMesh& mesh) { return boundary_of(mesh.T, neighbours_of(mesh)); }
+
 double signed_volume(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet) {
   const Eigen::RowVector3d a = V.row(tet[0]), b = V.row(tet[1]) - a, c = V.row(tet[2]) - a, d = V.row(tet[3]) - a;
   return b.cross(c).dot(d) / 6;

@@ -17,6 +17,10 @@ struct TetMesh {
   Eigen::MatrixX3d V;                 // #V positions, world, mm
   Eigen::MatrixX4i T;                 // #T tets (four nodes each)
   std::vector<std::uint16_t> region;  // #T: kSoft, or 1 + the index of the rig bone to which the tet belongs
+  // #V, or empty if the mesh has no such nodes: where tissue may slide along a bone, the tets on either side have nodes
+  // of their own. The entry of such a node of soft tissue is the bone's node at the same place at rest; the entry of
+  // any other node is the node itself.
+  std::vector<int> copy_of;
 
   static int bone_of(std::uint16_t region) { return int(region) - 1; }  // -1: soft tissue
 };
@@ -33,6 +37,11 @@ std::vector<std::array<int, 4>> neighbours_of(const Eigen::MatrixX4i& T);
 // order of tet and face.
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::array<int, 4>>& neighbours);
+
+// The same for a mesh whose soft tissue may slide along bones: two tets that touch at rest are neighbours, also if they
+// have nodes of their own there (TetMesh::copy_of). So the surface between bone and sliding tissue is no boundary.
+std::vector<std::array<int, 4>> neighbours_of(const TetMesh& mesh);
+Eigen::MatrixX3i boundary_of(const TetMesh& mesh);
 
 double signed_volume(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);      // returns mm3
 double smallest_dihedral(const Eigen::MatrixX3d& V, const Eigen::RowVector4i& tet);  // returns radians

@@ -43,7 +43,7 @@ double mean_edge(const TetMesh& mesh) {
 
 std::vector<float> gaps(const TetMesh& mesh, const Eigen::MatrixX3d& V) {
   const double edge = mean_edge(mesh);
-  const std::vector<double> of_node = contact_gaps(mesh.V, V, boundary_of(mesh.T), 3 * edge, edge);
+  const std::vector<double> of_node = contact_gaps(mesh.V, V, boundary_of(mesh), 3 * edge, edge);
   std::vector<float> of_tet(mesh.T.rows(), kInfinite);
   for (std::size_t t = 0; t < of_tet.size(); ++t)
     for (int i = 0; i < 4; ++i) of_tet[t] = std::min(of_tet[t], static_cast<float>(of_node[mesh.T(t, i)]));

@@ -153,6 +153,10 @@ Json solve_of(const SolveReport& solve) {
               {"analyses", solve.analyses},
               {"residual", solve.residual_mm},
               {"bone_drift_mm", solve.bone_drift_mm}});
+  if (solve.sliding_nodes > 0)
+    row["sliding"] = {{"nodes", solve.sliding_nodes},
+                      {"largest_mm", solve.largest_slide_mm},
+                      {"largest_gap_mm", solve.largest_slide_gap_mm}};
   const SolveParameters& used = solve.parameters;
   row["parameters"] = {{"tet_mm", used.tet_mm},
                        {"finest_tet_mm", used.finest_tet_mm},

@@ -38,6 +38,7 @@ struct Fem {
   // it, and each solve ends when Newton moves no node by more than a tenth of the usual length.
   bool is_exact = false;
   Mesher mesher = Mesher::lattice;
+  bool slides = true;  // loose tissue slides over bone near bent joints (sliding_nodes.h); false: all tissue sticks
   bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
   std::vector<FemObject> objects;  // rigid objects that press on the posed body; `contact` must be true
   glm::dvec3 gravity{0};           // acceleration of gravity, m/s2, in the world
@@ -82,6 +83,10 @@ struct SolveReport {
   // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they
   // are written at their exact positions.
   double bone_drift_mm = 0;
+  // How many nodes of flesh slide along bone, how far the furthest has slid, and by how much one has come nearer to its
+  // bone or left it at most, mm.
+  std::int64_t sliding_nodes = 0;
+  double largest_slide_mm = 0, largest_slide_gap_mm = 0;
   SolveParameters parameters;
   std::optional<FemError> error;  // estimated error of the shape; none: not estimated
 };

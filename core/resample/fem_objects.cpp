@@ -335,7 +335,7 @@ std::vector<PressedNode> FemObjects::pressed_nodes(const FemModel& model, const 
   std::vector<PressedNode> pressed;
   if (solved.force_on_skin.rows() == 0) return pressed;
   std::vector<double> area(solved.V.rows(), 0);
-  const Eigen::MatrixX3i skin = boundary_of(model.mesh.T);
+  const Eigen::MatrixX3i skin = boundary_of(model.mesh);
   for (const auto& f : skin.rowwise()) {
     const Eigen::Vector3d a = solved.V.row(f[1]) - solved.V.row(f[0]), b = solved.V.row(f[2]) - solved.V.row(f[0]);
     for (const int v : f) area[v] += a.cross(b).norm() / 6;
@@ -349,7 +349,7 @@ std::vector<PressedNode> FemObjects::pressed_nodes(const FemModel& model, const 
 }
 
 std::vector<std::int64_t> FemObjects::crossings(const FemModel& model, const Eigen::MatrixX3d& body) const {
-  const Eigen::MatrixX3i skin = boundary_of(model.mesh.T);
+  const Eigen::MatrixX3i skin = boundary_of(model.mesh);
   const NodePositions there = positions(away_);
   Eigen::MatrixX3d V(body.rows() + there.rows(), 3);
   V << body, there;
@@ -366,7 +366,7 @@ std::vector<std::int64_t> FemObjects::crossings(const FemModel& model, const Eig
 
 std::vector<ObjectReport> FemObjects::report(const FemModel& model, const SolvedPose& solved) const {
   std::vector<ObjectReport> reports;
-  const Eigen::MatrixX3i skin = boundary_of(model.mesh.T);
+  const Eigen::MatrixX3i skin = boundary_of(model.mesh);
   const NodePositions there = positions(away_);
   Eigen::MatrixX3d V(solved.V.rows() + there.rows(), 3);
   V << solved.V, there;

@@ -57,6 +57,10 @@ constexpr double kTouches = 1.5;  // multiple of the contact distance below whic
 constexpr double kBent = 0.9997;
 constexpr double kExact = 0.1;  // multiple of the usual tolerance with Fem::is_exact
 
+// Distance from a bent joint up to which soft tissue covers bone in the mesh, as a share of that up to which tissue
+// slides: the tips of bones that bending pushes out at the skin.
+constexpr double kCovered = 0.5;
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -89,6 +93,16 @@ double spacing_of(FemQuality quality, double size, const Grid& grid) {
   const double voxel = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});
   return std::max(size * (quality == FemQuality::Draft ? kDraft : kUsual),
                   quality == FemQuality::Fine ? 2 * voxel : voxel);
+}
+
+// Returns the joints near which tissue slides, and how far from each: as far as the limb is thick there.
+std::vector<SlidingSettings::Near> sliding_near(const TissueVoxels& tissue, const Grid& grid,
+                                                const std::vector<glm::dvec3>& joints) {
+  const TissueDepth depth(tissue, grid.spacing);
+  std::vector<SlidingSettings::Near> near;
+  for (const glm::dvec3& joint : joints)
+    if (const auto thickness = limb_thickness(depth, grid, joint)) near.push_back({joint, *thickness});
+  return near;
 }
 
 std::int64_t count_voxels(const TissueMask& mask) {
@@ -152,7 +166,7 @@ void measure(const SolvedPose& solved, double spacing, double contact_mm, FemSha
     report.min_det_f = soft == 1 ? ratios[t] : std::min(report.min_det_f, ratios[t]);
   }
   if (soft > 0) report.share_below_fifth = double(pressed) / double(soft);
-  const Eigen::MatrixX3i border = boundary_of(mesh.T);
+  const Eigen::MatrixX3i border = boundary_of(mesh);
   report.self_intersections = std::ssize(crossing_pairs(solved.V, border));
   if (const auto gap = contact_gap(mesh.V, solved.V, border, spacing, kTouches * contact_mm)) {
     report.min_gap_mm = gap->smallest_mm;
@@ -172,7 +186,9 @@ SolveReport report_of(const SolvedPose& solved) {
           .factorizations = solved.factorizations,
           .analyses = solved.analyses,
           .residual_mm = solved.residual,
-          .bone_drift_mm = solved.bone_drift_mm};
+          .bone_drift_mm = solved.bone_drift_mm,
+          .largest_slide_mm = solved.slide.along,
+          .largest_slide_gap_mm = solved.slide.off};
 }
 
 // Shows the progress of the second solve as "error estimate".
@@ -262,12 +278,18 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   MeshSettings settings{
       .spacing_mm = spacing_, .mesher = fem_.mesher, .fine_radius_mm = size_ * MeshSettings().fine_radius_mm};
   if (fem_.quality == FemQuality::Fine) settings.fine_around = bent_joints(armature, poses_, kBent);
+  SlidingSettings sliding;
+  if (fem_.slides) sliding.near = sliding_near(tissue, volume.grid, bent_joints(armature, poses_, kBent));
+  for (const auto& [joint, mm] : sliding.near) settings.covered.push_back({joint, kCovered * mm});
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
   TissueMesh meshed = mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving), settings, progress);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
-  last_.model =
-      tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
-                   {.joint_mm = kJoint * reach_, .motions = motions_on(way), .closing_mm = kClosing * reach_});
+  sliding.tet_mm = finest_;
+  last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
+                             {.joint_mm = kJoint * reach_,
+                              .motions = motions_on(way),
+                              .closing_mm = kClosing * reach_,
+                              .sliding = std::move(sliding)});
   if (!fem_.is_exact) waiting_ = last_.model.fem.waiting;
   if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
   if (!objects_.empty()) {
@@ -344,6 +366,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   shape->pose = pose_between(from, to, solved.reached);
   shape->cpu = solved.seconds;
   shape->solve = report_of(solved);
+  shape->solve.sliding_nodes = std::ssize(shape->model.fem.sliding);
   shape->solve.parameters = {.tet_mm = spacing_,
                              .finest_tet_mm = finest_,
                              .step_degrees = settings.step_degrees,

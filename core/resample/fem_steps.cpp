@@ -13,7 +13,8 @@ namespace limber {
 
 namespace {
 
-constexpr std::string_view kMesh = "limber fem mesh 1\n", kStep = "limber fem step 1\n";
+// A mesh whose tissue slides has its own head, so that files of meshes without are as ever.
+constexpr std::string_view kMesh = "limber fem mesh 1\n", kSliding = "limber fem mesh 2\n", kStep = "limber fem step 1\n";
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
 
 Path with(const Path& name, const char* ending) { return name.string() + ending; }
@@ -70,7 +71,8 @@ FemMesh fem_mesh_of(const TissueModel& model) { return {model.fem.mesh, model.fe
 
 std::string encode(const FemMesh& mesh) {
   ByteWriter writer;
-  writer.raw(kMesh.data(), kMesh.size());
+  const std::string_view head = mesh.tets.copy_of.empty() ? kMesh : kSliding;
+  writer.raw(head.data(), head.size());
   put_places(writer, mesh.tets.V);
   writer.count(mesh.tets.T.rows());
   for (Eigen::Index t = 0; t < mesh.tets.T.rows(); ++t) {
@@ -80,11 +82,13 @@ std::string encode(const FemMesh& mesh) {
     writer.put(mesh.tets.region[t]);
     writer.put(mesh.joint[t]);
   }
+  for (const int node : mesh.tets.copy_of) writer.put(static_cast<std::int32_t>(node));
   return writer.take();
 }
 
 FemMesh decode_fem_mesh(const std::string& bytes, const std::string& where) {
-  ByteReader reader = open(bytes, kMesh, where);
+  const bool slides = bytes.starts_with(kSliding);
+  ByteReader reader = open(bytes, slides ? kSliding : kMesh, where);
   FemMesh mesh;
   mesh.tets.V = get_places(reader, where);
   const std::size_t tets = reader.count(27);
@@ -99,6 +103,10 @@ FemMesh decode_fem_mesh(const std::string& bytes, const std::string& where) {
     material.poisson_ratio = reader.get<float>();
     mesh.tets.region.push_back(reader.get<std::uint16_t>());
     mesh.joint.push_back(reader.get<std::uint8_t>());
+  }
+  for (Eigen::Index v = 0; slides && v < mesh.tets.V.rows(); ++v) {
+    mesh.tets.copy_of.push_back(reader.get<std::int32_t>());
+    if (mesh.tets.copy_of[v] < 0 || mesh.tets.copy_of[v] > v) damaged(where);
   }
   return mesh;
 }

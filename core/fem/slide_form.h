@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The energy of flesh that slides along rigid bones, per node of flesh at a bone:
+//    N/2 (d(y) - d0)^2 + t/2 |y - y0|^2
+// y is the node in the bone's frame, which is where the bone's motion would have come from; y0 is its place at rest, d
+// the signed distance from the bone's surface (distance_field.h) and d0 the distance at rest. The first term is a stiff
+// spring along the surface's normal in both directions: the node neither enters the bone nor leaves it. The second is
+// the thin layer of loose tissue (fascia) between flesh and bone: a weak spring to the place at rest. This is contact
+// in both directions with a rigid distance field; nothing has to search for pairs.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/base/cholesky.h"
+#include "core/base/rigid_transform.h"
+#include "core/fem/distance_field.h"
+#include "core/fem/elastic_form.h"
+#include "core/fem/node_positions.h"
+
+namespace limber {
+
+struct SlideForm {
+  struct Node {
+    int node, bone;
+    double normal, fascia;  // stiffness across and along the surface, kPa mm
+    Eigen::RowVector3d rest;
+    double rest_mm;  // d0
+  };
+  std::vector<Node> nodes;
+  std::vector<std::shared_ptr<const DistanceField>> surface;  // by bone, at rest; null: nothing slides on it
+  std::vector<RigidTransform> posed_from_rest;                // by bone
+  NodePositions moved;  // #nodes: motion that is taken off a node's position first; empty: none
+
+  double value(const NodePositions& x) const;
+  void add_gradient(const NodePositions& x, NodePositions& gradient) const;
+  // Adds the Hessian. The projected one leaves out what the surface's curvature would take away.
+  void add_curvature(const NodePositions& x, HessianKind curvature, const Cholesky& matrix,
+                     std::span<const int> unknown, std::span<double> values) const;
+  // Returns the Hessian of one entry of `nodes`, in the world's axes.
+  Eigen::Matrix3d curvature_of(const Node& node, const NodePositions& x, HessianKind curvature) const;
+
+  // How far a node lies from its place at rest along the bone, and from its distance at rest; mm.
+  struct Slide {
+    double along = 0, off = 0;
+  };
+  Slide slide_of(const Node& node, const NodePositions& x) const;
+  Slide largest(const NodePositions& x) const;  // the largest of either over all nodes; 0 if there are none
+
+ private:
+  // Returns the node's position in the bone's frame.
+  Eigen::RowVector3d in_bone(const Node& node, const NodePositions& x) const;
+};
+
+}  // namespace limber
