@@ -22,7 +22,7 @@ struct PosingSettings {
   std::string method = deformation_methods().front().word;  // a word of deformation_methods()
   bool contact = false;            // fem: true: skin touches skin instead of passing through it
   std::string quality, mesher;     // fem: draft, normal or fine; lattice or tetgen. "": normal, lattice
-  bool slides = true;              // fem: true: loose tissue slides over bone near bent joints
+  bool slides = false;             // fem: true: loose tissue slides over bone near bent joints
   bool estimates_error = false;    // fem: true: a second solve with larger tets estimates the error
   std::vector<FemObject> objects;  // fem: rigid objects that press on the body
   glm::dvec3 gravity{0};           // fem: acceleration of gravity, m/s2

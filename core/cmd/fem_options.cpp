@@ -131,8 +131,8 @@ FemObject object_of(const std::string& request) {
 
 void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& options) {
   command.add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
-  command.add_flag("--stick", options->stick,
-                   "fem: skin and fat stick to the bone also near bent joints, where they slide over it by default");
+  command.add_flag("--slide", options->slide,
+                   "fem: near bent joints skin and fat slide over the bone instead of sticking to it");
   command
       .add_option("--quality", options->quality,
                   "fem: resolution of the mesh: 8 tets across the thinnest bent limb (draft), 12 (normal), or 24 "
@@ -162,7 +162,7 @@ void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& optio
 
 std::string given_fem_option(const FemOptions& options) {
   if (options.contact) return "--contact";
-  if (options.stick) return "--stick";
+  if (options.slide) return "--slide";
   if (!options.quality.empty()) return "--quality";
   if (options.error_estimate) return "--error-estimate";
   if (!options.mesher.empty()) return "--mesher";

@@ -13,7 +13,7 @@
 namespace limber::cmd {
 
 struct FemOptions {
-  bool contact = false, stick = false, error_estimate = false;
+  bool contact = false, slide = false, error_estimate = false;
   std::string quality, mesher, gravity, pressure;
   std::vector<std::string> obstacles;
 };

@@ -270,16 +270,15 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
 }
 
-std::vector<Landmark> posed_landmarks(const std::vector<Landmark>& landmarks, const Options& options, const Body& body,
+std::vector<Landmark> posed_landmarks(std::vector<Landmark> landmarks, const Options& options, const Body& body,
                                       const BoundBody& bound, const BakedJoints& baked, const BodyInPose& posed) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks) places.push_back(landmark.position);
   places =
       posed_points(body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
                    find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), places, baked);
-  std::vector<Landmark> there = landmarks;
-  for (size_t i = 0; i < there.size(); ++i) there[i].position = places[i];
-  return there;
+  for (size_t i = 0; i < landmarks.size(); ++i) landmarks[i].position = places[i];
+  return landmarks;
 }
 
 PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
@@ -290,7 +289,7 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
           .contact = options.fem->contact,
           .quality = options.fem->quality,
           .mesher = options.fem->mesher,
-          .slides = !options.fem->stick,
+          .slides = options.fem->slide,
           .estimates_error = options.fem->error_estimate,
           .objects = objects_of(*options.fem),
           .gravity = gravity_of(*options.fem),

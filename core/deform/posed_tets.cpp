@@ -64,13 +64,17 @@ glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& corners, const glm::dvec3&
   return {1 - s.x - s.y - s.z, s};
 }
 
-// Returns 1 for each tet of bone with a node at which flesh has a node of its own (TetMesh::copy_of).
+// Returns 1 for each tet of a bone over which flesh slides, that is, at some of whose nodes flesh has nodes of its own
+// (TetMesh::copy_of).
 std::vector<char> slid_over(const TetMesh& mesh) {
-  std::vector<char> has_copy(mesh.V.rows(), 0), result(mesh.T.rows(), 0);
+  std::vector<char> has_copy(mesh.V.rows(), 0), result(mesh.T.rows(), 0), slides(65536, 0);
   for (std::size_t v = 0; v < mesh.copy_of.size(); ++v)
     if (mesh.copy_of[v] != int(v)) has_copy[mesh.copy_of[v]] = 1;
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
-    for (const int v : mesh.T.row(t)) result[t] |= has_copy[v];
+    for (const int v : mesh.T.row(t))
+      if (has_copy[v]) slides[mesh.region[t]] = 1;
+  slides[TetMesh::kSoft] = 0;
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) result[t] = slides[mesh.region[t]];
   return result;
 }
 
@@ -346,7 +350,7 @@ void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, con
   Claims claims(map, volume, priority, depth);
   std::vector<int> near;
   bins_.meeting(map.range, near);
-  // Tets of bone over which flesh slides come last, since the flesh's tets may enter them by a fraction of a tet.
+  // Tets of bones over which flesh slides come last, since the flesh's tets may enter them by a fraction of a tet.
   std::stable_partition(near.begin(), near.end(), [&](int t) { return !is_slid_over_[t]; });
   for (int t : near) {
     const auto posed = posed_corners(t);

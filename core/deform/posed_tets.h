@@ -79,9 +79,9 @@ class PosedTets {
   TissueMask in_mesh_, instead_of_;
   std::vector<char> is_slid_over_;  // #T: 1 for tets of bone over which flesh slides
   std::vector<glm::dvec3> rest_;    // #V node positions at rest, voxel coordinates, rounded to 1/65536
-  std::vector<FixedPoint> posed_;  // #V posed node positions
-  Eigen::MatrixX3d moved_;         // #V motions of the nodes (posed - rest), world, mm
-  BoxBins bins_, rider_bins_;      // posed bounding boxes of the tets and of the riders, in output voxels
+  std::vector<FixedPoint> posed_;   // #V posed node positions
+  Eigen::MatrixX3d moved_;          // #V motions of the nodes (posed - rest), world, mm
+  BoxBins bins_, rider_bins_;       // posed bounding boxes of the tets and of the riders, in output voxels
   std::vector<Rider> riders_;
   VoxelRange posed_tissue_;
 };

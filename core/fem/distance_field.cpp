@@ -96,8 +96,7 @@ DistanceField::DistanceField(const TetMesh& mesh, std::uint16_t region, std::spa
       if (share.minCoeff() >= 0 && share.sum() <= 1) inside[index(x, y, z)] = 1;
     });
   }
-  const std::vector<float> far =
-      signed_distance({{}, {size_[0], size_[1], size_[2]}}, inside, glm::dvec3(spacing_));
+  const std::vector<float> far = signed_distance({{}, {size_[0], size_[1], size_[2]}}, inside, glm::dvec3(spacing_));
   // The distance transform measures between centres of samples, so it is half a spacing too far.
   std::transform(far.begin(), far.end(), mm_.begin(), [&](float mm) {
     const double most = 1e3 * spacing_;

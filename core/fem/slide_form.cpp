@@ -48,8 +48,8 @@ void SlideForm::add_gradient(const NodePositions& x, NodePositions& gradient) co
   for (const Node& each : nodes) {
     const Eigen::RowVector3d y = in_bone(each, x);
     const DistanceAt distance = surface[each.bone]->at(y);
-    const Eigen::Vector3d force = each.normal * (distance.mm - each.rest_mm) * distance.slope +
-                                  each.fascia * (y - each.rest).transpose();
+    const Eigen::Vector3d force =
+        each.normal * (distance.mm - each.rest_mm) * distance.slope + each.fascia * (y - each.rest).transpose();
     gradient.row(each.node) += (matrix_of(posed_from_rest[each.bone].rotation) * force).transpose();
   }
 }

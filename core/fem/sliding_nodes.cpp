@@ -43,9 +43,7 @@ struct BoneFaces {
   std::vector<double> mm2;
   NodePositions normal;
 
-  explicit BoneFaces(const TetMesh& mesh)
-      : mm2(mesh.V.rows(), 0),
-        normal(NodePositions::Zero(mesh.V.rows(), 3)) {
+  explicit BoneFaces(const TetMesh& mesh) : mm2(mesh.V.rows(), 0), normal(NodePositions::Zero(mesh.V.rows(), 3)) {
     const auto neighbours = neighbours_of(mesh);
     for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
       if (mesh.region[t] == TetMesh::kSoft) continue;
@@ -158,17 +156,15 @@ std::vector<std::uint8_t> sliding_nodes(const LabelVolume& volume, const TissueT
   const BoneFaces faces(mesh);
   std::vector<std::uint8_t> faced(mesh.V.rows(), 0);
   mark_faced(mesh, bone, faces.normal, {}, settings.joint_mm, faced);
-  for (const auto& motion : settings.motions)
-    mark_faced(mesh, bone, faces.normal, motion, settings.closing_mm, faced);
+  for (const auto& motion : settings.motions) mark_faced(mesh, bone, faces.normal, motion, settings.closing_mm, faced);
   const Eigen::MatrixX3i boundary = boundary_of(mesh);
   for (const int v : boundary.reshaped()) faced[v] = 1;
   const TissueOnBone tissue(volume, tissues, settings.tet_mm);
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) {
     if (bone[v] < 0 || faced[v] || faces.mm2[v] == 0) continue;
     const glm::dvec3 place = vec_of(mesh.V.row(v));
-    const bool is_near = std::any_of(settings.near.begin(), settings.near.end(), [&](const auto& each) {
-      return glm::distance(each.joint, place) < each.mm;
-    });
+    const bool is_near = std::any_of(settings.near.begin(), settings.near.end(),
+                                     [&](const auto& each) { return glm::distance(each.joint, place) < each.mm; });
     slides[v] = is_near && tissue.is_loose_at(place);
   }
   return slides;

@@ -25,7 +25,7 @@ struct MeshSettings {
   std::vector<glm::dvec3> fine_around;
   double fine_radius_mm = 40;
   std::vector<LatticeNetSettings::Covered> covered = {};  // see LatticeNetSettings
-  TetrahedralizeLimits limits = {};  // limits on TetGen's time and memory
+  TetrahedralizeLimits limits = {};                       // limits on TetGen's time and memory
 };
 
 struct TissueMesh {

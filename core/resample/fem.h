@@ -38,7 +38,7 @@ struct Fem {
   // it, and each solve ends when Newton moves no node by more than a tenth of the usual length.
   bool is_exact = false;
   Mesher mesher = Mesher::lattice;
-  bool slides = true;  // loose tissue slides over bone near bent joints (sliding_nodes.h); false: all tissue sticks
+  bool slides = false;  // true: loose tissue slides over bone near bent joints (sliding_nodes.h); false: it sticks
   bool estimates_error = false;    // true: a second solve with larger tets tells how large the error is (fem_error.h)
   std::vector<FemObject> objects;  // rigid objects that press on the posed body; `contact` must be true
   glm::dvec3 gravity{0};           // acceleration of gravity, m/s2, in the world

@@ -14,7 +14,8 @@ namespace limber {
 namespace {
 
 // A mesh whose tissue slides has its own head, so that files of meshes without are as ever.
-constexpr std::string_view kMesh = "limber fem mesh 1\n", kSliding = "limber fem mesh 2\n", kStep = "limber fem step 1\n";
+constexpr std::string_view kMesh = "limber fem mesh 1\n", kSliding = "limber fem mesh 2\n",
+                           kStep = "limber fem step 1\n";
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
 
 Path with(const Path& name, const char* ending) { return name.string() + ending; }

@@ -33,7 +33,8 @@ struct OnBall {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> share(-1, 1);
     for (int v = 0; v < 5; ++v) {
-      const Eigen::RowVector3d rest = 10.3 * Eigen::RowVector3d(share(random), share(random), share(random)).normalized();
+      const Eigen::RowVector3d rest =
+          10.3 * Eigen::RowVector3d(share(random), share(random), share(random)).normalized();
       form.nodes.push_back({v, 1, 40.0 + v, 0.5, rest, form.surface[1]->at(rest).mm});
       const glm::dvec3 there = form.posed_from_rest[1] * glm::dvec3(rest[0], rest[1], rest[2]);
       x.row(v) << there.x, there.y, there.z;
@@ -71,7 +72,7 @@ struct Sleeve {
   explicit Sleeve(int across) {
     const double edge = 2 * kOuter / across;
     mesh = thick_cylinder(kInner, kOuter, kLength, int(std::lround((kOuter - kInner) / edge)),
-                          int(std::lround(M_PI * (kInner + kOuter) / edge)), int(std::lround(kLength / edge)));
+                          int(std::lround(2 * M_PI * kOuter / edge)), int(std::lround(kLength / edge)));
     rest = mesh.V;
   }
 
@@ -126,8 +127,7 @@ struct Sleeve {
                [](const Eigen::RowVector3d& p) -> Eigen::RowVector3d {
                  const bool end = p[2] < 1e-9 || p[2] > kLength - 1e-9;
                  // By symmetry nothing leaves the plane y = 0; without that the sleeve could spin.
-                 return {kFree, std::abs(p[1]) < 1e-9 ? 0 : kFree,
-                         end ? p[2] + kStrain * (p[2] - kLength / 2) : kFree};
+                 return {kFree, std::abs(p[1]) < 1e-9 ? 0 : kFree, end ? p[2] + kStrain * (p[2] - kLength / 2) : kFree};
                }),
           0);
     const double lambda = lame_lambda(shear, poisson_ratio), ratio = kInner * kInner / (kOuter * kOuter);
@@ -204,7 +204,8 @@ TEST_CASE("slide form: a node that goes with its bone has no energy, one that sl
   CHECK(ball.form.value(ball.x) < 1e-20);
 }
 
-TEST_CASE("distance field: the distance from a meshed rod is right near it and beyond the table, and its slope is one") {
+TEST_CASE(
+    "distance field: the distance from a meshed rod is right near it and beyond the table, and its slope is one") {
   // A rod of bone of radius 10, meshed with edges of 2.
   TetMesh mesh = thick_cylinder(1e-3, 10, 40, 5, 31, 20);
   mesh.region.assign(mesh.T.rows(), 1);

@@ -24,7 +24,8 @@ Posed bent(bool slides, TissueKind around_bone = TissueKind::Fat) {
 
 }  // namespace
 
-TEST_CASE("fem sliding: skin and fat over a bent joint slide over the bones and are stretched less than if they stick") {
+TEST_CASE(
+    "fem sliding: skin and fat over a bent joint slide over the bones and are stretched less than if they stick") {
   const Posed slid = bent(true), stuck = bent(false);
   for (const Posed* posed : {&slid, &stuck}) {
     REQUIRE(posed->report.solve);
@@ -42,8 +43,8 @@ TEST_CASE("fem sliding: skin and fat over a bent joint slide over the bones and 
   CHECK(slid.report.solve->largest_slide_gap_mm < 0.25 * 4);
   const auto most = [](const Posed& posed) { return posed.report.mesh->stretch.at(test::kFat).most[2]; };
   MESSAGE("fat, 95 % of the largest stretch: ", most(slid), " sliding, ", most(stuck), " sticking; ",
-          slid.report.solve->sliding_nodes, " nodes slide by ", slid.report.solve->largest_slide_mm, " mm at most, off by ",
-          slid.report.solve->largest_slide_gap_mm, " mm");
+          slid.report.solve->sliding_nodes, " nodes slide by ", slid.report.solve->largest_slide_mm,
+          " mm at most, off by ", slid.report.solve->largest_slide_gap_mm, " mm");
   CHECK(most(slid) < most(stuck));
 }
 
