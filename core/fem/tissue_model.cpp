@@ -251,8 +251,8 @@ void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
 }
 
 // Selects the bone that holds each node: the bone of the bone tets around the node or, in soft tissue that moves
-// rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints. Returns the nodes of bone
-// over which soft tissue slides (sliding_nodes.h).
+// rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints. Returns the nodes of
+// bone over which soft tissue slides (sliding_nodes.h).
 std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& volume, const TissueVoxels& tissue,
                                          const TissueTable& tissues, const SkinWeights& weights,
                                          const DeformingRegion& moving, const TissueModelSettings& settings) {
