@@ -126,7 +126,7 @@ TEST_CASE("planted faults: weights that swap two bones are caught by the bones t
         influence.bone[k] = influence.bone[k] == thigh ? shank : influence.bone[k] == shank ? thigh : influence.bone[k];
   });
   check_caught(resample(folder, {"--weights", folder / "weights.nrrd", "--flex", "LeftShank=40"}), folder,
-               "went with LeftShank, but belong to LeftThigh");
+               "follow LeftShank, but belong to LeftThigh");
 }
 
 TEST_CASE(
@@ -140,7 +140,7 @@ TEST_CASE(
   });
   const auto run = resample(folder, {"--weights", folder / "weights.nrrd", "--flex", "LeftForearm=50"});
   check_caught(run, folder, "\"Left humerus\" is torn or bent");
-  CHECK(run.err.find("of \"Left humerus\" went with LeftForearm, but belong to LeftUpperArm") != std::string::npos);
+  CHECK(run.err.find("of \"Left humerus\" follow LeftForearm, but belong to LeftUpperArm") != std::string::npos);
 }
 
 TEST_CASE("planted faults: half of a bone under the label of the next one is caught before any pose") {

@@ -106,7 +106,8 @@ TEST_CASE("joint axis: a fit that moves the target bone of a constraint says so"
   stage.play("wait-idle\n key Shift+J\n wait-job\n wait-idle\n click \"3D view/joint axis/rig.take_joint_fit\"");
   const auto& log = stage.editor().messages.log;
   CHECK(std::any_of(log.begin(), log.end(), [](const LogLine& line) {
-    return line.severity == Severity::Warning && line.text.find("Fit joint axis of Turning: the target") == 0;
+    return line.severity == Severity::Warning &&
+           line.text.find("Fit joint axis of Turning: targets of constraints moved") == 0;
   }));
 }
 
