@@ -9,6 +9,39 @@
 
 namespace limber::editor {
 
+namespace {
+
+constexpr double kNever = 1e300;
+
+// Returns true if a mouse button is down or a key other than a modifier was pressed in this frame.
+bool is_acting(const Ui& ui) {
+  for (const bool down : ui.input.buttons)
+    if (down) return true;
+  for (int button = 0; button < 3; ++button)
+    if (ImGui::IsMouseClicked(button)) return true;
+  for (int key = 0; key < static_cast<int>(Key::Count); ++key) {
+    const Key one = static_cast<Key>(key);
+    const bool modifier = one == Key::Ctrl || one == Key::Shift || one == Key::Alt || one == Key::Super;
+    if (!modifier && ImGui::IsKeyPressed(key, false)) return true;
+  }
+  return false;
+}
+
+// Returns true from a click or a key until the pointer moves: the user knows what the widget does, and a tool tip could
+// cover what has changed, even if another widget is under the pointer now. The place of the pointer is kept in the
+// storage of ImGui's current window. Call it once per frame, outside the windows of all regions.
+bool quiet_at_pointer(const Ui& ui) {
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID x = ImHashStr("quiet x"), y = ImHashStr("quiet y");
+  const glm::vec2& pointer = ui.input.pointer;
+  if (!is_acting(ui)) return storage.GetFloat(x, -FLT_MAX) == pointer.x && storage.GetFloat(y, -FLT_MAX) == pointer.y;
+  storage.SetFloat(x, pointer.x);
+  storage.SetFloat(y, pointer.y);
+  return true;
+}
+
+}  // namespace
+
 void tooltip(Ui& ui, const Rect& rect, const std::string& title, const std::string& description,
              const std::optional<Chord>& chord) {
   auto& tip = ui.tip;
@@ -27,14 +60,9 @@ void draw_tooltip(Ui& ui) {
   auto& tip = ui.tip;
   // No tool tip is shown while the user types a number, since the tool tip would hide the fields below the number.
   const ImGuiID active = ImGui::GetActiveID();
-  const bool typing = active != 0 && ImGui::TempInputIsActive(active);
+  const bool typing = active != 0 && ImGui::TempInputIsActive(active), quiet = quiet_at_pointer(ui);
   if (!std::exchange(tip.asked, false) || typing) return tip.widget.clear();
-  // After a click, hides the tool tip: the user knows what the widget does, and the tool tip could cover what has
-  // changed.
-  if (ui.input.down(MouseButton::Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
-    tip.since = 1e300;
-    return;
-  }
+  if (quiet) tip.since = kNever;
   if (tip.since > ui.now) return;
   if (ui.now - tip.since < ui.tooltip_delay) return ui.wake_at(tip.since + ui.tooltip_delay);
 

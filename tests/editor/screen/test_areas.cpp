@@ -146,6 +146,32 @@ TEST_CASE("areas: the status bar's hints are those of the timeline while the poi
   test.play("move " + std::to_string(over.x) + " " + std::to_string(over.y) + "\nexpect text:Scrub shown");
 }
 
+TEST_CASE("areas: after a click or a key no tool tip is shown until the pointer moves") {
+  LimbEditor test;
+  const auto tip_shown = [&] {
+    const auto& tip = test.editor->tip;
+    return !tip.widget.empty() && tip.since + test.editor->tooltip_delay <= test.editor->now;
+  };
+  test.play("key Ctrl+1\nwait-idle\nmove top/Skin\nwait 2");
+  CHECK(tip_shown());
+  test.play("click top/Skin\nwait-idle\nwait 2");  // the tab changes its width, and the tip its title
+  CHECK(test.fact("workspace") == "skin");
+  CHECK_FALSE(tip_shown());
+  test.play("move top/Pose\nwait 2");
+  CHECK(tip_shown());
+  test.play("key Ctrl+1\nwait-idle\nwait 2");
+  CHECK(test.fact("workspace") == "rig");
+  CHECK_FALSE(tip_shown());
+  test.play("key Ctrl+3\nwait-idle\nwait 2");
+  CHECK_FALSE(tip_shown());
+  // A held modifier leaves a tip, which may speak of Ctrl+click.
+  test.play("move top/Skin\nwait 2");
+  test.host->events.push(KeyChanged{Key::Ctrl, true});
+  test.play("wait 2");
+  CHECK(tip_shown());
+  test.host->events.push(KeyChanged{Key::Ctrl, false});
+}
+
 TEST_CASE("areas: a word in a section's head is whole where the title leaves room for it") {
   const std::string name = "Left middle finger's end bone";
   LimbEditor test;
