@@ -363,11 +363,14 @@ struct View3D::Impl {
   // Adds the shaded layers of one rectangle to the picture of the body.
   void shade_layers(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part,
                     bool lit_by_rays) {
+    // A coarse picture is stretched later, so its lines are narrower here.
+    const float line =
+        scene.line_scale * static_cast<float>(buffers[0].size().x) / static_cast<float>(std::max(key.size.x, 1));
     glBindFramebuffer(GL_FRAMEBUFFER, body.framebuffer());
     for (size_t layer = source.layers.size(); layer-- > 0;)
       resources.shade.draw(*source.body->volume, *source.layers[layer], source.pose, buffers[layer],
                            source.looks->texture(), rays, part, static_cast<int>(layer), is_ghost(layer), colours(),
-                           lit_by_rays ? &light[layer] : nullptr, scene.line_scale);
+                           lit_by_rays ? &light[layer] : nullptr, line);
   }
 
   // Draws the whole body at once, with one ray for each `scale`-th pixel along each axis.
@@ -752,7 +755,7 @@ void SliceView::draw(const Scene& scene, const SliceCamera& camera, SliceDisplay
     my.resources.slice.draw(*body.volume, my.resources.pose(body, scene.pose),
                             my.resources.looks(body, scene.looks, Display::Solid), my.weights(body, scene, camera),
                             scene.weights && scene.weights->contours, grey, scene.grey.value_or(ShownGrey{}), camera,
-                            display, scene.outlined, size);
+                            display, scene.outlined, scene.line_scale, size);
     if (scene.mesh) my.draw_mesh(scene, camera, display, size);
   }
   gl::check_gl("drawing a slice");

@@ -10,7 +10,7 @@ namespace limber::render {
 
 namespace {
 
-// Two adjacent pixels count as one surface if their rest positions are at most kJoined voxels plus kSlant pixel sizes
+// Two pixels count as one surface if their rest positions are at most kJoined voxels plus kSlant times their distance
 // apart. The second term allows for surfaces seen at a slant.
 constexpr float kJoined = 3, kSlant = 6;
 
@@ -51,6 +51,7 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
   program.use();
   set_rays(program, rays);
   program.set("u_layer", static_cast<unsigned>(layer));
+  program.set("u_line", std::max(1, static_cast<int>(std::lround(line_scale))));
   program.set_texture("u_depth", 0, GL_TEXTURE_2D, buffer.depth.name());
   program.set_texture("u_normal", 1, GL_TEXTURE_2D, buffer.normal.name());
   program.set_texture("u_label", 2, GL_TEXTURE_2D, buffer.label.name());
@@ -61,7 +62,6 @@ void ShadePass::draw(const VolumeTexture& volume, const VisibleField& field, con
     const glm::dmat3 to_world = glm::inverse(glm::dmat3(rays.padded_from_world));
     program.set("u_every", light->every);
     program.set("u_offset", light->offset);
-    program.set("u_cut_line", std::max(1, static_cast<int>(std::lround(line_scale))));
     const double step = 2.0 / buffer.size().x;
     program.set("u_pixel",
                 glm::vec2(step * glm::length(to_world * rays.base_x), step * glm::length(to_world * rays.toward_x)));

@@ -25,7 +25,7 @@ class ShadePass {
   //   layer       index of the layer; labels that also belong to a deeper layer are not drawn here
   //   posed       the inverse map of the posed body; null: the body is at rest
   //   light       light by rays at the buffer's pixels; null: the body's blurred occupancy darkens creases instead
-  //   line_scale  width of the outlines of tissues on cut faces, which only pictures with light by rays have, pixels
+  //   line_scale  width of contour lines and of the outlines of tissues on cut faces, pixels
   void draw(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed, const GBuffer& buffer,
             const gl::Texture& looks, const ViewRays& rays, const PixelRect& rect, int layer, bool ghost,
             Colours colours, const LightBuffer* light, float line_scale);

@@ -2,6 +2,7 @@
 #include "render/passes/slice_pass.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <epoxy/gl.h>
@@ -14,7 +15,7 @@ SlicePass::SlicePass() : nothing_(gl::VertexArray::create()) {}
 
 void SlicePass::draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks,
                      const WeightTexture* weights, bool contours, const GreyTexture* grey, const ShownGrey& shown_grey,
-                     const SliceCamera& camera, SliceDisplay display, std::optional<Label> outlined,
+                     const SliceCamera& camera, SliceDisplay display, std::optional<Label> outlined, float line_scale,
                      const glm::ivec2& size) {
   auto& program = programs_[{volume.layout().atlases, posed != nullptr, grey != nullptr,
                              weights ? std::optional(weights->reading()) : std::nullopt}];
@@ -48,6 +49,7 @@ void SlicePass::draw(const VolumeTexture& volume, const PosedTexture* posed, con
   program->set("u_down", glm::vec3(to_padded.linear * frame.down * camera.millimetres_per_pixel));
   program->set("u_high", glm::vec3(volume.layout().blocks * kBlock));
   program->set("u_size", glm::vec2(size));
+  program->set("u_line", std::max(1.0f, std::round(line_scale)));
   program->set("u_outline", display == SliceDisplay::Outline ? 1 : 0);
   program->set("u_outlined", static_cast<unsigned>(outlined.value_or(0)));
   glEnable(GL_BLEND);

@@ -26,10 +26,12 @@ class SlicePass {
   // Draws the slice into the bound framebuffer. Pixels of air or of hidden tissue keep the background.
   //   posed    the inverse map of the posed body; null: the body is at rest
   //   weights  weights to show instead of tissue colours; null: tissue colours
+  //   line_scale  width of borders and contour lines, pixels
   //   grey     the texture of shown_grey's image, to show below the tissues; null: no image is shown
   void draw(const VolumeTexture& volume, const PosedTexture* posed, const LooksTexture& looks,
             const WeightTexture* weights, bool contours, const GreyTexture* grey, const ShownGrey& shown_grey,
-            const SliceCamera& camera, SliceDisplay display, std::optional<Label> outlined, const glm::ivec2& size);
+            const SliceCamera& camera, SliceDisplay display, std::optional<Label> outlined, float line_scale,
+            const glm::ivec2& size);
 
  private:
   // One program for each number of atlas textures, for a body at rest or posed, without or with a grey image, and for

@@ -13,13 +13,13 @@ uniform sampler2D u_light;  // light computed by light.frag: fractions of the ke
 uniform int u_every;        // light.frag computed the light of every n-th pixel along each axis
 uniform ivec2 u_offset;     // the first pixel for which light was computed
 uniform vec2 u_pixel;       // a pixel is x + y * depth wide, mm
-uniform int u_cut_line;     // width of the outlines of tissues on cut faces, pixels
 #else
 uniform sampler3D u_occupancy;
 uniform vec3 u_occupancy_texel;
 uniform mat3 u_padded_from_view;   // converts directions; a unit normal becomes one brick long
 #endif
 uniform uint u_layer;
+uniform int u_line;  // width of contour lines, and of the outlines of tissues on cut faces, pixels
 layout(location = 0) out vec4 colour;
 
 const vec3 kKey = vec3(-0.428, 0.556, 0.713);
@@ -74,7 +74,7 @@ vec2 light_at(ivec2 at, vec4 stored, vec3 normal) {
 bool outlined(ivec2 at, uint label) {
   ivec2 last = textureSize(u_depth, 0) - 1;
   for (int i = 0; i < 2; ++i) {
-    ivec2 beside = min(at + ivec2(1 - i, i) * u_cut_line, last);
+    ivec2 beside = min(at + ivec2(1 - i, i) * u_line, last);
     if (texelFetch(u_normal, beside, 0).a > 0.7 && texelFetch(u_label, beside, 0).r != label) return true;
   }
   return false;
@@ -124,8 +124,8 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
 uniform sampler2D u_weight;
 uniform usampler2D u_place;
 uniform int u_lines;  // lines to draw; 0: none, 1: between ranges of the weight, 2: between colours
-// Two adjacent pixels lie on one surface if their rest positions differ by less than u_joined.x + u_joined.y * the size
-// of a pixel, in steps of u_place.
+// Two pixels that are the width of a line apart lie on one surface if their rest positions differ by less than
+// u_joined.x + u_joined.y * their distance, in steps of u_place.
 uniform vec2 u_joined;
 const float kLine = 0.55;
 
@@ -137,13 +137,14 @@ bool differs(vec4 weight, vec4 other) {
 // Returns true if two pixels lie on one surface.
 bool joined(ivec2 at, ivec2 beside) {
   vec3 apart = vec3(texelFetch(u_place, at, 0).xyz) - vec3(texelFetch(u_place, beside, 0).xyz);
-  float most = u_joined.x + u_joined.y * length(u_base_x + texelFetch(u_depth, at, 0).r * u_toward_x);
+  float most = u_joined.x + u_joined.y * float(u_line) * length(u_base_x + texelFetch(u_depth, at, 0).r * u_toward_x);
   return dot(apart, apart) < most * most;
 }
 
 vec3 colour_of(ivec2 at, vec3 tissue) {
   vec4 weight = texelFetch(u_weight, at, 0);
-  ivec2 last = textureSize(u_weight, 0) - 1, right = min(at + ivec2(1, 0), last), above = min(at + ivec2(0, 1), last);
+  ivec2 last = textureSize(u_weight, 0) - 1;
+  ivec2 right = min(at + ivec2(u_line, 0), last), above = min(at + ivec2(0, u_line), last);
   bool to_right = differs(weight, texelFetch(u_weight, right, 0)),
        to_above = differs(weight, texelFetch(u_weight, above, 0));
   bool line = u_lines != 0 && ((to_right && joined(at, right)) || (to_above && joined(at, above)));

@@ -19,6 +19,7 @@ uniform vec3 u_middle, u_right, u_down;  // padded coordinates of the picture's 
 uniform vec3 u_high;
 uniform vec2 u_size;
 uniform bool u_outline;
+uniform float u_line;       // width of borders and contour lines, pixels
 uniform uint u_outlined;
 layout(location = 0) out vec4 colour;
 
@@ -56,7 +57,8 @@ float contour(vec4 texel, vec3 right, vec3 below) {
   vec2 slope = abs(vec2(dFdx(level), dFdy(level)));
   float off = min(min(abs(level - 0.25), abs(level - 0.5)), abs(level - 0.75));
   // A steep change of the weight means a fold of the posed body or the border of the tissue. No line is drawn there.
-  return texel.a > 0.0 && all(lessThan(slope, vec2(0.3))) ? clamp(1.1 - off / max(length(slope), 1e-4), 0.0, 1.0) : 0.0;
+  if (texel.a == 0.0 || any(greaterThanEqual(slope, vec2(0.3)))) return 0.0;
+  return clamp(0.6 * u_line + 0.5 - off / max(length(slope), 1e-4), 0.0, 1.0);
 #elif defined(VOXELS)
   vec4 to_right = weights_at(right), to_below = weights_at(below);
   return (to_right.a > 0.0 && to_right != texel) || (to_below.a > 0.0 && to_below != texel) ? 1.0 : 0.0;
@@ -68,7 +70,7 @@ float contour(vec4 texel, vec3 right, vec3 below) {
 
 void main() {
   vec2 pixel = vec2(gl_FragCoord.x - u_size.x * 0.5, u_size.y * 0.5 - gl_FragCoord.y);
-  vec3 p = place_of(pixel), p_right = place_of(pixel + vec2(1, 0)), p_below = place_of(pixel + vec2(0, 1));
+  vec3 p = place_of(pixel), p_right = place_of(pixel + vec2(u_line, 0)), p_below = place_of(pixel + vec2(0, u_line));
   uint label = label_at_place(p);
   uvec4 look = look_of(label);
   bool seen = (look.a & 7u) != 0u;

@@ -86,6 +86,30 @@ TEST_CASE("slice: hidden tissue shows the background, and outlines leave the ins
   CHECK(rim <= 6);
 }
 
+TEST_CASE("slice: at twice the scale outlines are twice as wide") {
+  Studio studio;
+  SliceView view(studio.renderer);
+  Scene scene = scene_of(painted(grid_of({40, 40, 40}), [](const glm::dvec3& p) -> Label {
+    return glm::length(p - glm::dvec3(20)) < 15 ? 1 : 0;
+  }));
+  const SliceCamera camera{.centre = glm::dvec3(20), .millimetres_per_pixel = 0.6};
+  // Returns the number of pixels of the middle row that outlines of two sides cover.
+  const auto covered = [&](float scale, SliceDisplay display) {
+    scene.line_scale = scale;
+    view.draw(scene, camera, display, kSize);
+    const Image image = view.read();
+    int count = 0;
+    for (int x = 0; x < kSize.x; ++x) {
+      const glm::ivec4 pixel = pixel_of(image, {x, 35});
+      count += display == SliceDisplay::Outline ? pixel.a == 255 : pixel == glm::ivec4(255, 159, 46, 255);
+    }
+    return count;
+  };
+  for (const int scale : {1, 2, 3}) CHECK(covered(static_cast<float>(scale), SliceDisplay::Outline) == 2 * scale);
+  scene.outlined = 1;
+  for (const int scale : {1, 2, 3}) CHECK(covered(static_cast<float>(scale), SliceDisplay::Labels) == 2 * scale);
+}
+
 TEST_CASE("slice: without a background, air is transparent and tissue is not") {
   Studio studio;
   SliceView view(studio.renderer);

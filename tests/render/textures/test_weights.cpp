@@ -218,6 +218,13 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   // A contour is one pixel wide. It is drawn in the last column before its position.
   for (int line = 0; line < 3; ++line)
     CHECK(std::abs(body[line] + 1 - (kSize.x / 2 + (2 + 31 * (line + 1) * 0.25 - camera.centre.x) / millimetres)) <= 1);
+  // At twice the scale, each contour covers the column before, too.
+  scene.line_scale = 2;
+  const std::vector<int> broad = dark_columns(picture_of(studio.renderer, scene, camera, kSize), plain, kSize.y / 2);
+  std::vector<int> doubled;
+  for (const int x : body) doubled.insert(doubled.end(), {x - 1, x});
+  CHECK(broad == doubled);
+  scene.line_scale = 1;
 
   SliceView view(studio.renderer);
   const SliceCamera slice{.centre = glm::dvec3(18, 12, 9), .millimetres_per_pixel = 0.25};
@@ -232,6 +239,12 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
     CHECK(std::min({std::abs(weight - 0.25), std::abs(weight - 0.5), std::abs(weight - 0.75)}) <
           0.012);  // one and a half pixels, as a weight
   }
+  scene.line_scale = 2;
+  view.draw(scene, slice, SliceDisplay::Labels, wide);
+  const std::vector<int> broad_lines = dark_columns(view.read(), without, 60);
+  CHECK(broad_lines.size() > lines.size());
+  CHECK(broad_lines.size() >= 6);
+  CHECK(broad_lines.size() <= 9);
 }
 
 TEST_CASE(
