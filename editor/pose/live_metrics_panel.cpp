@@ -79,7 +79,9 @@ void put_metrics(Editor& editor, Column& column, const PoseMetrics& metrics, boo
     Rect row;
     if (!column.list_row(row, static_cast<int>(i), false)) continue;
     const float side = look.px(14), x = row.low.x + look.px(10), y = std::round(row.centre().y - side / 2);
-    fill({{x, y}, {x + side, y + side}}, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
+    const Rect swatch{{x, y}, {x + side, y + side}};
+    fill(swatch, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
+    outline(swatch, look.theme.line2, look.px(3), look.line());
     put_change(editor, row, tissue, look.fonts.regular, known, 22);
   }
   if (tissues.size() > kMostTissues) {

@@ -290,7 +290,9 @@ void draw_row(Editor& editor, Column& column, int index, const Row& row) {
   const bool active_bone = row.kind == Row::Kind::Bone && editor.selection.bone == row.index;
   if (row.swatch) {
     const glm::vec2 side(look.px(7));
-    fill({glm::round(icon.centre() - side), glm::round(icon.centre() + side)}, *row.swatch, look.px(3));
+    const Rect swatch{glm::round(icon.centre() - side), glm::round(icon.centre() + side)};
+    fill(swatch, *row.swatch, look.px(3));
+    outline(swatch, look.theme.line2, look.px(3), look.line());
   } else if (row.kind == Row::Kind::Bone) {
     put_bone_icon(look, icon, active_bone ? look.theme.select : row.chosen ? look.theme.accent_text : look.theme.text2);
   } else {

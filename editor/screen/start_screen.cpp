@@ -54,9 +54,12 @@ Plan plan_of(const Editor& editor) {
 //   picture  the picture's aspect ratio, which is its width divided by its height
 void draw_picture(Editor& editor, unsigned texture, const Rect& rect, float picture, float rounding) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
-  canvas.AddRectFilledMultiColor(im(rect.low), im(rect.high), editor.look.theme.view_top, editor.look.theme.view_top,
-                                 editor.look.theme.view_bottom, editor.look.theme.view_bottom);
-  if (!texture) return;
+  // Behind a picture, the corners of the gradient, which are not rounded, would show.
+  if (!texture) {
+    canvas.AddRectFilledMultiColor(im(rect.low), im(rect.high), editor.look.theme.view_top, editor.look.theme.view_top,
+                                   editor.look.theme.view_bottom, editor.look.theme.view_bottom);
+    return;
+  }
   // Crop the picture to the rectangle's aspect ratio, so that it fills the rectangle undistorted.
   const float aspect = rect.width() / rect.height();
   const glm::vec2 cut =

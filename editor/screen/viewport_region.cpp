@@ -199,6 +199,7 @@ void draw_pick_list(Editor& editor) {
     } else if (const Tissue* tissue = document.tissues->find(thing.tissue)) {
       const auto swatch = [&](const Rect& rect) {
         fill(rect, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+        outline(rect, look.theme.line2, look.px(3), look.line());
       };
       if (pick_row(editor, tissue->name, shown_name(*tissue), std::to_string(thing.tissue),
                    editor.selection.tissue == thing.tissue, swatch))
@@ -320,7 +321,16 @@ void draw_empty_view(Editor& editor, const Rect& rect) {
              Align::Centre);
     return;
   }
-  if (empty_state(editor, rect, "Drop a volume here", "Open...")) run(editor, *open);
+  // A view is dark in every theme, so its text has the colours of views, not those of panels.
+  const Look& look = editor.look;
+  const glm::vec2 middle = rect.centre();
+  put_text(editor, look.fonts.regular, look.theme.view_text2,
+           Rect{{rect.low.x, middle.y - look.px(28)}, {rect.high.x, middle.y - look.px(8)}}, "Drop a volume here",
+           Align::Centre);
+  const ButtonLook face{"", "Open...", ButtonStyle::Plain};
+  const glm::vec2 size{width_of_button(editor, face), look.px(26)},
+      corner = glm::round(glm::vec2(middle.x - size.x / 2, middle.y));
+  if (button(editor, "Open...", {corner, corner + size}, face)) run(editor, *open);
 }
 
 void draw_views_region(Editor& editor) {

@@ -31,9 +31,9 @@ void set_colours(const Theme& theme) {
        ImGuiCol_PlotHistogram},
       theme.accent);
   set({ImGuiCol_ScrollbarBg}, 0);
-  set({ImGuiCol_ScrollbarGrab}, theme.raised);
-  set({ImGuiCol_ScrollbarGrabHovered}, theme.hover);
-  set({ImGuiCol_ScrollbarGrabActive}, theme.active);
+  set({ImGuiCol_ScrollbarGrab}, theme.line2);
+  set({ImGuiCol_ScrollbarGrabHovered}, theme.text3);
+  set({ImGuiCol_ScrollbarGrabActive}, theme.text2);
   set({ImGuiCol_ModalWindowDimBg}, with_alpha(0, 0.45f));
 }
 

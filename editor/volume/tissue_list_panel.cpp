@@ -60,7 +60,9 @@ void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
   draw_eye(editor, {{rect.low.x + look.px(6), rect.low.y}, {rect.low.x + look.px(26), rect.high.y}}, tissue, shown);
 
   const float side = look.px(14), x = rect.low.x + look.px(30), y = std::round(rect.centre().y - side / 2);
-  fill({{x, y}, {x + side, y + side}}, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
+  const Rect swatch{{x, y}, {x + side, y + side}};
+  fill(swatch, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
+  outline(swatch, look.theme.line2, look.px(3), look.line());
 
   const Rect name{{x + side, rect.low.y}, {rect.high.x - look.px(70), rect.high.y}};
   if (renaming) {

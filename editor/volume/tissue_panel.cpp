@@ -180,8 +180,9 @@ void draw_under_cursor(Editor& editor, Column& column) {
     const Rect rect = column.row(24);
     if (tissue) {
       const float side = look.px(14), y = std::round(rect.centre().y - side / 2);
-      fill({{rect.low.x + look.px(10), y}, {rect.low.x + look.px(10) + side, y + side}},
-           rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+      const Rect swatch{{rect.low.x + look.px(10), y}, {rect.low.x + look.px(10) + side, y + side}};
+      fill(swatch, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+      outline(swatch, look.theme.line2, look.px(3), look.line());
       put_text(editor, look.fonts.regular, look.theme.text,
                Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(60), rect.high.y}},
                shown_name(*tissue));

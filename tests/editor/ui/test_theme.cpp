@@ -40,6 +40,16 @@ TEST_CASE("theme: every text can be read on what it stands on, in both themes") 
   }
 }
 
+TEST_CASE("theme: the colours of scroll bars and of rims of swatches stand out from panels, in both themes") {
+  for (const char* name : {"dark", "light"}) {
+    const Theme theme = read_theme(asset(std::string("themes/") + name + ".json"));
+    INFO(theme.name);
+    CHECK(contrast(theme.line2, theme.panel) >= 1.5);
+    CHECK(contrast(theme.line2, theme.row_alt) >= 1.4);
+    CHECK(contrast(theme.text3, theme.line2) >= 1.5);
+  }
+}
+
 TEST_CASE("theme: a file that lacks a colour is refused with the colour's name") {
   limber::test::TemporaryFolder folder;
   limber::write_atomically(folder / "theme.json", [](const limber::Path& path) {
