@@ -138,12 +138,13 @@ void FileBrowser::draw_list(Editor& editor, const Rect& rect) {
   const float date = look.px(110), size = look.px(80);
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kRow)}};
   fill(head, look.theme.head);
-  const float size_left = head.high.x - look.px(14) - date - size, date_left = head.high.x - look.px(14) - date;
+  // The heads stand above their columns, which leave room for the scroll bar.
+  const float right = head.high.x - ImGui::GetStyle().ScrollbarSize - look.px(14), date_left = right - date,
+              size_left = date_left - size;
   column_head(editor, "Name", {{head.low.x + look.px(10), head.low.y}, {size_left, head.high.y}}, SortBy::Name,
               Align::Left);
   column_head(editor, "Size", {{size_left, head.low.y}, {date_left, head.high.y}}, SortBy::Size, Align::Right);
-  column_head(editor, "Changed", {{date_left, head.low.y}, {head.high.x - look.px(14), head.high.y}}, SortBy::Time,
-              Align::Right);
+  column_head(editor, "Changed", {{date_left, head.low.y}, {right, head.high.y}}, SortBy::Time, Align::Right);
 
   Rect list{{rect.low.x, head.high.y}, rect.high};
   if (offers_dicom()) list.low.y = draw_dicom_offer(editor, {list.low, {list.high.x, list.low.y + look.px(40)}});

@@ -80,7 +80,9 @@ void StatisticsDialog::draw_table(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(26)}};
   fill(head, look.theme.head);
-  put_row(editor, head, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Parts"},
+  // The heads stand above their columns, which leave room for the scroll bar.
+  const Rect heads{head.low, {head.high.x - ImGui::GetStyle().ScrollbarSize, head.high.y}};
+  put_row(editor, heads, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Parts"},
           look.fonts.regular);
   if (!counted_->done) {
     put_text(editor, look.fonts.regular, look.theme.text2,
@@ -96,7 +98,9 @@ void StatisticsDialog::draw_table(Editor& editor, const Rect& rect) {
     const Tissue* tissue = counted_->tissues->find(one.label);
     if (tissue) {
       const float side = look.px(kSwatch), y = std::round(row.centre().y - side / 2), x = row.low.x + look.px(14);
-      fill({{x, y}, {x + side, y + side}}, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+      const Rect swatch{{x, y}, {x + side, y + side}};
+      fill(swatch, rgb(tissue->colour.r, tissue->colour.g, tissue->colour.b), look.px(3));
+      outline(swatch, look.theme.line2, look.px(3), look.line());
     }
     char volume[40];
     std::snprintf(volume, sizeof volume, one.volume_mm3 < 1000 ? "%.1f" : "%.0f", one.volume_mm3);
