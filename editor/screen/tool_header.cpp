@@ -148,10 +148,14 @@ class Header {
     if (dropped_.empty()) return;
     const float height = px(26), y = std::round(bar_.centre().y - height / 2);
     if (button(editor_, "More", {{x_, y}, {x_ + px(30), y + height}}, {icon::kMore})) ImGui::OpenPopup("more");
+    // The menu is below the header, so that the buttons beside it stay free.
+    ImGui::SetNextWindowPos({x_ + px(30), bar_.high.y + px(2)}, ImGuiCond_Always, {1, 0});
     if (!ImGui::BeginPopup("more", ImGuiWindowFlags_NoMove)) return;
     editor_.place.region = Region::Popup;
     push_path(editor_, "more");
-    for (const std::string& id : dropped_) operator_menu_item(editor_, id);
+    for (const std::string& id : dropped_)
+      if (id == kSeparator) ImGui::Separator();
+      else operator_menu_item(editor_, id);
     pop_path(editor_);
     editor_.place.region = Region::ToolHeader;
     ImGui::EndPopup();
@@ -168,12 +172,18 @@ class Header {
   }
   bool fits(float width, const std::vector<std::string>& ids) {
     if (dropped_.empty() && x_ + px(width) < right_ - px(44)) return true;
+    // The operators of a choice stand between separators. Neighbouring single operators stand together.
+    const bool choice = ids.size() > 1;
+    if (!dropped_.empty() && (choice || dropped_choice_)) dropped_.push_back(kSeparator);
     dropped_.insert(dropped_.end(), ids.begin(), ids.end());
+    dropped_choice_ = choice;
     return false;
   }
   void to_left() { x_ = bar_.low.x + px(8); }
 
  private:
+  static constexpr char kSeparator[] = "-";
+
   float px(float size) const { return editor_.look.px(size); }
   ButtonLook face_of(const Operator& op, bool segment) const {
     const bool layout = segment && *op.icon;
@@ -190,7 +200,8 @@ class Header {
   Rect bar_;
   float x_, right_ = 1e9f;
   bool drawn_, short_labels_;
-  std::vector<std::string> dropped_;
+  std::vector<std::string> dropped_;  // operators in the menu of the "..." button, with separators
+  bool dropped_choice_ = false;       // true: the operators that were dropped last belong together
 };
 
 // Draws the settings of the label brush.

@@ -471,6 +471,12 @@ TEST_CASE("replay: what does not fit the header goes behind three dots") {
   test.play(
       "click view.four\n drag \"splitter sidebar/grip\" -240 0\n expect \"widget:header/More\"\n click header/More\n "
       "click \"more/Clip plane\"\n expect clip-plane yes");
+  // The menu leaves the buttons beside it free.
+  test.play("click header/More\n wait 1");
+  const editor::Rect entry = test.editor->widgets.find("more/Clip plane")->rect;
+  CHECK(entry.low.y > test.editor->layout.tool_header.high.y);
+  CHECK(entry.high.x <= test.editor->layout.window.high.x);
+  CHECK(entry.low.x >= 0);
 }
 
 TEST_CASE("replay: the cross-hair starts inside the body, and slices show all of it whichever layout comes first") {
