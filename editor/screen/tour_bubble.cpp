@@ -13,8 +13,9 @@ namespace {
 
 constexpr float kWidth = 320, kPadding = 14, kArrow = 10;
 
-// The position of the tour's bubble. The bubble is below, right or left of the widget that it explains, depending on
-// the free room. If the widget is as large as a view, the bubble is inside the widget.
+// The position of the tour's bubble. The bubble is below a widget of the header and left of the sidebar for a widget in
+// it, so that it hides no button beside the widget. Elsewhere it is below, right or left of the widget that it
+// explains, depending on the free room. If the widget is as large as a view, the bubble is inside the widget.
 struct Place {
   Rect rect;
   glm::vec2 tip, base;  // ends of the arrow: its tip at the widget, its base at the bubble
@@ -34,8 +35,16 @@ Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) 
     const Rect rect = within({target.low.x + editor.look.px(12), target.high.y - size.y - above});
     return {rect, rect.low + glm::vec2(size.x * 0.8f, -gap), rect.low + glm::vec2(size.x * 0.8f, 0)};
   }
-  if (target.high.y + gap + size.y < window.high.y && target.height() < editor.look.px(60) &&
-      target.high.x < window.high.x - editor.look.px(300)) {
+  const Layout& layout = editor.layout;
+  const bool in_header = layout.top_bar.contains(middle) || layout.tool_header.contains(middle);
+  if (layout.sidebar.contains(middle)) {
+    const Rect rect = within({layout.sidebar.low.x - gap - size.x, middle.y - editor.look.px(40)});
+    return {rect,
+            {std::min(target.low.x - editor.look.px(2), rect.high.x + editor.look.px(40)), middle.y},
+            {rect.high.x, std::clamp(middle.y, rect.low.y + gap, rect.high.y - gap)}};
+  }
+  if (in_header || (target.high.y + gap + size.y < window.high.y && target.height() < editor.look.px(60) &&
+                    target.high.x < window.high.x - editor.look.px(300))) {
     const Rect rect = within({middle.x - editor.look.px(60), target.high.y + gap});
     return {rect,
             {middle.x, target.high.y + editor.look.px(2)},

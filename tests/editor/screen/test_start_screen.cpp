@@ -151,6 +151,32 @@ TEST_CASE("tour: toasts leave its bubble free, and the bubble leaves the middle 
   CHECK(rect_of("3D view/view").contains(rect_of("toast 0/box").centre()));
 }
 
+TEST_CASE("tour: the bubble is beside the sidebar and below the header, and hides none of their buttons") {
+  const Home home;
+  Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
+  sitting.play("click Help/Tour\n wait-idle");
+  const editor::Layout& layout = sitting.editor().layout;
+  int in_sidebar = 0, in_header = 0;
+  for (int step = 0; step < std::ssize(editor::tour_steps()); ++step) {
+    sitting.editor().tour.step = step;
+    sitting.play("wait 1");
+    const editor::WidgetRegistry& widgets = sitting.editor().widgets;
+    const editor::Widget *target = widgets.find(editor::tour_steps()[step].widget), *bubble = widgets.find("tour/box");
+    INFO(editor::tour_steps()[step].widget);
+    REQUIRE(bubble);
+    if (!target) continue;
+    if (layout.sidebar.contains(target->rect.centre())) {
+      CHECK(bubble->rect.high.x < layout.sidebar.low.x);
+      ++in_sidebar;
+    } else if (layout.tool_header.contains(target->rect.centre())) {
+      CHECK(bubble->rect.low.y > layout.tool_header.high.y - 1);
+      ++in_header;
+    }
+  }
+  CHECK(in_sidebar >= 2);
+  CHECK(in_header >= 2);
+}
+
 TEST_CASE("opened volumes: the project's name has none of the file's two extensions") {
   const Home home;
   const Document body = small_body();
