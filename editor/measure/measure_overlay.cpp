@@ -103,31 +103,38 @@ Rect place_of_plate(const Look& look, const Rect& view, const glm::vec2& at, con
   return first;
 }
 
-}  // namespace
+Colour colour_of_measure(const Editor& editor, bool is_chosen) {
+  return is_chosen ? kGizmoActive : editor.look.theme.view_text;
+}
 
-void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, const std::vector<glm::dvec3>& points,
-                  const std::vector<std::string>& words, bool is_chosen, std::vector<Rect>& taken) {
-  if (points.empty()) return;
-  const Look& look = editor.look;
-  const Colour colour = is_chosen ? kGizmoActive : look.theme.view_text;
-  const MeasurePainter painter(editor, view, colour);
-  glm::dvec3 beside = middle_of(points);
-  if (kind == MeasureKind::Girth) {
-    painter.tape(points);
-    // The label of a girth is at the right end of the tape.
-    beside = *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
+// Returns the point beside which a measurement's label lies: the right end of a girth's tape, the corner of an angle,
+// otherwise the middle of the points.
+glm::dvec3 place_beside(const ViewProjection& view, MeasureKind kind, const std::vector<glm::dvec3>& points) {
+  if (kind == MeasureKind::Girth)
+    return *std::max_element(points.begin(), points.end(), [&](const glm::dvec3& a, const glm::dvec3& b) {
       return glm::dot(a, view.right) < glm::dot(b, view.right);
     });
-  } else {
-    for (std::size_t i = 1; i < points.size(); ++i) painter.line(points[i - 1], points[i]);
-    if (kind == MeasureKind::Angle && points.size() == 3) {
-      painter.angle(points);
-      beside = points[1];
-    }
-    for (const glm::dvec3& point : points) painter.dot(point);
-  }
-  const auto at = view.pixel_of(beside);
-  if (!at || words.empty()) return;
+  return kind == MeasureKind::Angle && points.size() == 3 ? points[1] : middle_of(points);
+}
+
+}  // namespace
+
+void draw_measure_lines(Editor& editor, const ViewProjection& view, MeasureKind kind,
+                        const std::vector<glm::dvec3>& points, bool is_chosen) {
+  const MeasurePainter painter(editor, view, colour_of_measure(editor, is_chosen));
+  if (kind == MeasureKind::Girth) return painter.tape(points);
+  for (std::size_t i = 1; i < points.size(); ++i) painter.line(points[i - 1], points[i]);
+  if (kind == MeasureKind::Angle && points.size() == 3) painter.angle(points);
+  for (const glm::dvec3& point : points) painter.dot(point);
+}
+
+void draw_measure_label(Editor& editor, const ViewProjection& view, MeasureKind kind,
+                        const std::vector<glm::dvec3>& points, const std::vector<std::string>& words, bool is_chosen,
+                        std::vector<Rect>& taken) {
+  if (points.empty() || words.empty()) return;
+  const Look& look = editor.look;
+  const auto at = view.pixel_of(place_beside(view, kind, points));
+  if (!at) return;
   float width = 0;
   for (std::size_t i = 0; i < words.size(); ++i)
     width = std::max(width, text_size(i ? look.fonts.small : look.fonts.semibold, words[i]).x);
@@ -135,7 +142,7 @@ void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, 
   const Rect plate = place_of_plate(look, view.place.rect, glm::vec2(*at), size, taken);
   taken.push_back(plate);
   fill(plate, with_alpha(look.theme.view_plate, 0.85f), look.px(4));
-  if (is_chosen) outline(plate, colour, look.px(4), look.line());
+  if (is_chosen) outline(plate, colour_of_measure(editor, true), look.px(4), look.line());
   for (std::size_t i = 0; i < words.size(); ++i) {
     const float y = plate.low.y + look.px(3 + kRow * static_cast<float>(i));
     put_text(editor, i ? look.fonts.small : look.fonts.semibold, i ? look.theme.view_text2 : look.theme.view_text,
@@ -152,6 +159,10 @@ void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& 
   const auto placed = placed_measurements(editor, scene);
   std::vector<Rect> taken;
   ImGui::PushClipRect(im(part.low), im(part.high), true);
+  // All lines are drawn before the first label, so that no line crosses another measurement's label.
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (is_near(view, placed[i]))
+      draw_measure_lines(editor, view, all[i].kind, placed[i], all[i].name == editor.measures->chosen);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Measurement& one = all[i];
     if (!is_near(view, placed[i])) continue;
@@ -163,7 +174,7 @@ void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& 
       if (std::abs(now - rest) >= 0.05) words.push_back("at rest " + text_of_measure(one.kind, rest));
     }
     const std::size_t before = taken.size();
-    draw_measure(editor, view, one.kind, placed[i], words, is_chosen, taken);
+    draw_measure_label(editor, view, one.kind, placed[i], words, is_chosen, taken);
     // While a modal tool is active, labels ignore clicks, so that the tool gets them.
     if (!editor.modal && taken.size() > before && part.contains(taken.back()) &&
         press_area(editor, "measurement " + one.name, taken.back()).clicked)

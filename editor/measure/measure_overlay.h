@@ -15,11 +15,16 @@ namespace limber::editor {
 // measurements near its plane.
 void draw_measurements_over(Editor& editor, const ViewPlace& place);
 
-// Draws one measurement, which may still lack points.
+// Draws one measurement's lines and points. The measurement may still lack points.
 //   points  its points on the shown body, world, mm
-//   words   the lines of its label; the first line is bright; empty: no label
+void draw_measure_lines(Editor& editor, const ViewProjection& view, MeasureKind kind,
+                        const std::vector<glm::dvec3>& points, bool is_chosen);
+
+// Draws one measurement's label.
+//   words   the lines of the label; the first line is bright; empty: no label
 //   taken   rectangles of the labels drawn so far, which the new label avoids; the new label's rectangle is appended
-void draw_measure(Editor& editor, const ViewProjection& view, MeasureKind kind, const std::vector<glm::dvec3>& points,
-                  const std::vector<std::string>& words, bool is_chosen, std::vector<Rect>& taken);
+void draw_measure_label(Editor& editor, const ViewProjection& view, MeasureKind kind,
+                        const std::vector<glm::dvec3>& points, const std::vector<std::string>& words, bool is_chosen,
+                        std::vector<Rect>& taken);
 
 }  // namespace limber::editor

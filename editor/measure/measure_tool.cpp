@@ -171,7 +171,8 @@ class MeasureTool final : public Modal {
       if (is_complete(kind_, points.size())) words.push_back(text_of_measure(kind_, measure(kind_, points)));
     }
     std::vector<Rect> taken;
-    draw_measure(editor, view, kind_, points, words, true, taken);
+    draw_measure_lines(editor, view, kind_, points, true);
+    draw_measure_label(editor, view, kind_, points, words, true, taken);
   }
 
   std::vector<KeyHint> hints(const Editor&) const override {
