@@ -93,7 +93,11 @@ void update_scene(Views& views, const Document& document, const Selection& selec
     views.looks_of_visibility = visibility;
   }
   scene.grey = views.image;
-  scene.display = views.display == render::Display::Image && !views.image ? render::Display::Solid : views.display;
+  // A document without tissue, such as a bare CT, would be an empty view in every display but that of the image.
+  const bool is_bare = views.image && document.volume && tissues && tissues->tissues.empty();
+  scene.display = is_bare                                                   ? render::Display::Image
+                  : views.display == render::Display::Image && !views.image ? render::Display::Solid
+                                                                            : views.display;
   scene.clip = {};
   if (document.volume && visibility && visibility->clip_box.enabled)
     scene.clip.box = cut_of(visibility->clip_box, document.volume->grid);

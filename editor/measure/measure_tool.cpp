@@ -15,6 +15,7 @@
 #include "editor/measure/measure_view.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/ui/keyboard.h"
+#include "editor/volume/shown_image.h"
 
 namespace limber::editor {
 
@@ -28,7 +29,7 @@ struct PointOnBody {
 };
 
 // Returns the point of the body under the pointer, in any view; nothing if there is none. In a slice, the point may
-// lie in air, up to two voxels from tissue.
+// lie in air, up to two voxels from tissue, or anywhere in the grey image that the slice shows.
 std::optional<PointOnBody> point_under_pointer(Editor& editor) {
   const ViewPlace* place = hovered_view(editor);
   if (!place || !editor.document().volume) return std::nullopt;
@@ -44,7 +45,9 @@ std::optional<PointOnBody> point_under_pointer(Editor& editor) {
   if (!shown || !scene.volume) return std::nullopt;
   const bool is_result = scene.volume != editor.document().volume;
   const auto at_rest = is_result ? std::nullopt : point_at_rest(scene, *shown);
-  if (!at_rest || !is_at_tissue(*editor.document().volume, *at_rest)) return std::nullopt;
+  if (!at_rest) return std::nullopt;
+  const bool on_image = place->id != ViewId::Body && scene.grey && image_value_at(*scene.grey->image, *at_rest);
+  if (!on_image && !is_at_tissue(*editor.document().volume, *at_rest)) return std::nullopt;
   // In the 3D view, the point lies on the surface between body and air, so the voxel that was hit is used. In a slice,
   // the nearest voxel is used.
   const glm::ivec3 nearest(glm::floor(voxel_from_world(scene.volume->grid) * *at_rest + 0.5));
@@ -124,6 +127,12 @@ class MeasureTool final : public Modal {
     if (event.button != MouseButton::Left || !event.down || !place || over_widget(editor)) return true;
     const auto point = point_under_pointer(editor);
     const bool needs_tissue = kind_ == MeasureKind::Girth || kind_ == MeasureKind::Thickness;
+    const auto& tissues = editor.document().tissues;
+    if (point && needs_tissue && (!tissues || tissues->tissues.empty())) {
+      editor.messages.info("A girth or a thickness needs labels",
+                           "Make labels from the image, or measure a distance or an angle.");
+      return true;
+    }
     if (!point || (needs_tissue && editor.document().volume->at_or_air(point->voxel) == 0)) {
       const bool is_result = scene_at_pointer(editor, *place).volume != editor.document().volume;
       editor.messages.info("The pointer is not on the body",

@@ -19,6 +19,7 @@
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/icons.h"
+#include "editor/volume/shown_image.h"
 #include "editor/volume/tissue_edits.h"
 #include "editor/volume/volume_change.h"
 
@@ -199,25 +200,30 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
   const Hover& hover = editor.views->hover;
   if (!hover.view || !editor.document().volume) return right;
   const Look& look = editor.look;
-  std::string words = "Outside";
+  const std::optional<double> value = image_value_at_pointer(editor);
+  std::string words = value ? "No label" : "Outside";
   char place[64] = "";
+  if (hover.inside || value)
+    std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
   if (hover.inside) {
     const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
-    words = (tissue ? shown_name(*tissue) : std::string("Unknown")) + " \u00b7 label " + std::to_string(hover.label);
-    std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+    words = tissue ? shown_name(*tissue) : "Unknown";
+    // The name that is shown for a tissue without a name tells its label.
+    if (!tissue || !tissue->name.empty()) words += " \u00b7 label " + std::to_string(hover.label);
     if (!hover.weights.empty()) {
       char weight[16];
       std::snprintf(weight, sizeof weight, " %.3f", hover.weights[0].value);
       words += " \u00b7 " + hover.weights[0].bone + weight;
     }
   }
+  if (value) words += " \u00b7 " + text_of_image_value(editor, *value);
   const std::string measured = hover.inside ? measure_text_at(editor, hover.voxel) : "";
   if (!measured.empty()) words += " \u00b7 " + measured;
   if (const std::string there = hover.inside ? other_side_text_at(editor, hover.voxel) : ""; !there.empty())
     words += " \u00b7 " + there;
   const float mono = *place ? look.px(170) : 0,
               width = std::min(text_size(look.fonts.small, words).x + 1,
-                               look.px(hover.weights.empty() && measured.empty() ? 220 : 320));
+                               look.px(hover.weights.empty() && measured.empty() && !value ? 220 : 320));
   const float left = right - mono - width;
   if (*place)
     put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}},

@@ -21,6 +21,10 @@ std::string needs_image(const Editor& editor) {
   return editor.views && editor.views->image ? "" : "Open an image first: File > Import > Image";
 }
 
+// Returns the step to which a drag rounds the window of an image with this range of values: a power of ten, at most 1,
+// that is less than a thousandth of the range. For a CT it is 1 HU.
+double window_step(double range) { return std::pow(10.0, std::min(0.0, std::floor(std::log10(range / 1000)))); }
+
 // Changes the window of grey values during a drag of the pointer, as in radiology programs: dragging right widens the
 // window, dragging up makes the picture darker.
 void drag_window(Editor& editor) {
@@ -30,16 +34,19 @@ void drag_window(Editor& editor) {
   const MouseButton button = editor.input.down(MouseButton::Right)    ? MouseButton::Right
                              : editor.input.down(MouseButton::Middle) ? MouseButton::Middle
                                                                       : MouseButton::Left;
+  // The drag adds up small movements in `level` and `width`. The image gets both rounded to `step`.
   editor.drag = Drag{button,
-                     [](Editor& e, const glm::vec2& pixels) {
+                     [level = before.level, width = before.width](Editor& e, const glm::vec2& pixels) mutable {
                        if (!e.views->image) return;
                        render::ShownGrey& image = *e.views->image;
                        const GreyLevels& levels = *image.image;
-                       const double range = std::max(levels.most() - levels.least, 1e-6);
+                       const double range = std::max(levels.most() - levels.least, 1e-6), step = window_step(range);
                        const glm::dvec2 by = glm::dvec2(pixels) / double(e.look.scale) * kPerPixel;
-                       image.level = std::clamp(image.level - by.y * std::max(image.width, range / 100),
-                                                levels.least - range, levels.most() + range);
-                       image.width = std::clamp(image.width * std::exp(2 * by.x), range / 5000, 2 * range);
+                       level = std::clamp(level - by.y * std::max(width, range / 100), levels.least - range,
+                                          levels.most() + range);
+                       width = std::clamp(width * std::exp(2 * by.x), range / 5000, 2 * range);
+                       image.level = std::round(level / step) * step;
+                       image.width = std::max(std::round(width / step), 1.0) * step;
                      },
                      {},
                      [before](Editor& e) {

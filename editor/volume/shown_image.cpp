@@ -115,4 +115,20 @@ std::optional<double> image_value_at(const GreyLevels& image, const glm::dvec3& 
   return image.value_at(voxel);
 }
 
+std::optional<double> image_value_at_pointer(const Editor& editor) {
+  const Hover& hover = editor.views->hover;
+  const render::Scene& scene = editor.views->scene;
+  if (!scene.grey || !hover.view || !(hover.inside || (*hover.view != ViewId::Body && !scene.pose)))
+    return std::nullopt;
+  const bool at_rest = hover.inside && scene.pose;
+  return image_value_at(*scene.grey->image,
+                        at_rest ? world_from_voxel(scene.volume->grid) * glm::dvec3(hover.voxel) : hover.point);
+}
+
+std::string text_of_image_value(const Editor& editor, double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.4g%s", value, looks_like_ct(*editor.views->image->image) ? " HU" : "");
+  return text;
+}
+
 }  // namespace limber::editor

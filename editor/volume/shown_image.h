@@ -46,5 +46,10 @@ const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const
 
 // Returns the value of the image at a world point; empty outside the image.
 std::optional<double> image_value_at(const GreyLevels& image, const glm::dvec3& world);
+// Returns the value of the grey image under the pointer; empty if there is none. While a result is shown with its posed
+// image, this is the posed image's value. Otherwise it is the value of the image at the point's position at rest.
+std::optional<double> image_value_at_pointer(const Editor& editor);
+// Returns a value of the shown image as a text: with its unit if the image looks like a CT.
+std::string text_of_image_value(const Editor& editor, double value);
 
 }  // namespace limber::editor

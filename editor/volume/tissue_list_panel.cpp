@@ -76,10 +76,12 @@ void draw_row(Editor& editor, Column& column, int index, const Tissue& tissue) {
   }
   const Pressed pressed = press_area(editor, "name", name);
   const Colour colour = shown.visible ? look.theme.text : chosen ? look.theme.text2 : look.theme.text3;
+  const std::string label = std::to_string(tissue.label);
+  const float label_left = name.high.x - std::ceil(text_size(look.fonts.mono, label).x) - 1;
   put_text(editor, look.fonts.regular, colour,
-           Rect{{name.low.x + look.px(6), name.low.y}, {name.high.x - look.px(34), name.high.y}}, shown_name(tissue));
+           Rect{{name.low.x + look.px(6), name.low.y}, {label_left - look.px(6), name.high.y}}, shown_name(tissue));
   put_text(editor, look.fonts.mono, chosen ? look.theme.text2 : look.theme.text3,
-           Rect{{name.high.x - look.px(44), name.low.y}, name.high}, std::to_string(tissue.label), Align::Right);
+           Rect{{label_left, name.low.y}, name.high}, label, Align::Right);
   if (pressed.clicked) {
     focus_list(editor, kList, index);
     select_tissue(editor, tissue.label, editor.input.down(Key::Ctrl) || editor.input.down(Key::Shift));
@@ -137,7 +139,7 @@ void draw_tissues(Editor& editor, Column& column) {
       if (tissues->tissues.empty()) {
         const Rect rect = column.row(30);
         put_text(editor, look.fonts.regular, look.theme.text2, Rect{{rect.low.x + look.px(14), rect.low.y}, rect.high},
-                 "No tissue: the volume is all air");
+                 editor.views->image ? "No labels yet" : "No tissue: the volume is all air");
       } else if (rows.empty() &&
                  empty_state(editor, column.row(72), "No tissue named '" + editor.tissue_search + "'", "Clear search"))
         editor.tissue_search.clear();

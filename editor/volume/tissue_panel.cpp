@@ -125,23 +125,6 @@ void draw_weights(Editor& editor, Column& column, const std::vector<BoneWeight>&
   }
 }
 
-// Draws the value of the grey image under the pointer. While a result is shown with its posed image, this is the posed
-// image's value. Otherwise it is the value of the image at the point's position at rest.
-void draw_image_value(Editor& editor, Column& column) {
-  const Hover& hover = editor.views->hover;
-  const render::Scene& scene = editor.views->scene;
-  std::optional<double> value;
-  if (scene.grey && hover.view && (hover.inside || (*hover.view != ViewId::Body && !scene.pose))) {
-    const bool at_rest = hover.inside && scene.pose;
-    value = image_value_at(*scene.grey->image,
-                           at_rest ? world_from_voxel(scene.volume->grid) * glm::dvec3(hover.voxel) : hover.point);
-  }
-  char text[40] = "-";
-  if (value)
-    std::snprintf(text, sizeof text, "%.4g%s", *value, looks_like_ct(*editor.views->image->image) ? " HU" : "");
-  put_text(editor, editor.look.fonts.mono, editor.look.theme.text, column.property("Image"), text, Align::Right);
-}
-
 }  // namespace
 
 void draw_tissue(Editor& editor, Column& column) {
@@ -175,6 +158,9 @@ void draw_under_cursor(Editor& editor, Column& column) {
   if (column.begin_section("Under the cursor")) {
     column.space(4);
     const Hover& hover = editor.views->hover;
+    // A point without a label has a position, too, where the grey image has a value.
+    const std::optional<double> value = image_value_at_pointer(editor);
+    const bool is_known = hover.inside || value;
     const Tissue* tissue =
         hover.inside && editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
     const Rect rect = column.row(24);
@@ -190,18 +176,20 @@ void draw_under_cursor(Editor& editor, Column& column) {
                std::to_string(tissue->label), Align::Right);
     } else {
       put_text(editor, look.fonts.regular, look.theme.text3, Rect{{rect.low.x + look.px(10), rect.low.y}, rect.high},
-               "Outside");
+               value ? "No label" : "Outside");
     }
     char text[80] = "-";
-    const Rect position = column.property("Position");
-    if (hover.inside)
-      std::snprintf(text, sizeof text, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+    Rect position = column.property("Position");
+    position.low.x -= look.px(52);  // three coordinates need more room than the other values
+    if (is_known) std::snprintf(text, sizeof text, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
     put_text(editor, look.fonts.mono, look.theme.text, position, text, Align::Right);
     std::snprintf(text, sizeof text, "-");
     const Rect voxel = column.property("Voxel");
-    if (hover.inside) std::snprintf(text, sizeof text, "%d %d %d", hover.voxel.x, hover.voxel.y, hover.voxel.z);
+    if (is_known) std::snprintf(text, sizeof text, "%d %d %d", hover.voxel.x, hover.voxel.y, hover.voxel.z);
     put_text(editor, look.fonts.mono, look.theme.text, voxel, text, Align::Right);
-    if (editor.views->image) draw_image_value(editor, column);
+    if (editor.views->image)
+      put_text(editor, look.fonts.mono, look.theme.text, column.property("Image"),
+               value ? text_of_image_value(editor, *value) : "-", Align::Right);
     if (editor.document().weights) draw_weights(editor, column, hover.weights);
     column.space(4);
   }

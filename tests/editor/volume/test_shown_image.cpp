@@ -164,8 +164,77 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   CHECK(sitting.editor().views->image);
   sitting.play("key Ctrl+Z\n wait-idle");
   CHECK(sitting.editor().document() == bare);
+  // Without labels the 3D view shows the image, although the labels are shown solid.
+  CHECK(sitting.editor().views->scene.display == render::Display::Image);
   sitting.play("key Ctrl+Shift+Z\n wait-idle");
   CHECK(sitting.editor().document() == labelled);
+  CHECK(sitting.editor().views->scene.display == render::Display::Solid);
+}
+
+TEST_CASE("image: in a bare CT a slice tells position, voxel and value, and is measured from point to point") {
+  const Scan files;
+  Sitting sitting(files.folder.path(), {files / "ct.nrrd"}, {1280, 900});
+  editor::Editor& e = sitting.editor();
+  sitting.play("wait-idle\n key Ctrl+Alt+Q\n wait-idle\n move Axial/view\n wait-idle");
+  const editor::Hover& hover = e.views->hover;
+  REQUIRE(hover.view == editor::ViewId::Axial);
+  REQUIRE_FALSE(hover.inside);
+  const auto value = editor::image_value_at_pointer(e);
+  REQUIRE(value);
+  const GreyVolume image = scan();
+  const glm::ivec3 voxel(glm::floor(voxel_from_world(image.grid) * hover.point + 0.5));
+  REQUIRE(image.grid.contains(voxel));
+  CHECK(std::abs(*value - double(image.voxels[static_cast<std::size_t>(image.grid.index(voxel))])) < 0.05);
+  CHECK(hover.voxel == voxel);
+  char place[64];
+  std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
+  CHECK(sitting.test.fact("text:" + std::string(place)) == "shown");
+  CHECK(sitting.test.fact("text:No label \u00b7 " + editor::text_of_image_value(e, *value)) == "shown");
+  CHECK(sitting.test.fact("text:Outside") == "absent");
+
+  sitting.play("click View/Overlays/Measure/\"Measure distance\"\n wait-idle\n move Axial/view\n wait-idle");
+  const auto click = [&] {
+    for (const bool down : {true, false}) {
+      sitting.test.host->events.push(editor::ButtonChanged{editor::MouseButton::Left, down});
+      sitting.test.player.settle();
+    }
+  };
+  const glm::vec2 from = e.input.pointer;
+  const glm::dvec3 first = hover.point;
+  click();
+  sitting.play("move " + std::to_string(from.x + 30) + " " + std::to_string(from.y) + "\n wait-idle");
+  const glm::dvec3 second = hover.point;
+  click();
+  sitting.play("key Escape\n wait-idle\n expect error none");
+  REQUIRE(e.document().measurements);
+  REQUIRE(e.document().measurements->size() == 1);
+  const Measurement& one = e.document().measurements->front();
+  CHECK(glm::distance(first, second) > 1);
+  CHECK(measure(one.kind, one.points) == doctest::Approx(glm::distance(first, second)));
+
+  sitting.play("click View/Overlays/Measure/\"Measure girth\"\n wait-idle\n move Axial/view\n wait-idle");
+  click();
+  sitting.play("wait-idle\n expect \"text:needs labels\" shown\n key Escape\n wait-idle");
+  CHECK(e.document().measurements->size() == 1);
+}
+
+TEST_CASE("image: dragging the window of a CT leaves whole Hounsfield units, and loses no small movement") {
+  const Scan files;
+  Sitting sitting(files.folder.path(), {files / "ct.nrrd"}, {1280, 900});
+  editor::Editor& e = sitting.editor();
+  sitting.play("wait-idle\n key Ctrl+Alt+Q\n wait-idle\n move Axial/view\n wait-idle");
+  editor::run(e, "image.drag_window");
+  REQUIRE(e.drag);
+  for (int i = 0; i < 40; ++i) e.drag->moved(e, {0.25f, 0.25f});
+  const render::ShownGrey& image = image_of(e);
+  CHECK(image.level == std::round(image.level));
+  CHECK(image.width == std::round(image.width));
+  // Forty steps of a quarter of a pixel are ten pixels. The width grows by e^(2/300) for each pixel.
+  CHECK(image.width == std::round(400 * std::exp(20.0 / 300)));
+  CHECK(image.level < 40 - 10);
+  e.drag->cancelled(e);
+  CHECK(image_of(e).width == 400);
+  e.drag.reset();
 }
 
 TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and keeps the tools that need no tissue") {
