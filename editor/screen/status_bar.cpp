@@ -51,6 +51,10 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
       if (alone.kind == Chord::Kind::Drag && alone.button == MouseButton::Left) all.back().caps.back() += " drag";
     }
   }
+  // The status bar may have room for a few hints only. What the left button does with the modifiers comes first,
+  // because this is what modifiers are mostly held for.
+  std::stable_partition(all.begin(), all.end(),
+                        [](const KeyHint& hint) { return hint.caps.back().starts_with("LMB"); });
   return all;
 }
 
@@ -58,7 +62,8 @@ std::vector<KeyHint> hints(const Editor& editor) {
   if (editor.modal) return editor.modal->hints(editor);
   if (editor.drag) return {{{"Esc"}, "Cancel the drag"}};
   if (editor.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Cancel the drag"}};
-  if (!(editor.input.modifiers() == Modifiers{}) && !editor.dialog) return held_hints(editor);
+  if (editor.dialog) return {{{"Esc"}, "Close"}};
+  if (!(editor.input.modifiers() == Modifiers{})) return held_hints(editor);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(editor);
   if (contexts(editor).front() == "graph")

@@ -15,6 +15,7 @@
 #include "editor/skin/seam_brush.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
+#include "editor/ui/draw.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -51,6 +52,7 @@ struct Painting::Running {
   std::shared_ptr<const SkinWeights> before;
   Armature bones;
   std::optional<SkinWeights> shown;  // composed weights of all layers including the stroke; none: there are no layers
+  BrushKind kind{};
   std::unique_ptr<Stroke> stroke;
   ViewPlace view;
   std::string label;
@@ -166,6 +168,7 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule)
     return editor.messages.info("Paint", "The joint capsule brush cannot paint masks: select another brush");
   auto running = std::make_shared<Painting::Running>();
+  running->kind = kind;
   running->document = editor.document();
   running->tissue = parted_tissue(editor);
   running->view = *view;
@@ -235,50 +238,126 @@ void follow_brush(Editor& editor) {
                                              ViewProjection(editor, view).millimetres_per_pixel(painting.place->seen));
 }
 
+namespace {
+
+// What the held modifier keys make of the next stroke, or of the stroke that runs: it does what the brush does, takes
+// away, or smooths.
+enum class StrokeEffect { OfBrush, TakesAway, Smooths };
+
+StrokeEffect effect_of_kind(BrushKind brush, BrushKind stroke) {
+  if (stroke == brush) return StrokeEffect::OfBrush;
+  return stroke == BrushKind::Subtract ? StrokeEffect::TakesAway
+         : stroke == BrushKind::Smooth ? StrokeEffect::Smooths
+                                       : StrokeEffect::OfBrush;
+}
+
+StrokeEffect effect_of_stroke(const Editor& editor) {
+  const Painting& painting = *editor.skin->painting;
+  if (painting.running) return effect_of_kind(painting.kind, painting.running->kind);
+  const std::string* id = nullptr;
+  for (const Chord::Kind kind : {Chord::Kind::Drag, Chord::Kind::Press})
+    if (!id) id = editor.keymap.find({kind, editor.input.modifiers(), Key::None, MouseButton::Left}, contexts(editor));
+  const bool subtracts = id && *id == "skin.paint_subtract", smooths = id && *id == "skin.paint_smooth";
+  if (painting.labels->on) return subtracts ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
+  if (editor.seams->brush) return subtracts || smooths ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
+  if (smooths) return effect_of_kind(painting.kind, BrushKind::Smooth);
+  return subtracts && painting.kind != BrushKind::Subtract ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
+}
+
+// Draws the sign of a stroke's effect at the brush's centre, with a dark edge: a minus, or a drop for smoothing.
+void draw_sign(const Look& look, const glm::vec2& at, StrokeEffect effect, Colour colour) {
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (const bool is_edge : {true, false}) {
+    const Colour shade = is_edge ? with_alpha(0xFF000000, 0.55f) : colour;
+    const float more = is_edge ? look.px(1) : 0;
+    if (effect == StrokeEffect::TakesAway) {
+      const glm::vec2 half{look.px(5) + more, look.px(1) + more};
+      list->AddRectFilled(im(at - half), im(at + half), shade);
+    } else {
+      const float radius = look.px(3.5f) + more, top = look.px(6.5f) + 2 * more;
+      const glm::vec2 middle = at + glm::vec2(0, look.px(2));
+      list->AddCircleFilled(im(middle), radius, shade);
+      list->AddTriangleFilled(im(middle + glm::vec2(-0.87f * radius, -0.5f * radius)), im(middle - glm::vec2(0, top)),
+                              im(middle + glm::vec2(0.87f * radius, -0.5f * radius)), shade);
+    }
+  }
+}
+
+// Draws the brush's ring, and inside it a dashed ring at half of its radius, around a point of the shown body.
+class RingPainter {
+ public:
+  RingPainter(Editor& editor, const ViewProjection& seen, Colour colour)
+      : editor_(editor),
+        seen_(seen),
+        painter_(editor, seen),
+        colour_(colour) {}
+
+  // In the 3D view, the ring follows the body's surface. Parts of the ring without a surface below them are faint. In a
+  // slice, the ring is a plain circle.
+  void ring(const glm::dvec3& centre, float alpha) const {
+    const Painting& painting = *editor_.skin->painting;
+    const BrushPlace& place = *painting.place;
+    const double radius = painting.radius;
+    // The label brush paints the same label everywhere in the ball, so it has no ring of half its effect.
+    const bool fades = !painting.labels->on;
+    if (seen_.place.id == ViewId::Body) {
+      BrushPlace there = place;
+      if (centre != place.seen) there.normal = mirror_plane(*editor_.document().armature).direction(place.normal);
+      there.seen = centre;
+      line(ring_on_body(editor_, there, radius, kRingPoints), alpha, 2, false);
+      if (fades) line(ring_on_body(editor_, there, radius / 2, kRingPoints), 0.7f * alpha, 1.2f, true);
+      return;
+    }
+    const Ring rim = ring_at(place, centre, radius), half = ring_at(place, centre, radius / 2);
+    painter_.ring(rim, with_alpha(0xFF000000, 0.55f * alpha), 3.6f, GizmoPainter::Part::Whole);
+    painter_.ring(rim, with_alpha(colour_, alpha), 2, GizmoPainter::Part::Whole);
+    for (int i = 0; i < kRingPoints && fades; i += 4)
+      painter_.arc(half, i * 2 * M_PI / kRingPoints, 2 * 2 * M_PI / kRingPoints, with_alpha(colour_, 0.7f * alpha),
+                   1.2f);
+  }
+
+ private:
+  void line(const std::vector<RingPoint>& points, float alpha, float width, bool dashed) const {
+    for (const bool under : {true, false})
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const RingPoint &from = points[i], &to = points[(i + 1) % points.size()];
+        const float seen_so = alpha * (from.on_body && to.on_body ? 1.0f : 0.4f);
+        if (dashed && (under || i % 4 >= 2)) continue;
+        painter_.line(from.at, to.at, under ? with_alpha(0xFF000000, 0.55f * seen_so) : with_alpha(colour_, seen_so),
+                      under ? width + 1.6f : width);
+      }
+  }
+
+  Editor& editor_;
+  const ViewProjection& seen_;
+  GizmoPainter painter_;
+  Colour colour_;
+};
+
+}  // namespace
+
 void draw_brush(Editor& editor, const ViewPlace& view) {
   const Painting& painting = *editor.skin->painting;
   if (!painting.place || painting.place->view != view.id || editor.modal) return;
   const ViewProjection seen(editor, view);
   const GizmoPainter painter(editor, seen);
   const BrushPlace& place = *painting.place;
-  // In the 3D view, the brush's ring follows the body's surface. Parts of the ring without a surface below them are
-  // faint. In a slice, the ring is a plain circle.
-  const auto line = [&](const std::vector<RingPoint>& points, float alpha, float width, bool dashed) {
-    for (const bool under : {true, false})
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const RingPoint &from = points[i], &to = points[(i + 1) % points.size()];
-        const float seen_so = alpha * (from.on_body && to.on_body ? 1.0f : 0.4f);
-        if (dashed && (under || i % 4 >= 2)) continue;
-        painter.line(from.at, to.at, under ? with_alpha(0xFF000000, 0.55f * seen_so) : with_alpha(0xFFFFFFFF, seen_so),
-                     under ? width + 1.6f : width);
-      }
-  };
-  const auto ring = [&](const glm::dvec3& centre, float alpha) {
-    if (view.id == ViewId::Body) {
-      BrushPlace there = place;
-      if (centre != place.seen) there.normal = mirror_plane(*editor.document().armature).direction(place.normal);
-      there.seen = centre;
-      line(ring_on_body(editor, there, painting.radius, kRingPoints), alpha, 2, false);
-      line(ring_on_body(editor, there, painting.radius / 2, kRingPoints), 0.7f * alpha, 1.2f, true);
-      return;
-    }
-    const Ring rim = ring_at(place, centre, painting.radius), half = ring_at(place, centre, painting.radius / 2);
-    painter.ring(rim, with_alpha(0xFF000000, 0.55f * alpha), 3.6f, GizmoPainter::Part::Whole);
-    painter.ring(rim, with_alpha(0xFFFFFFFF, alpha), 2, GizmoPainter::Part::Whole);
-    for (int i = 0; i < kRingPoints; i += 4)
-      painter.arc(half, i * 2 * M_PI / kRingPoints, 2 * 2 * M_PI / kRingPoints, with_alpha(0xFFFFFFFF, 0.7f * alpha),
-                  1.2f);
-  };
-  ring(place.seen, 1);
-  painter.dot(place.seen, 0xFFFFFFFF, with_alpha(0xFF000000, 0.55f), 2.5f);
+  const StrokeEffect effect = effect_of_stroke(editor);
+  const Colour colour = effect == StrokeEffect::TakesAway ? kViewError
+                        : effect == StrokeEffect::Smooths ? kViewAccent
+                                                          : 0xFFFFFFFF;
+  const RingPainter rings(editor, seen, colour);
+  rings.ring(place.seen, 1);
   if (view.id == ViewId::Body)
     painter.line(place.seen,
                  place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)),
-                 with_alpha(0xFFFFFFFF, 0.8f), 1.5f);
+                 with_alpha(colour, 0.8f), 1.5f);
+  if (effect == StrokeEffect::OfBrush) painter.dot(place.seen, colour, with_alpha(0xFF000000, 0.55f), 2.5f);
+  else if (const auto at = seen.pixel_of(place.seen)) draw_sign(editor.look, glm::vec2(*at), effect, colour);
   if (editor.transform_settings->x_mirror && !editor.views->scene.pose && !editor.seams->brush &&
       !painting.labels->on) {
     const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
-    if (seen.shows(other)) ring(other, 0.5f);
+    if (seen.shows(other)) rings.ring(other, 0.5f);
   }
 }
 

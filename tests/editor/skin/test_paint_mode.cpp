@@ -239,6 +239,38 @@ TEST_CASE("painting: Ctrl takes away, Shift smooths, whatever the brush, the oth
   CHECK(blended > 10);
 }
 
+TEST_CASE("painting: the ring and the hints say that Ctrl takes away and Shift smooths") {
+  PaintEditor test;
+  test.play("move " + test.at(0, -20) + "\nwait-idle");
+  // Counts the pixels of a colour. Nothing but the ring, its tick and its sign has the bright colour of errors over a
+  // view; the colour of accents is that of a few words, too.
+  const auto pixels_of = [&](int r, int g, int b) {
+    const render::Image picture = test.host->picture();
+    int count = 0;
+    for (std::size_t i = 0; i + 3 < picture.rgba.size(); i += 4)
+      count += picture.rgba[i] == r && picture.rgba[i + 1] == g && picture.rgba[i + 2] == b;
+    return count;
+  };
+  const auto red = [&] { return pixels_of(0xFF, 0x7A, 0x80); };
+  const auto blue = [&] { return pixels_of(0x8F, 0xBE, 0xFF); };
+  CHECK(red() == 0);
+  const int words = blue();
+  test.play("key-down Ctrl\nwait-idle\nexpect \"text:Paint less\" shown");
+  CHECK(red() > 20);
+  CHECK(blue() == words);
+  test.play("key-up Ctrl\nkey-down Shift\nwait-idle\nexpect \"text:Paint smooth\" shown");
+  CHECK(blue() > words + 20);
+  CHECK(red() == 0);
+  test.play("key-up Shift\nwait-idle");
+  CHECK(red() == 0);
+  CHECK(blue() == words);
+  // What Ctrl does with a brush that subtracts is the opposite, so it takes nothing away.
+  test.editor->skin->painting->kind = BrushKind::Subtract;
+  test.play("key-down Ctrl\nwait-idle");
+  CHECK(red() == 0);
+  test.play("key-up Ctrl");
+}
+
 TEST_CASE("painting: in a slice the brush is the ball that the circle shows, and bone follows its bone still") {
   PaintEditor test;
   test.editor->skin->painting->distance = BrushDistance::Euclidean;
