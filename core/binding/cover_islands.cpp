@@ -28,13 +28,21 @@ std::vector<std::int64_t> blocks_with_uncovered(const TissueVoxels& tissue, cons
     if (has_uncovered[block]) blocks.push_back(block);
   return blocks;
 }
+
+// Returns how a warning names the tissue with a label: by its name, or else by the label that it has in files.
+std::string tissue_in_words(const Tissue* tissue, Label label) {
+  if (tissue && !tissue->name.empty()) return tissue->name;
+  char text[48];
+  std::snprintf(text, sizeof text, "label %.15g", tissue ? tissue->file_value : double(label));
+  return text;
+}
 }  // namespace
 
 void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature, BestFour& best,
                    WeightsReport& report, const TissueTable* tissues) {
   struct Island {
     std::int64_t voxels;
-    double file_value;  // value that the label of the component's first voxel has in files
+    std::string tissue;  // name of the tissue of the component's first voxel; without a name, its label in files
     glm::dvec3 centre;
     int bone;
   };
@@ -63,7 +71,7 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
       }
     }
     const Tissue* label = tissues ? tissues->find(volume.at(seed_voxel)) : nullptr;
-    Island island{std::ssize(piece), label ? label->file_value : double(volume.at(seed_voxel)),
+    Island island{std::ssize(piece), tissue_in_words(label, volume.at(seed_voxel)),
                   from_voxel * (sum / double(piece.size())), 0};
     double nearest = std::numeric_limits<double>::max();
     for (size_t b = 0; b < armature.bones.size(); ++b)
@@ -81,15 +89,15 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   for (size_t k = 0; k < std::min(islands.size(), kMostLines); ++k) {
     const Island& island = islands[k];
     char text[256];
-    std::snprintf(text, sizeof text,
-                  "no bone reaches %lld voxels of label %.15g near (%.0f, %.0f, %.0f): given to %.80s",
-                  static_cast<long long>(island.voxels), island.file_value, island.centre.x, island.centre.y,
-                  island.centre.z, armature.bones[island.bone].name.c_str());
+    std::snprintf(text, sizeof text, "no bone reaches %lld %s of %.80s near (%.0f, %.0f, %.0f): given to %.80s",
+                  static_cast<long long>(island.voxels), island.voxels == 1 ? "voxel" : "voxels", island.tissue.c_str(),
+                  island.centre.x, island.centre.y, island.centre.z, armature.bones[island.bone].name.c_str());
     report.warnings.push_back(text);
   }
-  if (islands.size() > kMostLines)
-    report.warnings.push_back("no bone reaches " + std::to_string(islands.size() - kMostLines) +
-                              " smaller pieces either; each follows its nearest bone");
+  if (const size_t others = islands.size() - std::min(islands.size(), kMostLines); others > 0)
+    report.warnings.push_back(
+        "no bone reaches " + std::to_string(others) + " smaller " +
+        (others == 1 ? "piece either; it follows its nearest bone" : "pieces either; each follows its nearest bone"));
 }
 
 }  // namespace limber

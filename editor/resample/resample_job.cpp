@@ -18,6 +18,7 @@
 #include "editor/shown/fem_live_view.h"
 #include "editor/volume/body_seams.h"
 #include "editor/volume/shown_image.h"
+#include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
 
@@ -199,7 +200,7 @@ void tell(Editor& editor, const std::string& name) {
                     static_cast<long long>(facts->overlap_voxels));
     else std::snprintf(detail, sizeof detail, "%lld overlap voxels", static_cast<long long>(facts->overlap_voxels));
     editor.messages.ok(name + " " + line, detail, "result.show_last");
-    for (const std::string& warning : facts->warnings) editor.messages.warn(name, warning);
+    for (const std::string& warning : facts->warnings) editor.messages.warn(name, capitalized(warning));
   }
 }
 

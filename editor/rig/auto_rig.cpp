@@ -16,6 +16,7 @@
 #include "editor/rig/rig_edits.h"
 #include "editor/shown/frame_all.h"
 #include "editor/ui/icons.h"
+#include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
 
@@ -116,7 +117,7 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
                   100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
     editor.messages.log.push_back({Severity::Info, line});
   }
-  for (const std::string& warning : fitted.warnings) editor.messages.warn("Check the fit", warning);
+  for (const std::string& warning : fitted.warnings) editor.messages.warn("Check the fit", capitalized(warning));
   const std::string result = std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) +
                              " joints found with confidence, " + percent(fitted.check.whole) +
                              " of bone length in tissue";

@@ -14,6 +14,7 @@
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
 #include "editor/volume/body_seams.h"
+#include "editor/volume/tissue_edits.h"
 #include "editor/volume/volume_edits.h"
 
 namespace limber::editor {
@@ -143,7 +144,7 @@ void start_binding(Editor& editor, const Computation& computation) {
     else
       e.messages.ok(label, grouped(e.document().weights->size()) + " voxels follow " +
                                std::to_string(e.document().armature->bones.size()) + " bones");
-    for (const std::string& warning : report->warnings) e.messages.warn(label, warning);
+    for (const std::string& warning : report->warnings) e.messages.warn(label, capitalized(warning));
   };
   editor.touch();
 }

@@ -105,6 +105,16 @@ TEST_CASE("heat: nothing flows through air, and an island in the air is named") 
   CHECK(report.warnings[0].find("75 voxels of label 1") != std::string::npos);
   CHECK(report.warnings[0].find("given to Lower") != std::string::npos);
   CHECK(at(weights, tissue, {11, 5, 15}) == rigid_influence(1));
+
+  // With a name in the table the tissue is named by it, and one voxel alone is not called voxels.
+  for (Tissue& one : body.tissues.tissues)
+    if (one.label == kMuscle) one.name = "calf muscle";
+  wide.at({14, 1, 1}) = kMuscle;
+  WeightsReport named;
+  diffuse_heat(wide, body.tissues, body.armature, {}, no_progress(), &named);
+  REQUIRE(named.warnings.size() == 2);
+  CHECK(named.warnings[0].starts_with("no bone reaches 75 voxels of calf muscle near ("));
+  CHECK(named.warnings[1].starts_with("no bone reaches 1 voxel of calf muscle near ("));
 }
 
 TEST_CASE("heat: without bone tissue the voxels along each rig bone are the sources") {
