@@ -113,7 +113,7 @@ std::string FileBrowser::crumb(const Path& path) {
 void FileBrowser::draw_search(Editor& editor, const Rect& rect) {
   const std::string before = search_;
   ImGui::PushID(text_);
-  text_field(editor, "Search names", rect, search_, "Search names, or type a path", wants_focus(editor));
+  text_field(editor, "Search names", rect, search_, "Search or type a path", wants_focus(editor));
   ImGui::PopID();
   if (search_ != before) {
     changed_ = reveal_ = true;

@@ -41,8 +41,8 @@ Step prepare_step(const Editor& editor) {
     return step;
   }
   step.state = StepState::Done;
-  step.line = size_text(document.volume->grid.size) + ", " +
-              std::to_string(document.tissues ? document.tissues->tissues.size() : 0) + " tissues";
+  const std::size_t tissues = document.tissues ? document.tissues->tissues.size() : 0;
+  step.line = std::to_string(tissues) + (tissues == 1 ? " tissue" : " tissues");
   step.operator_id = "prepare.statistics";
   step.button = "Statistics";
   step.more = {"prepare.regrid", "prepare.crop",  "prepare.crop_to_clip_box", "prepare.pad",
