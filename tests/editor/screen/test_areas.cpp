@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keys go to the area under the pointer, and the widget under the pointer does not move.
+#include "editor/dialogs/confirm_dialog.h"
 #include "editor/motion/timeline.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/small_clip.h"
@@ -170,6 +171,31 @@ TEST_CASE("areas: after a click or a key no tool tip is shown until the pointer 
   test.play("wait 2");
   CHECK(tip_shown());
   test.host->events.push(KeyChanged{Key::Ctrl, false});
+}
+
+TEST_CASE("areas: below an open dialog the status bar tells how to close it, not what the view's keys do") {
+  SmallEditor test;
+  test.play("move \"3D view/view\"\nwait-idle\nexpect text:Turn shown");
+  ask(*test.editor, {.title = "A question", .answers = {{"Yes", {}, true}}});
+  test.play("wait-idle\nexpect dialog yes\nexpect text:Turn absent\nexpect text:Esc shown\nkey Escape\nwait-idle");
+  test.play("expect dialog no\nexpect text:Turn shown");
+}
+
+TEST_CASE("areas: the status bar tells a tissue's label once, and the Prepare step the number of tissues") {
+  SmallEditor test({1280, 900});
+  Document next = test.editor->document();
+  auto tissues = std::make_shared<TissueTable>(*next.tissues);
+  for (Tissue& tissue : tissues->tissues)
+    if (tissue.label != 65) tissue.name.clear();
+  next.tissues = tissues;
+  test.editor->history.reset(next, "Open without names");
+  test.play("move \"3D view/view\"\nwait-idle\nexpect \"text:4 tissues\" shown");
+  const editor::Hover& hover = test.editor->views->hover;
+  REQUIRE(hover.inside);
+  REQUIRE(hover.label != 65);
+  const std::string label = std::to_string(hover.label);
+  CHECK(test.fact("text:Label " + label) == "shown");
+  CHECK(test.fact("text:label " + label) == "absent");
 }
 
 TEST_CASE("areas: a word in a section's head is whole where the title leaves room for it") {
