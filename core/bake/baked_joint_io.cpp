@@ -192,6 +192,10 @@ BakedJoint read_baked_joint(const Path& path) {
   return decode_baked_joint(read_file(path, kLargestFile), path.string());
 }
 
-void write_baked_joint(const BakedJoint& joint, const Path& path) { write_file_atomically(path, encode(joint)); }
+void write_baked_joint(const BakedJoint& joint, const Path& path) {
+  const std::string bytes = encode(joint);
+  decode_baked_joint(bytes, path.string());  // a file that could not be read must not be written
+  write_file_atomically(path, bytes);
+}
 
 }  // namespace limber

@@ -19,7 +19,8 @@ std::string encode(const BakedJoint& joint);
 //   where  names the file in messages
 BakedJoint decode_baked_joint(const std::string& bytes, const std::string& where);
 
-BakedJoint read_baked_joint(const Path& path);                      // throws Error as decode_baked_joint() does
-void write_baked_joint(const BakedJoint& joint, const Path& path);  // throws Error when it cannot be written
+BakedJoint read_baked_joint(const Path& path);  // throws Error as decode_baked_joint() does
+void write_baked_joint(const BakedJoint& joint,
+                       const Path& path);  // throws Error when it cannot be written, or not read
 
 }  // namespace limber

@@ -447,6 +447,7 @@ bool Cholesky::Factor::iterate() {
   way = better;
   // The residual's product with its preconditioned self is about the squared energy of the error.
   double error = dot(residual, better);
+  if (!std::isfinite(error)) return false;
   const double enough = kAccuracy * kAccuracy * error;
   for (int k = 0; error > enough; ++k) {
     if (k == kMostIterations) return false;

@@ -71,7 +71,7 @@ class Cholesky {
   // Factorizes the matrix. Returns false when the matrix is not positive definite; then solve() must not be called.
   bool factorize();
   // Solves the system in place: `b` holds the right-hand side, then the solution, 3 numbers per node in the graph's
-  // order. The error is at most 1e-10 of the solution, both measured by the energy x^T A x. Call it after factorize()
+  // order. The error is about 1e-10 of the solution, both measured by the energy x^T A x. Call it after factorize()
   // returned true. Returns false, without a solution, when the matrix turns out not to be positive definite.
   bool solve(std::span<double> b);
 

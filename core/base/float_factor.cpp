@@ -48,20 +48,20 @@ Supernodes split(const Supernodes& wide) {
 }  // namespace
 
 void FloatFactor::analyse(const Supernodes& supernodes) {
-  nodes_ = split(supernodes);
-  panel_first_.assign(1, 0);
-  for (int s = 0; s < nodes_.count(); ++s)
-    panel_first_.push_back(panel_first_.back() + std::int64_t(columns_of(s)) * rows_of(s));
-  find_updates();
-  if (size() <= room_) return;
   try {
+    nodes_ = split(supernodes);
+    panel_first_.assign(1, 0);
+    for (int s = 0; s < nodes_.count(); ++s)
+      panel_first_.push_back(panel_first_.back() + std::int64_t(columns_of(s)) * rows_of(s));
+    find_updates();
+    if (size() <= room_) return;
     constexpr std::int64_t kSpare = 8;  // 1/8 more memory is allocated than needed: the next structure is similar
     panels_.reset();
     room_ = 0;
     panels_ = std::make_unique_for_overwrite<float[]>(size() + size() / kSpare);
     room_ = size() + size() / kSpare;
   } catch (const std::bad_alloc&) {
-    throw Error("not enough memory for a system of " + std::to_string(nodes_.size() / 3) + " mesh nodes",
+    throw Error("not enough memory for a system of " + std::to_string(supernodes.size() / 3) + " mesh nodes",
                 "factorization", "use a coarser mesh, or more memory");
   }
 }

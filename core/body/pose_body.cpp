@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "core/autorig/joint_axis_fit.h"
+#include "core/base/error.h"
 #include "core/body/glide_poses.h"
 #include "core/deform/bake_source.h"
 #include "core/report/whole_bones.h"
@@ -149,6 +150,9 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
   const LabelVolume& volume = body.file.volume;
   const Method method = method_of(settings, events);
   check_baked(settings.resample.baked, body, bound);
+  if (settings.fit_joints && !settings.resample.baked.empty())
+    throw Error("a joint is baked around the axis that it had, which fitting moves", "fit joints",
+                "leave one of the two out, or bake with the fitted rig");
   const glm::dvec3 voxel = volume.grid.spacing;
   const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), "glide " + settings.glide);
   Report base = report;

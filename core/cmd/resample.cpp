@@ -156,6 +156,9 @@ void check_method(const Options& options) {
   if (!options.baked.empty() && options.method != rule_of(Blend::DualQuaternion).word)
     throw Error("baked joints correct dual quaternions only", "--method " + options.method,
                 "use --method dqs, or leave --baked out");
+  if (!options.baked.empty() && options.fit_joints)
+    throw Error("a joint is baked around the axis that it had, which --fit-joints moves", "--fit-joints",
+                "leave one of the two out, or bake with the fitted rig");
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
   std::string given = given_fem_option(*options.fem);

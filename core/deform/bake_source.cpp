@@ -63,6 +63,7 @@ BakeSource bake_source(const LabelVolume& volume, const TissueVoxels& tissue, co
   const std::int64_t count = std::ssize(tissue.bricks());
   BakeSource source;
   source.volume = hash_of_bricks(count, bytes_of(volume.grid), [&](std::int64_t brick, ByteWriter& writer) {
+    for (int axis = 0; axis < 3; ++axis) writer.put(static_cast<std::int32_t>(tissue.bricks()[brick].corner[axis]));
     writer.raw(tissue.bricks()[brick].mask.data(), sizeof tissue.bricks()[brick].mask);
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) { writer.put(volume.at(v)); });
   });

@@ -31,8 +31,14 @@ void add_slope(const std::vector<double>& x, int at, double factor, std::vector<
 
 BakeError worst_between(const BakedJoint& joint) {
   BakeError worst;
-  for (const BakeError& error : joint.between)
-    if (std::max(error.flesh_mm, error.skin_mm) > std::max(worst.flesh_mm, worst.skin_mm)) worst = error;
+  double most = 0;
+  for (const BakeError& error : joint.between) {
+    if (const double larger = std::max(error.flesh_mm, error.skin_mm); larger > most)
+      most = larger, worst.degrees = error.degrees;
+    worst.flesh_mm = std::max(worst.flesh_mm, error.flesh_mm);
+    worst.skin_mm = std::max(worst.skin_mm, error.skin_mm);
+    worst.largest_mm = std::max(worst.largest_mm, error.largest_mm);
+  }
   return worst;
 }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
+#include "core/base/error.h"
 #include "core/motion/clip.h"
 
 namespace limber {
@@ -15,6 +17,29 @@ constexpr double kLongest = 1 << 28;  // frames; projects hold no frame beyond i
 double eased(double share) { return share * share * (3 - 2 * share); }
 
 }  // namespace
+
+void require_within_limits(const Strips& strips) {
+  std::size_t count = 0;
+  for (const StripTrack& track : strips.tracks) {
+    count += track.strips.size();
+    for (const Strip& strip : track.strips) {
+      for (const int frame : {strip.start, strip.first, strip.last})
+        if (std::abs(std::int64_t{frame}) > kMostStripFrame)
+          throw Error("the strip begins too far away", strip.name,
+                      "keep it within " + std::to_string(kMostStripFrame) + " frames of frame 0");
+      for (const glm::dvec3& place : {strip.place.from, strip.place.to})
+        for (int axis = 0; axis < 3; ++axis)
+          if (!(std::abs(place[axis]) <= kFarthestMove))
+            throw Error("the strip lies too far away", strip.name, "place it within 10 km");
+    }
+  }
+  if (count > kMostStrips)
+    throw Error("a clip keeps at most " + std::to_string(kMostStrips) + " strips", std::to_string(count) + " strips",
+                "bake some of them to a clip");
+  if (strips.tracks.size() > kMostTracks)
+    throw Error("a clip keeps at most " + std::to_string(kMostTracks) + " tracks",
+                std::to_string(strips.tracks.size()) + " tracks", "put strips that do not overlap on one track");
+}
 
 std::vector<std::shared_ptr<const Clip>> clips_of(const Strips& strips) {
   std::vector<std::shared_ptr<const Clip>> clips;

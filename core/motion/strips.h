@@ -78,6 +78,10 @@ std::vector<std::shared_ptr<const Clip>> clips_of(const Strips& strips);
 constexpr double kMostRepeats = 10'000;
 constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // of a clip
 constexpr int kLongestBlend = 100'000;                        // frames
+constexpr std::int64_t kMostStripFrame = 1 << 28;             // largest frame number of a strip, either sign
+constexpr double kFarthestMove = 1e7;                         // largest coordinate of a strip's place, mm
+// Throws Error for strips that no project can keep: too many of them, too many tracks, frames or places too far away.
+void require_within_limits(const Strips& strips);
 
 // Returns how many frames of a strip's clip pass in one frame of the strip.
 //   rate  of the clip that has the strip, frames per second

@@ -12,9 +12,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFrame = 1 << 28;  // as for all frames of a project
-constexpr double kFarthestMove = 1e7;         // mm
-constexpr std::size_t kFewestOfTrack = 10;    // bytes of a track with an empty name and no strips
+constexpr std::size_t kFewestOfTrack = 10;  // bytes of a track with an empty name and no strips
 constexpr std::size_t kFewestOfStrip = 4 + 4 + 12 + 24 + 5 + 1 + 8 + 8 + 1 + 56;  // of a strip with an empty name
 
 void put(ByteWriter& out, const Strip& strip, std::size_t clip) {
@@ -43,7 +41,7 @@ double get_between(ByteReader& in, double low, double high) {
 }
 int get_frame(ByteReader& in) {
   const auto frame = in.get<std::int32_t>();
-  in.require(std::abs(std::int64_t{frame}) <= kMostFrame);
+  in.require(std::abs(std::int64_t{frame}) <= kMostStripFrame);
   return frame;
 }
 
@@ -53,7 +51,7 @@ Strip get_strip(ByteReader& in, const std::vector<std::shared_ptr<const Clip>>& 
   strip.clip = clips[in.get_below<std::uint32_t>(clips.size())];
   for (int* number : {&strip.start, &strip.first, &strip.last}) *number = get_frame(in);
   in.require(strip.first <= strip.last);
-  strip.skip = get_between(in, 0, kMostRepeats * 2 * double(kMostFrame));
+  strip.skip = get_between(in, 0, kMostRepeats * 2 * double(kMostStripFrame));
   strip.speed = get_between(in, kSlowest, kFastest);
   strip.repeat = get_between(in, 0, kMostRepeats);
   for (bool* flag : {&strip.reversed, &strip.mirrored, &strip.goes_on, &strip.holds, &strip.muted}) *flag = in.flag();

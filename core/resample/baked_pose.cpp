@@ -11,7 +11,6 @@ namespace limber {
 namespace {
 
 constexpr double kOtherTurn = 10;  // degrees about other axes from which on a doubt is told
-constexpr double kSlack = 0.01;    // degrees beyond the baked range that are rounding
 
 int bone_of(const BakedJoint& joint, const Armature& armature) {
   const auto bone = armature.find(joint.bone);
@@ -64,7 +63,7 @@ std::vector<BakedJointReport> report_of_baked(const BakedJoints& baked, const Ar
 std::vector<std::string> doubts_of_baked(const std::vector<BakedJointReport>& joints, const std::string& glide) {
   std::vector<std::string> doubts;
   for (const BakedJointReport& joint : joints) {
-    if (joint.degrees < joint.low - kSlack || joint.degrees > joint.high + kSlack)
+    if (joint.is_beyond())
       doubts.push_back(joint.bone +
                        said(" is turned by %+.4g degrees, but baked from %+.4g to %+.4g only: its flesh is "
                             "shifted as at %+.4g",

@@ -23,7 +23,9 @@ struct BakedJointReport {
   BakeError worst_between;       // the largest error that was found between baked angles
   std::string glide;             // how joints glided when it was baked
 
-  bool is_beyond() const { return degrees < low || degrees > high; }
+  // Returns true if the turn is beyond the baked angles by more than rounding.
+  bool is_beyond() const { return degrees < low - kSlack || degrees > high + kSlack; }
+  static constexpr double kSlack = 0.01;  // degrees
 };
 
 // Returns the baked joints as the pose turns them.

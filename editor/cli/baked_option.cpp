@@ -11,12 +11,17 @@
 
 namespace limber::editor {
 
+void check_baked_files(const std::vector<std::string>& files, const std::string& method) {
+  if (!files.empty() && find_blend(method) != Blend::DualQuaternion)
+    throw Error("baked joints correct dual quaternions only", "--method " + method, "use --method dqs");
+  for (const std::string& file : files) read_baked_joint(file);
+}
+
 BakedJoints baked_joints_for(const std::vector<std::string>& files, const std::string& method, const Document& document,
                              const TissueVoxels& tissue, const SkinWeights& weights) {
   BakedJoints baked;
   if (files.empty()) return baked;
-  if (find_blend(method) != Blend::DualQuaternion)
-    throw Error("baked joints correct dual quaternions only", "--method " + method, "use --method dqs");
+  check_baked_files(files, method);
   const LabelSet bones = LabelSets(*document.tissues).bone;
   const BakeSource source = bake_source(*document.volume, tissue, bones, *document.armature, weights);
   for (const std::string& file : files) {

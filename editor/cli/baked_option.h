@@ -10,6 +10,10 @@
 
 namespace limber::editor {
 
+// Throws Error for a file that is no baked joint, and for a method other than dual quaternions, also where no pose
+// needs the files.
+void check_baked_files(const std::vector<std::string>& files, const std::string& method);
+
 // Reads the files of baked joints. Throws Error for a file that is none, for one that was baked from another body, and
 // for a method other than dual quaternions.
 BakedJoints baked_joints_for(const std::vector<std::string>& files, const std::string& method, const Document& document,

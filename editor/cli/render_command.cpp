@@ -193,6 +193,7 @@ struct PosedScene {
 PosedScene posed_scene(const Options& options, const Document& document, Progress& progress) {
   PosedScene result{{.volume = document.volume, .armature = document.armature}, {}};
   Scene& scene = result.scene;
+  check_baked_files(options.baked, options.method);
   if (!document.armature) return result;
   Pose pose = document.pose ? *document.pose : rest_pose(*document.armature);
   if (cmd::wants_pose(options.pose)) pose = cmd::read_pose_options(options.pose, *document.armature);
@@ -202,7 +203,7 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
   const BakedJoints baked = baked_joints_for(options.baked, options.method, document, tissue, weights);
-  cmd::warn(doubts_of_baked(report_of_baked(baked, *document.armature, pose), ""));
+  cmd::warn(doubts_of_baked(report_of_baked(baked, *document.armature, pose), "off"));  // pictures do not glide
   if (options.preview) {
     LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));
     scene.pose = preview.update(scene.posed_from_rest, blend, {}, joints_in_pose(baked, *document.armature, pose));

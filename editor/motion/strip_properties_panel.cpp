@@ -28,7 +28,8 @@ struct StripNumber {
 // Draws the field. View and body show the change while the user edits the number, and one edit is committed at the end.
 void draw_number(Editor& editor, const Rect& rect, const StripNumber& number) {
   auto& edited = editor.edited_number;
-  const std::string name = std::string("Strip ") + number.title;
+  // The field is named after its strip, so that what is typed for one strip never changes another.
+  const std::string who = active_strip(editor)->name, name = std::string("Strip ") + number.title + " of " + who;
   double value = edited.name == name ? edited.value : number.shown;
   bool committed = false;
   if (number_field(editor, name, rect, value, number.low, number.high, number.format, number.unit, number.filled,
@@ -70,7 +71,8 @@ std::pair<Rect, Rect> halves(const Editor& editor, const Rect& rect) {
 
 void draw_name(Editor& editor, Column& column, const Strip& strip) {
   std::string name = strip.name;
-  if (!text_field(editor, "Strip name", column.property("Name"), name) || name.empty() || name == strip.name) return;
+  if (!text_field(editor, "Name of " + strip.name, column.property("Name"), name) || name.empty() || name == strip.name)
+    return;
   const std::string before = strip.name;
   const std::string unique = unique_strip_name(*shown_strips(editor), name);
   change_active_strip(editor, "Rename strip", [&](Strip& changed) { changed.name = unique; });

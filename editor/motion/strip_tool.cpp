@@ -141,6 +141,7 @@ class MovingStrips final : public Modal {
 
  private:
   bool show(Editor& editor) {
+    if (!begun_.is_shown(editor)) return drop(editor);  // a job that ended may have shown another clip
     const bool is_typed = number_.typed();
     const double frames = is_typed ? number_.value() : frames_of_pixels(*editor.timeline, way_.x);
     StripMove wanted{static_cast<int>(std::round(std::clamp(frames, -kFurthest, kFurthest))), 0};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/operator.h"
 #include "editor/motion/graph.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/shown_pose.h"
@@ -19,6 +20,7 @@ void change_clip(Clip& clip, const std::function<void(Strips&)>& edit) {
   Strips strips = clip.strips ? *clip.strips : Strips{};
   const auto before = span_of(strips, clip.rate);
   edit(strips);
+  require_within_limits(strips);
   const auto after = span_of(strips, clip.rate);
   const bool is_whole = !before || (clip.range_start == before->first && clip.range_end == before->last);
   if (is_whole && after) clip.range_start = after->first, clip.range_end = after->last;
@@ -111,7 +113,8 @@ void change_strips(Editor& editor, const std::string& label, const std::function
   stop_playing(editor);
   settle_frame(editor);
   drop_strip_preview(editor);
-  edit_clip(editor, label, PoseThen::FromClip, [&](Clip& clip) { change_clip(clip, edit); });
+  attempt(editor, label,
+          [&](Editor& e) { edit_clip(e, label, PoseThen::FromClip, [&](Clip& clip) { change_clip(clip, edit); }); });
 }
 
 void preview_strips(Editor& editor, Strips strips) {

@@ -208,6 +208,23 @@ TEST_CASE("cholesky: a matrix that single precision cannot factorize is solved i
   for (int i = 0; i < n; ++i) CHECK(b[3 * i + 1] == doctest::Approx(x[i]).epsilon(1e-3));
 }
 
+TEST_CASE("cholesky: a matrix without zeros, wider than a supernode may be, is solved in single precision") {
+  constexpr int kNodes = 200;  // 600 columns
+  std::vector<int> all(kNodes);
+  std::iota(all.begin(), all.end(), 0);
+  BlockGraphBuilder builder(kNodes);
+  builder.add(all);
+  const BlockGraph graph = builder.build();
+  Cholesky sparse(graph);
+  const Eigen::MatrixXd dense = fill(sparse, graph, 900);
+  REQUIRE(sparse.factorize());
+  Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(dense.rows(), -3, 5);
+  const Eigen::VectorXd expected = dense.llt().solve(b);
+  REQUIRE(sparse.solve({b.data(), std::size_t(b.size())}));
+  CHECK(sparse.repeated_in_double() == 0);
+  CHECK((b - expected).norm() <= 1e-9 * expected.norm());
+}
+
 TEST_CASE("cholesky: stiff and soft parts side by side need no double precision") {
   const BlockGraph graph = grid_graph(5);
   Cholesky sparse(graph);

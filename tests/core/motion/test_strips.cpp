@@ -410,6 +410,29 @@ TEST_CASE("strips: a strip whose clip cannot move the rig says so, and the other
   CHECK(on_rig.at(5) == at(good, 5));
 }
 
+TEST_CASE("strips: those that no project can keep are refused") {
+  const SharedClip clip = take("take", 10, 1);
+  Strips strips = one_strip(clip, 0);
+  require_within_limits(strips);
+  const Strip one = strips.tracks[0].strips[0];
+
+  Strips many = strips;
+  many.tracks[0].strips.assign(kMostStrips, one);
+  require_within_limits(many);
+  many.tracks[0].strips.push_back(one);
+  CHECK_THROWS_WITH_AS(require_within_limits(many), doctest::Contains("4096 strips"), Error);
+
+  Strips high = strips;
+  high.tracks.resize(kMostTracks + 1);
+  CHECK_THROWS_AS(require_within_limits(high), Error);
+  Strips late = strips;
+  late.tracks[0].strips[0].start = kMostStripFrame + 1;
+  CHECK_THROWS_AS(require_within_limits(late), Error);
+  Strips far = strips;
+  far.tracks[0].strips[0].place.to.y = 2 * kFarthestMove;
+  CHECK_THROWS_AS(require_within_limits(far), Error);
+}
+
 TEST_CASE("strips: two threads evaluate what one does, and a frame of a long take is quick") {
   const SharedClip first = take("walk", 500, 1), second = take("run", 500, 2), over = take("wave", 500, 3);
   Strips strips = one_strip(first, 0);

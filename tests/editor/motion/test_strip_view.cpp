@@ -362,10 +362,10 @@ TEST_CASE("strip view: the sidebar changes the active strip, and undo takes it b
   const auto type = [&](const std::string& field, const std::string& number) {
     test.play("click \"" + field + "\"\n wait-idle\n key Ctrl+A\n type \"" + number + "\"\n key Return\n wait-idle");
   };
-  type("Strip/Strip Speed", "2");
+  type("Strip/Strip Speed of bending", "2");
   CHECK(strip_named(editor, "bending").speed == 2);
   CHECK(end_of(strip_named(editor, "bending"), 30) == 30);
-  type("Strip/Strip Influence", "0.25");
+  type("Strip/Strip Influence of bending", "0.25");
   CHECK(strip_named(editor, "bending").influence == 0.25);
   test.undo();
   test.undo();
