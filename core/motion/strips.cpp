@@ -12,8 +12,6 @@ namespace limber {
 
 namespace {
 
-constexpr double kLongest = 1 << 28;  // frames; projects hold no frame beyond it
-
 double eased(double share) { return share * share * (3 - 2 * share); }
 
 }  // namespace
@@ -55,7 +53,7 @@ int end_of(const Strip& strip, double rate) {
   const double frames = strip.repeat * (strip.last - strip.first) - strip.skip;
   // 1e-6 frames are added, so that rounding errors do not cut off the last frame.
   const double length = std::floor(frames / frames_per_frame(strip, rate) + 1e-6);
-  return static_cast<int>(std::min(kLongest, strip.start + std::max(0.0, length)));
+  return static_cast<int>(std::min(double(kMostStripFrame), strip.start + std::max(0.0, length)));
 }
 
 int fade_in_of(const StripTrack& track, std::size_t index, double rate) {
