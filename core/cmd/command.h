@@ -31,6 +31,7 @@ void add_fit_rig(CLI::App& app);
 void add_fk(CLI::App& app);
 void add_info(CLI::App& app);
 void add_job(CLI::App& app);
+void add_mesh(CLI::App& app);
 void add_phantom(CLI::App& app);
 void add_prepare(CLI::App& app);
 void add_project(CLI::App& app);

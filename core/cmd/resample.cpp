@@ -16,6 +16,7 @@
 #include "core/bake/baked_joint_io.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
+#include "core/base/text_parse.h"
 #include "core/body/glide_poses.h"
 #include "core/body/pose_body.h"
 #include "core/cmd/body_options.h"
@@ -25,12 +26,10 @@
 #include "core/cmd/fem_options.h"
 #include "core/cmd/frame_names.h"
 #include "core/cmd/glide_options.h"
-#include "core/cmd/mesh_share.h"
+#include "core/cmd/mesh_options.h"
 #include "core/cmd/pose_options.h"
 #include "core/cmd/seam_options.h"
 #include "core/deform/blend_rule.h"
-#include "core/export/exporter.h"
-#include "core/export/tet_phantom.h"
 #include "core/fem/solve_pose.h"
 #include "core/motion/frame_range.h"
 #include "core/report/report.h"
@@ -38,6 +37,7 @@
 #include "core/resample/fem_shape.h"
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
+#include "core/resample/posed_mesh.h"
 #include "core/resample/posed_points.h"
 #include "core/volume_io/landmarks.h"
 #include "core/volume_io/vector_volume_io.h"
@@ -52,8 +52,9 @@ struct Options {
   PoseOptions pose;
   RunOptions run;
   std::string weights, method = deformation_methods().front().word, output, report, grey, field,
-                       field_direction = kToPosed, jacobian, overlap, mesh_out, mesh_unit = "mm", landmarks, steps,
-                       seams, glide;
+                       field_direction = kToPosed, jacobian, overlap, mesh_out, solver_mesh, landmarks, steps, seams,
+                       glide;
+  MeshOptions mesh;
   std::string frames;  // frames of the motion, FIRST:LAST[:STEP]
   std::optional<double> spacing;
   std::vector<std::string> baked;  // names of files of baked joints
@@ -68,7 +69,7 @@ Options of_frame(const Options& options, int frame) {
   one.pose.frame = frame;
   one.fem = std::make_shared<FemOptions>(*options.fem);
   for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap,
-                              &one.mesh_out, &one.landmarks, &one.fem->pressure})
+                              &one.mesh_out, &one.solver_mesh, &one.landmarks, &one.fem->pressure})
     *output = cmd::of_frame(*output, frame);
   return one;
 }
@@ -77,7 +78,7 @@ FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
   return [options](const std::string& value) {
     OptionFiles files;
     for (const std::string& name : names_of(value, options->frames))
-      for (const Path& file : files_exported_as(mesh_exporter(name), mesh_path(name))) files.written.push_back(file);
+      for (const Path& file : mesh_files(name)) files.written.push_back(file);
     return files;
   };
 }
@@ -115,9 +116,9 @@ void check_outputs(const Options& options) {
   for (const std::string& volume : outputs)
     if (!volume.empty()) check_writable(volume);
   std::vector<std::string> others = {options.report, options.fem->pressure};
-  if (!options.mesh_out.empty())
-    for (const Path& file : files_exported_as(mesh_exporter(options.mesh_out), mesh_path(options.mesh_out)))
-      others.push_back(file.string());
+  for (const std::string& mesh : {options.mesh_out, options.solver_mesh})
+    if (!mesh.empty())
+      for (const Path& file : mesh_files(mesh)) others.push_back(file.string());
   if (!options.landmarks.empty()) others.push_back(landmark_paths(options.landmarks).to);
   if (!options.steps.empty()) others.insert(others.end(), {options.steps + ".mesh", options.steps + ".step"});
   for (const std::string& other : others)
@@ -141,8 +142,9 @@ void check_sequence(const Options& options) {
     throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints",
                 "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
   if (!options.steps.empty()) throw Error("--steps excludes --frames", "--steps " + options.steps, "leave it out");
-  for (const std::string& output : {options.output, options.report, options.grey, options.field, options.jacobian,
-                                    options.overlap, options.mesh_out, options.landmarks, options.fem->pressure})
+  for (const std::string& output :
+       {options.output, options.report, options.grey, options.field, options.jacobian, options.overlap,
+        options.mesh_out, options.solver_mesh, options.landmarks, options.fem->pressure})
     if (!output.empty() && output.find(kFrame) == std::string::npos)
       throw Error("every frame would be written to the same file", output,
                   "put {frame} into its name, as in posed_{frame}.nrrd");
@@ -162,9 +164,8 @@ void check_method(const Options& options) {
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
   std::string given = given_fem_option(*options.fem);
-  for (const auto& [is_given, name] : {std::pair{!options.mesh_out.empty(), "--mesh-out"},
-                                       {options.mesh_unit != "mm", "--mesh-unit"},
-                                       {!options.steps.empty(), "--steps"}})
+  for (const auto& [is_given, name] :
+       {std::pair{!options.solver_mesh.empty(), "--solver-mesh"}, {!options.steps.empty(), "--steps"}})
     if (is_given) given = name;
   if (!given.empty())
     throw Error(given + " needs finite elements", "--method " + options.method, "use --method fem, or leave it out");
@@ -211,19 +212,6 @@ class SolveProgress {
   Stopwatch watch_;
 };
 
-// Returns the posed mesh. The region number of a tet is the organ number of the label that fills most of the tet.
-TetMesh posed_mesh(const FemShape& shape, const TissueTable& tissues) {
-  const TissueModel& model = shape.model;
-  const TetMesh& mesh = model.fem.mesh;
-  std::vector<Label> labels(mesh.T.rows(), 0);
-  for (int t = 0; t < mesh.T.rows(); ++t) {
-    double most = 0;
-    for (std::int32_t i = model.first[t]; i < model.first[t + 1]; ++i)
-      if (model.parts[i].mm3 > most) most = model.parts[i].mm3, labels[t] = model.parts[i].label;
-  }
-  return organ_mesh(shape.V, mesh.T, labels, tissues);
-}
-
 // Adds to the report the pose options and the input files, which only this command knows.
 void describe(Report& report, const Options& options) {
   auto& settings = report.settings;
@@ -242,14 +230,20 @@ void describe(Report& report, const Options& options) {
     if (!path.empty()) report.inputs.push_back(describe_input(path));
 }
 
-// Writes the mesh with organ numbers: as NAME.node, NAME.ele and NAME.material, or in the format of NAME's extension.
-void write_mesh(const Options& options, const TissueTable& tissues, const LabelVolume& posed, const FemShape& shape) {
-  TetMesh mesh = posed_mesh(shape, tissues);
-  if (options.mesh_unit == "cm") mesh.V /= 10;
-  std::vector<std::string> warnings;
-  write_export(mesh_exporter(options.mesh_out), {posed, tissues, {}, 0, &mesh, no_progress(), warnings},
-               mesh_path(options.mesh_out));
-  warn(warnings);
+// Writes the mesh of the whole body in the pose: the tets of the body at rest, with the nodes moved to the pose.
+void write_body_mesh(const Options& options, const Body& body, const BoundBody& bound, const BakedJoints& baked,
+                     BodyInPose& posed, Progress& progress) {
+  TissueVoxels tissue = bound.tissue;
+  tissue.set_seams(seams_and_joints(body.file.volume, tissue, body.tissues, bound.weights));
+  BodyMesh mesh = mesh_of(body.file.volume, tissue, options.mesh, progress);
+  PosedMesh moved =
+      pose_mesh(mesh, body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
+                find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), baked);
+  if (moved.inside_out > 0)
+    note(posed.report, {std::to_string(moved.inside_out) + " tets of " + in_quotes(options.mesh_out) +
+                        " are inside out, at joints that are bent far; a smaller angle or --method fem avoids it"});
+  mesh.mesh.V = std::move(moved.V);
+  write_mesh(std::move(mesh.mesh), posed.posed.volume, body.tissues, options.mesh.unit, options.mesh_out, progress);
 }
 
 void write_outputs(const Options& options, const Body& body, Posed& posed, Outputs& outputs) {
@@ -264,7 +258,9 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(options.overlap, [&] {
     write_volume({posed.volume.grid, std::move(posed.overlap)}, options.overlap, {}, {"NRRD", "uint8", true});
   });
-  if (!options.mesh_out.empty()) write_mesh(options, body.tissues, posed.volume, *posed.shape);
+  if (!options.solver_mesh.empty())
+    write_mesh(solver_mesh(*posed.shape), posed.volume, body.tissues, options.mesh.unit, options.solver_mesh,
+               no_progress());
   if (posed.shape)
     outputs.write(options.fem->pressure,
                   [&] { write_pressure(posed.shape->pressed, posed.shape->objects, options.fem->pressure); });
@@ -312,17 +308,18 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
 
 // Writes the outputs and the report of one posed volume. Returns false if a gate failed that makes --strict fail.
 bool finish(const Options& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
-            const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total) {
+            const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total, Progress& progress) {
   const std::shared_ptr<const FemShape> shape = posed.posed.shape;
   Report& report = posed.report;
-  if (!options.mesh_out.empty() && !shape)
-    throw Error("the pose bends no tissue, so there is no mesh", options.mesh_out,
-                "leave --mesh-out out, or give a pose");
-  if (!options.mesh_out.empty()) note(report, {share_of_body(shape->model, body.file.volume)});
+  if (!options.solver_mesh.empty() && !shape)
+    throw Error("the pose bends no tissue, so the solver has no mesh", options.solver_mesh,
+                "leave --solver-mesh out, or give a pose");
+  if (!options.solver_mesh.empty()) note(report, {share_of_body(shape->model, body.file.volume)});
 
   Outputs outputs;
   const Stopwatch writing;
   write_outputs(options, body, posed.posed, outputs);
+  if (!options.mesh_out.empty()) write_body_mesh(options, body, bound, settings.resample.baked, posed, progress);
   if (!landmarks.empty()) {
     const std::string to = landmark_paths(options.landmarks).to;
     outputs.write(to, [&] {
@@ -401,7 +398,7 @@ void run(const Options& options) {
         if (posed.index > 0) posed.report.seconds.read = posed.report.seconds.weights = posed.report.seconds.glide = {};
         all_reached &= !posed.posed.report.solve || posed.posed.report.solve->converged;
         all_passed &= finish(frames.empty() ? options : of_frame(options, frames[posed.index]), body, bound, landmarks,
-                             settings, posed, total);
+                             settings, posed, total, progress);
         total = {};
       },
       progress);
@@ -427,14 +424,20 @@ void add_resample(CLI::App& app) {
       ->capture_default_str()
       ->check(CLI::IsMember(method_words(Methods::All)));
   add_fem_options(*command, options->fem);
-  writes(command->add_option("--mesh-out", options->mesh_out,
-                             "fem: the posed mesh as NAME.node and NAME.ele, with the main tissue of each tet, and "
-                             "NAME.material for particle codes; or in the format of another extension. It contains "
-                             "only the soft tissue that bends; its share of the body is printed"),
-         files_of_mesh(options))
+  writes(
+      command->add_option("--mesh-out", options->mesh_out,
+                          "the whole posed body as tetrahedra, organs and bones included, with the same tets in every "
+                          "pose: NAME.node, NAME.ele, NAME.material and colour.dat for particle codes, or NAME.vtu "
+                          "or NAME.inp"),
+      files_of_mesh(options))
       ->type_name("NAME");
-  command->add_option("--mesh-unit", options->mesh_unit, "fem: unit of the mesh: mm, or cm as in ICRP 145")
-      ->check(CLI::IsMember({"mm", "cm"}));
+  add_mesh_options(*command, options->mesh, "--mesh-");
+  writes(
+      command->add_option("--solver-mesh", options->solver_mesh,
+                          "fem: the solver's posed mesh, with the main tissue of each tet. It contains only the soft "
+                          "tissue that bends; its share of the body is printed"),
+      files_of_mesh(options))
+      ->type_name("NAME");
   writes(command->add_option("--steps", options->steps,
                              "fem: for a program that shows the progress: the mesh as NAME.mesh, the newest step of "
                              "the solve as NAME.step"),

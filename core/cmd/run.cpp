@@ -40,6 +40,7 @@ void add_commands(CLI::App& app, const std::string& commit) {
   add_fk(app);
   add_info(app);
   add_job(app);
+  add_mesh(app);
   add_phantom(app);
   add_prepare(app);
   add_project(app);

@@ -15,11 +15,12 @@ Exporter gprmax_exporter();
 Exporter icrp_slices_exporter();
 Exporter tetgen_exporter();
 Exporter vtu_exporter();
+Exporter abaqus_exporter();
 
 std::span<const Exporter> exporters() {
   static const std::vector<Exporter> kExporters = {
       surface_exporter(),     openems_exporter(), disc_material_exporter(), gprmax_exporter(),
-      icrp_slices_exporter(), tetgen_exporter(),  vtu_exporter(),
+      icrp_slices_exporter(), tetgen_exporter(),  vtu_exporter(),           abaqus_exporter(),
   };
   return kExporters;
 }

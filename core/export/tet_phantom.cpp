@@ -41,12 +41,33 @@ TetMesh organ_mesh(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, const s
   return {.V = V, .T = T, .region = of_tet};
 }
 
+namespace {
+// Returns the tissues whose organs are in the mesh.
+std::vector<Tissue> tissues_in(const TissueTable& tissues, const std::vector<std::uint16_t>& organs) {
+  std::vector<bool> in_mesh(65536, false);
+  for (const std::uint16_t organ : organs) in_mesh[organ] = true;
+  std::vector<Tissue> found;
+  for (const Tissue& tissue : tissues.tissues)
+    if (in_mesh[organ_number(tissue)]) found.push_back(tissue);
+  return found;
+}
+}  // namespace
+
+std::string colour_list(const TissueTable& tissues, const std::vector<std::uint16_t>& organs) {
+  std::string text;
+  for (const Tissue& tissue : tissues_in(tissues, organs)) {
+    char line[80];
+    std::snprintf(line, sizeof line, "%d %.3f %.3f %.3f %.2f\n", int(organ_number(tissue)), tissue.colour.r,
+                  tissue.colour.g, tissue.colour.b, tissue.kind == TissueKind::Skin ? 0.1 : 1.0);
+    text += line;
+  }
+  return text;
+}
+
 std::string material_list(const TissueTable& tissues, const std::vector<std::uint16_t>& organs,
                           const CompositionTable& media, const std::string& where) {
   TissueTable in_mesh;
-  for (const Tissue& tissue : tissues.tissues)
-    if (std::find(organs.begin(), organs.end(), organ_number(tissue)) != organs.end())
-      in_mesh.tissues.push_back(tissue);
+  in_mesh.tissues = tissues_in(tissues, organs);
   const std::vector<int> medium = media_of(in_mesh, media, where);
   std::string text;
   for (std::size_t i = 0; i < in_mesh.tissues.size(); ++i) {

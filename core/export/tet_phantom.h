@@ -30,4 +30,8 @@ TetMesh organ_mesh(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T, const s
 std::string material_list(const TissueTable& tissues, const std::vector<std::uint16_t>& organs,
                           const CompositionTable& media, const std::string& where);
 
+// Returns the text of colour.dat, which Geant4's ICRP145_HumanPhantoms reads: for each organ a line with its number and
+// its colour's red, green, blue and opacity, [0, 1]. Skin is nearly transparent, so that the organs are seen.
+std::string colour_list(const TissueTable& tissues, const std::vector<std::uint16_t>& organs);
+
 }  // namespace limber

@@ -49,28 +49,31 @@ void write_tetgen_files(const Path& name, const TetMesh& mesh) {
 }
 
 Exporter tetgen_exporter() {
-  return {
-      .name = "TetGen mesh",
-      .endings = {".node"},
-      .takes_voxels = false,
-      .takes_mesh = true,
-      .beside =
-          [](const Path& path) {
-            return std::vector<Path>{Path(path).replace_extension(".ele"), Path(path).replace_extension(".material")};
-          },
-      .write =
-          [](const ExportInput& input, const Path& path) {
-            write_tetgen_files(path, *input.mesh);
-            const Path materials = Path(path).replace_extension(".material");
-            std::string list;
-            try {
-              list = material_list(input.tissues, input.mesh->region, read_composition_table(), materials.string());
-            } catch (const Error& error) {
-              input.warnings.push_back(std::string("There is no list of materials: ") + error.what());
-              return;
-            }
-            write_file_atomically(materials, list);
-          }};
+  return {.name = "TetGen mesh",
+          .endings = {".node"},
+          .takes_voxels = false,
+          .takes_mesh = true,
+          .beside =
+              [](const Path& path) {
+                return std::vector<Path>{Path(path).replace_extension(".ele"),
+                                         Path(path).replace_extension(".material"),
+                                         Path(path).replace_filename("colour.dat")};
+              },
+          .write =
+              [](const ExportInput& input, const Path& path) {
+                write_tetgen_files(path, *input.mesh);
+                write_file_atomically(Path(path).replace_filename("colour.dat"),
+                                      colour_list(input.tissues, input.mesh->region));
+                const Path materials = Path(path).replace_extension(".material");
+                std::string list;
+                try {
+                  list = material_list(input.tissues, input.mesh->region, read_composition_table(), materials.string());
+                } catch (const Error& error) {
+                  input.warnings.push_back(std::string("There is no list of materials: ") + error.what());
+                  return;
+                }
+                write_file_atomically(materials, list);
+              }};
 }
 
 }  // namespace limber

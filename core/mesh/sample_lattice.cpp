@@ -78,8 +78,18 @@ void refine(SampleLattice& lattice, const LatticeNetSettings& settings) {
   });
 }
 
-// Merges eight cells of one size into one cell if they are in one region and all cells that touch them have the same
-// size.
+// Returns true if one of the six faces of the voxel that is sample p is part of a seam.
+bool is_at_seam(const SampleLattice& lattice, const glm::ivec3& p) {
+  for (int axis = 0; axis < 3; ++axis) {
+    glm::ivec3 lower = p;
+    --lower[axis];
+    if (lattice.is_cut(p, axis) || lattice.is_cut(lower, axis)) return true;
+  }
+  return false;
+}
+
+// Merges eight cells of one size into one cell if they are in one region, no seam touches them, and all cells that
+// touch them have the same size.
 void coarsen(SampleLattice& lattice, int size) {
   std::vector<glm::ivec3> deep;
   for_each_cell_of(lattice, 2 * size, [&](const glm::ivec3& corner) {
@@ -90,7 +100,9 @@ void coarsen(SampleLattice& lattice, int size) {
     for (int z = 0; z <= 2; ++z)
       for (int y = 0; y <= 2; ++y)
         for (int x = 0; x <= 2; ++x)
-          if (lattice.at(corner + glm::ivec3(x, y, z) * size) != region) return;
+          if (const glm::ivec3 p = corner + glm::ivec3(x, y, z) * size;
+              lattice.at(p) != region || (lattice.seams && is_at_seam(lattice, p)))
+            return;
     for (int z = -1; z <= 2; ++z)
       for (int y = -1; y <= 2; ++y)
         for (int x = -1; x <= 2; ++x)
@@ -251,6 +263,15 @@ void give_bones(SampleLattice& lattice, const std::vector<Candidate>& all, const
 
 }  // namespace
 
+bool SampleLattice::is_cut(const glm::ivec3& p, int axis) const {
+  if (!seams) return false;
+  const glm::ivec3 lower = p + first_voxel;
+  glm::ivec3 upper = lower;
+  ++upper[axis];
+  return glm::all(glm::greaterThanEqual(lower, glm::ivec3(0))) && glm::all(glm::lessThan(upper, seams->grid_size())) &&
+         seams->is_cut(lower, axis);
+}
+
 bool SampleLattice::has_sample(const glm::ivec3& p) const { return is_multiple(p, smallest_around(*this, p)); }
 
 std::array<SampleLattice::Cell, 8> SampleLattice::cells_around(const glm::ivec3& p) const {
@@ -331,6 +352,25 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
   }
   give_bones(lattice, bones, settings);
   for (int size = lattice.usual; size < kLargest * lattice.usual; size *= 2) coarsen(lattice, size);
+  return lattice;
+}
+
+SampleLattice sample_voxels(const VoxelRegions& voxels) {
+  const Box box = extent_of(voxels.tissue);
+  SampleLattice lattice;
+  lattice.step = lattice.spacing_mm = 1;
+  lattice.seams = voxels.tissue.seams();
+  lattice.first_voxel = glm::ivec3(glm::round(box.low + 0.5)) - kBorder;
+  lattice.size = glm::ivec3(glm::round(box.high - box.low)) + 2 * kBorder;
+  lattice.fine_from_voxel = {glm::dmat3(1), -glm::dvec3(lattice.first_voxel)};
+  lattice.world_from_lattice = {glm::dmat3(1), glm::dvec3(0)};
+  const auto count = static_cast<std::size_t>(std::int64_t{lattice.size.x} * lattice.size.y * lattice.size.z);
+  lattice.cell_size.assign(count, 1);
+  lattice.label.assign(count, kAir);
+  voxels.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    lattice.label[lattice.index(v - lattice.first_voxel)] = voxels.region[place];
+  });
+  for (int size = 1; size < kDeepest; size *= 2) coarsen(lattice, size);
   return lattice;
 }
 

@@ -29,6 +29,13 @@ struct SampleLattice {
   // Rotates and translates without scaling; takes lattice coordinates in mm, not in steps.
   AffineTransform world_from_lattice;
   AffineTransform fine_from_voxel;
+  // Faces between voxels at which tissue is not connected, for a lattice whose samples are voxels; null: none. Sample p
+  // is then the voxel p + first_voxel.
+  const Seams* seams = nullptr;
+  glm::ivec3 first_voxel{0};
+
+  // Returns true if a seam cuts the edge of length 1 along `axis` that begins at sample p.
+  bool is_cut(const glm::ivec3& p, int axis) const;
 
   std::int64_t index(const glm::ivec3& p) const {
     return p.x + std::int64_t{size.x} * (p.y + std::int64_t{size.y} * p.z);
@@ -65,5 +72,11 @@ class SmallestCells {
 // Places samples over the voxels and over a border of air around them, with the spacing of the settings. A sample is
 // tissue if voxels fill at least half of the cube around it whose edge is the spacing. The body must have voxels.
 SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSettings& settings);
+
+// Returns the lattice whose samples are the voxels themselves, with a border of air around the tissue. Cells deep
+// inside a region, and away from seams, are up to kDeepest times as large as a voxel. Coordinates are in voxels along
+// each axis, counted from sample 0, and so is `world_from_lattice`, the identity. The body must have voxels.
+inline constexpr int kDeepest = 8;
+SampleLattice sample_voxels(const VoxelRegions& voxels);
 
 }  // namespace limber

@@ -63,7 +63,7 @@ Pushes::Pushes(std::size_t samples) : cell(samples, 0) {
 }
 
 SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at) : lattice_(lattice) {
-  number_edges(voxel_at);
+  number_edges(&voxel_at);
   number_cells();
   number_faces();
   find_air();
@@ -71,6 +71,11 @@ SurfaceNet::SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at
   shift_to_skin(voxel_at);
   fitted_.reserve(nodes_.size());
   for (const Node& node : nodes_) fitted_.push_back(node.place);
+}
+
+SurfaceNet::SurfaceNet(const SampleLattice& voxels) : lattice_(voxels) {
+  number_edges(nullptr);
+  number_cells();
 }
 
 // Calls body(from, at, axis, length, first, second) for each lattice edge with tissue at one or both ends. `at` is the
@@ -103,26 +108,21 @@ void SurfaceNet::for_each_edge(const Body& body) const {
       }
 }
 
-void SurfaceNet::number_edges(const VoxelLookup& voxel_at) {
+// Gives a node to each lattice edge between two regions, at the border between them; null: in the middle of the edge.
+void SurfaceNet::number_edges(const VoxelLookup* voxel_at) {
   for (auto& of_axis : edge_node_) of_axis.assign(lattice_.label.size(), -1);
   for_each_edge(
       [&](const glm::ivec3& from, std::int64_t at, int axis, int length, std::uint16_t first, std::uint16_t second) {
-        if (first == second) return;
+        if (first == second && !(length == 1 && lattice_.is_cut(from, axis))) return;
         Node node{from, from, from};
         node.low[axis] += kMargin * length;
         node.high[axis] += (1 - kMargin) * length;
+        const double border = voxel_at ? border_along(*voxel_at, from, axis, length, first, second) : 0.5;
+        node.place[axis] += border * length;
         const int number = static_cast<int>(nodes_.size());
         edge_node_[axis][at] = number;
         nodes_.push_back(node);
-        edges_.push_back({from,
-                          axis,
-                          length,
-                          number,
-                          first,
-                          second,
-                          static_cast<float>(border_along(voxel_at, from, axis, length, first, second)),
-                          {},
-                          {-1, -1, -1, -1}});
+        edges_.push_back({from, axis, length, number, first, second, static_cast<float>(border), {}, {-1, -1, -1, -1}});
       });
 }
 

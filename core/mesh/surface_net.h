@@ -72,6 +72,9 @@ class SurfaceNet {
   // along the surface's normal until, around each of them, as much tissue is outside the surface as air is inside. So a
   // coarse surface has the volume of the voxels, although its corners are outside a convex body.
   SurfaceNet(const SampleLattice& lattice, const VoxelLookup& voxel_at);
+  // For a lattice whose samples are voxels (sample_voxels()): points on lattice edges are in the middle of the edge, so
+  // the net's surfaces are the voxels' own faces. Edges that a seam cuts have a point, too.
+  explicit SurfaceNet(const SampleLattice& voxels);
   // Moves each point from its fitted position outwards by its number of pushes.
   void place(const Pushes& pushes);
 
@@ -120,7 +123,7 @@ class SurfaceNet {
   }
   template <class Body>
   void for_each_edge(const Body& body) const;
-  void number_edges(const VoxelLookup& voxel_at);
+  void number_edges(const VoxelLookup* voxel_at);
   void number_cells();
   void number_faces();
   void find_air();

@@ -27,6 +27,13 @@ namespace limber {
 // Throws Error for a spacing that is not positive or gives too many voxels.
 LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progress& progress = no_progress());
 
+// Returns the volume at another spacing (mm) so that every label keeps its volume, as far as whole voxels can. A new
+// voxel gets the label with the largest weighted share of its box, air included. The weight of each label is found in
+// rounds: it grows while the label has too few voxels. A label whose volume is half a new voxel or more gets at least
+// one. A layer thinner than half the spacing gets holes, since a closed layer would have too much volume. Throws Error
+// for a spacing that is not positive or gives too many voxels.
+LabelVolume balanced_regrid(const LabelVolume& volume, double spacing, Progress& progress = no_progress());
+
 // Mirrors the volume along a world axis (0, 1, 2 = x, y, z) about the middle of its grid. The grid stays the same. On
 // an oblique grid, the voxel axis nearest to the world axis is used.
 LabelVolume flip(const LabelVolume& volume, int axis);

@@ -20,6 +20,7 @@ constexpr double kTie = 1e-9;
 // Upper limit of the rounds in which lost layers are restored. A round may cause another one: a voxel that becomes skin
 // may touch labels that skin did not touch before. In practice two rounds suffice.
 constexpr int kMostRounds = 8;
+constexpr int kBalancingRounds = 40;  // of balanced_regrid(); counts are then near those wanted
 
 struct Share {
   Label label;
@@ -88,7 +89,73 @@ class Regrid {
     return std::move(to_);
   }
 
+  LabelVolume run_balanced(Progress& progress) {
+    vote(progress);
+    const std::vector<Mixed> mixed = mixed_voxels();
+    std::vector<double> wanted(65536, 0), log_weight(65536, 0);
+    for (const Label label : from_.voxels) ++wanted[label];
+    wanted[0] += volume_ * static_cast<double>(to_.grid.voxel_count()) - static_cast<double>(from_.voxels.size());
+    for (double& each : wanted) each /= volume_;
+    for (int round = 0; round < kBalancingRounds; ++round) {
+      progress.update("regrid", 0.7 + 0.3 * round / kBalancingRounds);
+      std::vector<double> count(65536, 0);
+      for (const Label label : to_.voxels) ++count[label];
+      // A small label changes by whole voxels, so its weight changes by a part of what is missing.
+      for (std::size_t label = 0; label < count.size(); ++label)
+        if (wanted[label] > 0) log_weight[label] += 0.5 * std::log((wanted[label] + 1) / (count[label] + 1));
+      for (const Mixed& voxel : mixed) to_.voxels[voxel.at] = heaviest(voxel.shares, log_weight);
+    }
+    keep_small(mixed, wanted);
+    return std::move(to_);
+  }
+
  private:
+  struct Mixed {  // a new voxel with several labels
+    std::int64_t at;
+    Shares shares;
+  };
+
+  std::vector<Mixed> mixed_voxels() const {
+    std::vector<Mixed> mixed;
+    glm::ivec3 v;
+    std::int64_t at = 0;
+    for (v.z = 0; v.z < to_.grid.size.z; ++v.z)
+      for (v.y = 0; v.y < to_.grid.size.y; ++v.y)
+        for (v.x = 0; v.x < to_.grid.size.x; ++v.x, ++at) {
+          if (only_label(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z])) continue;
+          Mixed one{at, {}};
+          gather(v, one.shares);
+          if (one.shares.size() > 1) mixed.push_back(std::move(one));
+        }
+    return mixed;
+  }
+
+  // Returns the label with the largest weighted share; of equal ones the smaller label.
+  static Label heaviest(const Shares& shares, const std::vector<double>& log_weight) {
+    Label best = 0;
+    double most = -INFINITY;
+    for (const Share& share : shares) {
+      const double weighted = std::log(share.volume) + log_weight[share.label];
+      if (weighted > most || (weighted == most && share.label < best)) most = weighted, best = share.label;
+    }
+    return best;
+  }
+
+  // Gives a label that has no voxel, but the volume of half a voxel or more, the voxel in which it has most.
+  void keep_small(const std::vector<Mixed>& mixed, const std::vector<double>& wanted) {
+    std::vector<std::int64_t> count(65536, 0), best_at(65536, -1);
+    std::vector<double> most(65536, 0);
+    for (const Label label : to_.voxels) ++count[label];
+    for (const Mixed& voxel : mixed)
+      for (const Share& share : voxel.shares)
+        if (share.volume > most[share.label]) most[share.label] = share.volume, best_at[share.label] = voxel.at;
+    for (std::size_t label = 1; label < count.size(); ++label)
+      if (count[label] == 0 && wanted[label] >= 0.5 && best_at[label] >= 0 && count[to_.voxels[best_at[label]]] > 1) {
+        --count[to_.voxels[best_at[label]]];
+        to_.voxels[best_at[label]] = static_cast<Label>(label);
+      }
+  }
+
   enum class Closing { Air, Inside };
   struct Insertion {
     std::int64_t voxel;
@@ -326,7 +393,9 @@ class Regrid {
 };
 }  // namespace
 
-LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progress& progress) {
+namespace {
+// Returns the grid of another spacing. Throws Error for a spacing that is not positive or gives too many voxels.
+Grid grid_at(const LabelVolume& volume, const glm::dvec3& spacing) {
   std::ostringstream asked;
   asked << spacing.x << " x " << spacing.y << " x " << spacing.z << " mm";
   Grid grid = volume.grid;
@@ -342,12 +411,20 @@ LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progres
                   "choose a coarser spacing");
     grid.size[axis] = static_cast<int>(std::max(1.0, std::ceil(extent - kTie)));
   }
-  if (spacing == volume.grid.spacing) return volume;
-
   // The lowest corner of the grid keeps its position, so the centre of the lowest voxel moves.
   grid.spacing = spacing;
   grid.origin = volume.grid.origin + volume.grid.direction * (0.5 * (spacing - volume.grid.spacing));
-  return Regrid(volume, grid).run(progress);
+  return grid;
+}
+}  // namespace
+
+LabelVolume regrid(const LabelVolume& volume, const glm::dvec3& spacing, Progress& progress) {
+  const Grid grid = grid_at(volume, spacing);
+  return spacing == volume.grid.spacing ? volume : Regrid(volume, grid).run(progress);
+}
+
+LabelVolume balanced_regrid(const LabelVolume& volume, double spacing, Progress& progress) {
+  return Regrid(volume, grid_at(volume, glm::dvec3(spacing))).run_balanced(progress);
 }
 
 }  // namespace limber

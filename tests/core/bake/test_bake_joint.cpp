@@ -96,7 +96,8 @@ double part_of(const std::vector<double>& ascending, double share) {
 
 }  // namespace
 
-TEST_CASE("bake joint: rest is a baked angle without shifts, and both ends of the range are baked") {
+TEST_CASE("bake joint: rest is a baked angle without shifts, and both ends of the range are baked" *
+          doctest::test_suite("slow")) {
   const BakedJoint& joint = *elbow().joint;
   CHECK(elbow().bake.all_reached);
   REQUIRE(joint.degrees.size() == 7);
@@ -108,7 +109,8 @@ TEST_CASE("bake joint: rest is a baked angle without shifts, and both ends of th
   CHECK(joint.between.size() == 6);
 }
 
-TEST_CASE("bake joint: at a baked angle and between two, flesh lies where a solve of that angle has it") {
+TEST_CASE("bake joint: at a baked angle and between two, flesh lies where a solve of that angle has it" *
+          doctest::test_suite("slow")) {
   for (const double degrees : {45.0, 37.5, 67.5, -7.5}) {
     CAPTURE(degrees);
     const std::vector<double> blended = elbow().distances(degrees, false), baked = elbow().distances(degrees, true);
@@ -117,7 +119,7 @@ TEST_CASE("bake joint: at a baked angle and between two, flesh lies where a solv
   }
 }
 
-TEST_CASE("bake joint: the stated error between baked angles is that of a solve there") {
+TEST_CASE("bake joint: the stated error between baked angles is that of a solve there" * doctest::test_suite("slow")) {
   for (const BakeError& stated : elbow().joint->between) {
     if (stated.degrees < 20) continue;
     CAPTURE(stated.degrees);
@@ -126,7 +128,7 @@ TEST_CASE("bake joint: the stated error between baked angles is that of a solve 
   }
 }
 
-TEST_CASE("bake joint: 1 thread and 2 threads bake the same bytes") {
+TEST_CASE("bake joint: 1 thread and 2 threads bake the same bytes" * doctest::test_suite("slow")) {
   const BakedElbow& arm = elbow();
   BakeSettings settings = arm.settings;
   settings.low = 0, settings.high = 40, settings.angles = 1;
@@ -138,7 +140,8 @@ TEST_CASE("bake joint: 1 thread and 2 threads bake the same bytes") {
   CHECK(bytes[0] == bytes[1]);
 }
 
-TEST_CASE("bake joint: a baked pose keeps more volume than blending, and the rest pose is the body bit for bit") {
+TEST_CASE("bake joint: a baked pose keeps more volume than blending, and the rest pose is the body bit for bit" *
+          doctest::test_suite("slow")) {
   const BakedElbow& arm = elbow();
   BoundBody bound = arm.bound;
   const LabelVolume& volume = arm.body.file.volume;
@@ -164,7 +167,8 @@ TEST_CASE("bake joint: a baked pose keeps more volume than blending, and the res
   CHECK(baked.report.baked[0].degrees == doctest::Approx(67.5));
 }
 
-TEST_CASE("bake joint: the live preview shows the baked shape, skin included, with small and with large cells") {
+TEST_CASE("bake joint: the live preview shows the baked shape, skin included, with small and with large cells" *
+          doctest::test_suite("slow")) {
   const BakedElbow& arm = elbow();
   const Pose pose = arm.bent(60);
   const auto motions = posed_from_rest(arm.body.rig, pose);
@@ -213,7 +217,7 @@ TEST_CASE("bake joint: the live preview shows the baked shape, skin included, wi
   }
 }
 
-TEST_CASE("bake joint: what cannot be baked is said in one line") {
+TEST_CASE("bake joint: what cannot be baked is said in one line" * doctest::test_suite("slow")) {
   const BakedElbow& arm = elbow();
   const auto refused = [&](int bone, BakeSettings settings) {
     CHECK_THROWS_AS(bake_joint(arm.body, arm.bound, bone, settings, no_progress()), Error);
@@ -227,7 +231,8 @@ TEST_CASE("bake joint: what cannot be baked is said in one line") {
   }
 }
 
-TEST_CASE("bake joint: another volume, rig, weights or bones are refused, each by its name") {
+TEST_CASE("bake joint: another volume, rig, weights or bones are refused, each by its name" *
+          doctest::test_suite("slow")) {
   const BakedElbow& arm = elbow();
   const LabelVolume& volume = arm.body.file.volume;
   const LabelSet is_bone = LabelSets(arm.body.tissues).bone;

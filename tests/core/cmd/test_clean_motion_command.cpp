@@ -47,8 +47,8 @@ double roughest(const Places& places) {
 
 }  // namespace
 
-TEST_CASE(
-    "clean-motion command: feet of real takes stay, a hand is on its target, and knees stay as smooth as before") {
+TEST_CASE("clean-motion command: feet of real takes stay, a hand is on its target, and knees stay as smooth as before" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body.armature.json");
   NEEDS_SHARED("data/bvh/cmu_12_01_walk.bvh");
   const std::string rig = shared_path("data/bp3d/body.armature.json").string();
@@ -97,7 +97,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated without a jump at the seam") {
+TEST_CASE("clean-motion command: a walk is mirrored, made faster, and repeated without a jump at the seam" *
+          doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body.armature.json");
   NEEDS_SHARED("data/bvh/cmu_12_01_walk.bvh");
   const std::string rig = shared_path("data/bp3d/body.armature.json").string();

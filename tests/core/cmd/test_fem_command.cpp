@@ -54,7 +54,7 @@ TEST_CASE(
   for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--method", "dqs", "--contact"},
                                                 {"--method", "lbs", "--quality", "fine"},
                                                 {"--method", "lbs", "--mesher", "tetgen"},
-                                                {"--method", "dqs", "--mesh-out", arm.folder / "m"}}) {
+                                                {"--method", "dqs", "--solver-mesh", arm.folder / "m"}}) {
     auto words = wrong;
     words.insert(words.end(), {"--flex", "Forearm=20", "-o", out});
     const auto run = arm.resample(words);
@@ -66,11 +66,11 @@ TEST_CASE(
   CHECK(arm.resample({"--method", "fem", "--quality", "perfect", "-o", out}).exit_code == 2);
   CHECK(arm.resample({"--method", "fem", "--mesher", "cubes", "-o", out}).exit_code == 2);
   CHECK(arm.resample({"--method", "fem", "--friction", "-o", out}).exit_code == 2);
-  const auto no_mesh = arm.resample({"--method", "fem", "--mesh-out", arm.folder / "m", "-o", out});
+  const auto no_mesh = arm.resample({"--method", "fem", "--solver-mesh", arm.folder / "m", "-o", out});
   CHECK(no_mesh.exit_code == 1);
   CHECK(no_mesh.err.starts_with("limber: the pose bends no tissue"));
-  const auto twice = arm.resample({"--method", "fem", "--flex", "Forearm=20", "--mesh-out", arm.folder / "m", "-o", out,
-                                   "--report", arm.folder / "m.ele"});
+  const auto twice = arm.resample({"--method", "fem", "--flex", "Forearm=20", "--solver-mesh", arm.folder / "m", "-o",
+                                   out, "--report", arm.folder / "m.ele"});
   CHECK(twice.exit_code == 2);
   CHECK(twice.err.find("two outputs would be the same file") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(out));
@@ -80,7 +80,7 @@ TEST_CASE("fem command: the steps that it leaves for a watcher end where the mes
   const Arm arm;
   const auto run =
       arm.resample({"--method", "fem", "--quality", "draft", "--mesher", "tetgen", "--flex", "Forearm=20", "-o",
-                    arm.folder / "out.nrrd", "--mesh-out", arm.folder / "posed", "--steps", arm.folder / "solve"});
+                    arm.folder / "out.nrrd", "--solver-mesh", arm.folder / "posed", "--steps", arm.folder / "solve"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const auto mesh = read_fem_mesh(arm.folder / "solve");
@@ -135,7 +135,7 @@ TEST_CASE(
   const Arm arm;
   const auto run =
       arm.resample({"--method", "fem", "--quality", "draft", "--flex", "Forearm=25", "-o", arm.folder / "out.nrrd",
-                    "--report", arm.folder / "r.json", "--mesh-out", arm.folder / "posed", "--progress", "json"});
+                    "--report", arm.folder / "r.json", "--solver-mesh", arm.folder / "posed", "--progress", "json"});
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
 

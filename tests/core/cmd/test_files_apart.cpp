@@ -33,6 +33,7 @@ struct Files {
     write_file_atomically(folder / "tissues.json", R"({"1":"Skin"})");
     write_file_atomically(folder / "weights.nrrd", "hours of painting");
     write_file_atomically(folder / "points.csv", "name,x,y,z\n");
+    write_file_atomically(folder / "arm.node", "a mesh");
     write_file_atomically(folder / "body.limber", "a project");
     write_file_atomically(folder / "job.json",
                           R"({"command": "prepare", "volume": "volume.nrrd", "output": "job.json"})");
@@ -102,6 +103,7 @@ TEST_CASE("command files: an output that is also an input is refused by every co
            Words{"repair-joint", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "--bone",
                  "Forearm", "-o", "@weights.nrrd"},
            Words{"clean-motion", "@rig.json", "--motion", "@motion.bvh", "-o", "@motion.bvh"},
+           Words{"mesh", "@arm.node", "-o", "@arm.node"},
            Words{"fit-rig", "@volume.nrrd", "--template", "@rig.json", "-o", "@rig.json"},
            Words{"export-gltf", "@volume.nrrd", "--rig", "@rig.json", "--weights", "@weights.nrrd", "-o",
                  "@weights.nrrd"},
@@ -164,5 +166,5 @@ TEST_CASE("command files: every command that takes -o says that it is written") 
       CHECK_NOTHROW(option->get_validator("files"));
       ++outputs;
     }
-  CHECK(outputs == 14);
+  CHECK(outputs == 15);
 }

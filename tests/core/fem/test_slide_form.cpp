@@ -236,7 +236,8 @@ TEST_CASE("slide form: a sleeve pulled along a rod has Lame's shape at every pre
   }
 }
 
-TEST_CASE("slide form: a sleeve twisted about a rod slides as far as its fascia lets it, at every preset") {
+TEST_CASE("slide form: a sleeve twisted about a rod slides as far as its fascia lets it, at every preset" *
+          doctest::test_suite("slow")) {
   double before = 0;
   for (const int across : {8, 12, 24}) {
     const auto [worst, rms] = Sleeve(across).twisted();

@@ -114,7 +114,8 @@ bool bones_are_equal(const Limb& limb, const SkinWeights& a, const SkinWeights& 
 
 }  // namespace
 
-TEST_CASE("repair joint: a phantom's elbow keeps more of its volume, also between the turns, and overlaps no more") {
+TEST_CASE("repair joint: a phantom's elbow keeps more of its volume, also between the turns, and overlaps no more" *
+          doctest::test_suite("slow")) {
   const Limb arm = phantom_arm(5);
   for (const Blend blend : {Blend::DualQuaternion, Blend::Linear, Blend::Mixed}) {
     const JointRepair repair =

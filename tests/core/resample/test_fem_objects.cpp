@@ -119,7 +119,7 @@ TEST_CASE("objects: a block presses with the force that was asked for, and the p
   }
 }
 
-TEST_CASE("objects: a light touch is found, also from a place deep in the bone") {
+TEST_CASE("objects: a light touch is found, also from a place deep in the bone" * doctest::test_suite("slow")) {
   const Posed posed = arm().posed(pressing({block(45, 5)}));
   CHECK(posed.report.solve->converged);
   CHECK(posed.report.objects.at(0).pressing_n == doctest::Approx(5).epsilon(0.01));
@@ -127,7 +127,7 @@ TEST_CASE("objects: a light touch is found, also from a place deep in the bone")
   CHECK(posed.report.objects.at(0).crossings == 0);
 }
 
-TEST_CASE("objects: a table carries the weight of the arm") {
+TEST_CASE("objects: a table carries the weight of the arm" * doctest::test_suite("slow")) {
   FemObject table{"table", {}, glm::dvec3(0, 1, 0)};
   table.surface =
       placed(box_surface({300, 40, 300}), {arm().low.x, arm().high.y + 20, (arm().low.z + arm().high.z) / 2});
@@ -146,7 +146,7 @@ TEST_CASE("objects: a table carries the weight of the arm") {
   CHECK(report.crossings == 0);
 }
 
-TEST_CASE("objects: a cuff of nine tenths of the girth tightens around the upper arm") {
+TEST_CASE("objects: a cuff of nine tenths of the girth tightens around the upper arm" * doctest::test_suite("slow")) {
   const Armature& rig = arm().phantom.armature;
   const Bone& bone = rig.bones[require_bone(rig, "UpperArm")];
   // The cuff lies around the axis of the upper arm. Its radius is nine tenths of the arm's mean radius there.

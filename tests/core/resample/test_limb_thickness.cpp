@@ -57,7 +57,7 @@ TEST_CASE("limb thickness: it is the limb's own at the joint, to a voxel, wherev
   }
 }
 
-TEST_CASE("fem: a body of another size is meshed and posed alike") {
+TEST_CASE("fem: a body of another size is meshed and posed alike" * doctest::test_suite("slow")) {
   const auto posed = [](const test::BentTube& tube) {
     return resample(tube.volume, tube.tissues, tube.rig, tube.weights, tube.pose(70), Fem{.contact = true});
   };

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Tet meshes as outputs: the options of commands that mesh a body, the files they write, and the parts of a body that a
+// solver's mesh contains.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "core/cmd/command_files.h"
+#include "core/export/exporter.h"
+#include "core/mesh/body_mesh.h"
+#include "core/resample/fem_shape.h"
+
+namespace limber::cmd {
+
+struct MeshOptions {
+  std::optional<double> spacing;  // distance between the nodes of a surface, mm; none: the voxel size
+  int relaxations = BodyMeshSettings{}.relaxations;
+  std::string unit = "mm";  // of the file: "mm" or "cm"
+};
+
+// Adds the options of a body's mesh: its spacing, its smoothing and its unit.
+//   start  what the names of the options begin with, such as "--" or "--mesh-"
+void add_mesh_options(CLI::App& command, MeshOptions& options, const std::string& start);
+
+// Meshes the body. With a spacing, the body is sampled anew first, and its tissues keep their volumes.
+//   tissue   the tissue voxels of the volume, with their seams
+BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const MeshOptions& options, Progress& progress);
+
+// Writes the mesh, whose regions are labels, with organ numbers, in the format of the name's extension.
+void write_mesh(TetMesh mesh, const LabelVolume& volume, const TissueTable& tissues, const std::string& unit,
+                const std::string& name, Progress& progress);
+
+// Returns the solver's posed mesh. The region of a tet is the label that fills most of it.
+TetMesh solver_mesh(const FemShape& shape);
+// Returns a sentence that says which percentage of the body's rest volume, and how many of its tissues, the tets of the
+// solver's mesh contain.
+std::string share_of_body(const TissueModel& model, const LabelVolume& body);
+
+// Returns the path of the mesh file: `name` itself if its extension is that of a mesh format, otherwise NAME.node
+// (TetGen format).
+Path mesh_path(const Path& name);
+const Exporter& mesh_exporter(const Path& name);
+// Returns all files that are written for a mesh of this name.
+std::vector<Path> mesh_files(const Path& name);
+
+}  // namespace limber::cmd

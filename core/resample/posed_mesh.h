@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Moves the tet mesh of a whole body to a pose, so that rest and pose have the same tets. The nodes of a bone move
+// rigidly with it. All others move as the tissue around them does (posed_points.h); a node on a seam moves with its own
+// side, and flesh next to bone gives way to it. Where a joint is bent so far that tets turn inside out, nodes of soft
+// tissue move until no tet does.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/mesh/body_mesh.h"
+#include "core/resample/posed_points.h"
+
+namespace limber {
+
+struct PosedMesh {
+  Eigen::MatrixX3d V;           // positions of the mesh's nodes in the pose, world, mm
+  std::int64_t mended = 0;      // number of tets that were inside out and are not any more
+  std::int64_t inside_out = 0;  // number of tets that still are
+};
+
+// Returns the seams of the tissue, and with them the surface of each bone near another bone of the rig: there, in
+// joints, the mesh of a body that is to be posed is cut, so that no node belongs to two bones.
+std::shared_ptr<const Seams> seams_and_joints(const LabelVolume& volume, const TissueVoxels& tissue,
+                                              const TissueTable& tissues, const SkinWeights& weights);
+
+// Returns the posed positions of the nodes of `body`. The other arguments are those of posed_points().
+PosedMesh pose_mesh(const BodyMesh& body, const LabelVolume& volume, const TissueVoxels& tissue,
+                    const TissueTable& tissues, const SkinWeights& weights, const Armature& armature, const Pose& pose,
+                    Blend blend, const FemShape* shape, const BakedJoints& baked = {});
+
+}  // namespace limber
