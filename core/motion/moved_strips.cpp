@@ -40,10 +40,12 @@ StripMove fitting_move(const Strips& strips, const std::set<std::string>& chosen
     for (const Strip& strip : strips.tracks[t].strips) {
       const int to = t + move.tracks;
       if (!chosen.contains(strip.name) || to < 0 || to >= std::ssize(strips.tracks)) continue;
-      for (const Strip& other : strips.tracks[to].strips)
-        if (!chosen.contains(other.name))
-          barred.push_back(
-              {std::int64_t{other.start} - end_of(strip, rate), std::int64_t{end_of(other, rate)} - strip.start});
+      for (const Strip& other : strips.tracks[to].strips) {
+        if (chosen.contains(other.name)) continue;
+        const Barred one{std::int64_t{other.start} - end_of(strip, rate),
+                         std::int64_t{end_of(other, rate)} - strip.start};
+        if (move.tracks != 0 || one.low >= 0 || one.high <= 0) barred.push_back(one);
+      }
     }
   const auto fits = [&](std::int64_t frames) {
     return std::none_of(barred.begin(), barred.end(),

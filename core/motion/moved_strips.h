@@ -18,7 +18,7 @@ struct StripMove {
 };
 
 // Returns the move nearest to the wanted one that leaves the strips on tracks that exist and, unless they may overlap
-// others, keeps them beside the others.
+// others, keeps them beside the others. Strips that overlap already may go on to, while they stay on their track.
 //   chosen  names of the strips that move
 //   rate    of the clip that has the strips, frames per second
 enum class Overlaps { Allowed, Avoided };

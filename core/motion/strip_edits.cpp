@@ -21,9 +21,10 @@ std::string unique_name(const std::string& wanted, const Taken& taken) {
   return name;
 }
 
-// Returns the number if it is whole, but for rounding.
+// Returns the number if it is whole, but for rounding, and a frame that a strip can have.
 std::optional<int> whole(double number) {
   const double nearest = std::round(number);
+  if (!(std::abs(nearest) <= double(kMostStripFrame))) return std::nullopt;
   return std::abs(number - nearest) < 1e-6 ? std::optional(static_cast<int>(nearest)) : std::nullopt;
 }
 
@@ -99,7 +100,8 @@ Strip with_start(const Strip& strip, int frame, double rate) {
                                std::max(strip.first, strip.last - 1));
     changed.start = strip.start + static_cast<int>(std::round((changed.first - strip.first) / ratio));
   } else {
-    const int earliest = strip.start - static_cast<int>(std::floor(strip.skip / ratio + 1e-6));
+    const double far = std::max(-double(kMostStripFrame), strip.start - std::floor(strip.skip / ratio + 1e-6));
+    const int earliest = static_cast<int>(far);
     changed.start = std::clamp(frame, earliest, std::max(earliest, end_of(strip, rate) - 1));
     changed.skip = std::max(0.0, strip.skip + (double(changed.start) - strip.start) * ratio);
   }
@@ -111,10 +113,10 @@ Strip with_end(const Strip& strip, int frame, double rate) {
   Strip changed = strip;
   const double ratio = frames_per_frame(strip, rate);
   const double passed = strip.skip + (std::max(frame, strip.start + 1) - double(strip.start)) * ratio;
-  const double steps = strip.last - strip.first;
+  const double steps = double(strip.last) - strip.first;
   if (plays_once(strip) && whole(passed) && *whole(passed) >= 1)
-    changed.last =
-        std::clamp(strip.first + *whole(passed), strip.first, std::max(strip.last, frames_of_clip(*strip.clip).last));
+    changed.last = static_cast<int>(std::clamp<std::int64_t>(std::int64_t{strip.first} + *whole(passed), strip.first,
+                                                             std::max(strip.last, frames_of_clip(*strip.clip).last)));
   else if (steps > 0) changed.repeat = std::min(passed / steps, kMostRepeats);
   drop_long_fades(changed, rate);
   return changed;
@@ -138,8 +140,6 @@ std::pair<Strip, Strip> split(const Strip& strip, int frame, double rate, const 
   right.start = frame;
   right.name = second_name;
   left.blend_out = right.blend_in = 0;
-  drop_long_fades(left, rate);
-  drop_long_fades(right, rate);
   return {left, right};
 }
 
@@ -179,12 +179,23 @@ Strips mirrored_strips(const Strips& strips, const Armature& armature) {
   return mirrored;
 }
 
+Strip with_clip_frames(const Strip& strip, const std::function<int(int)>& frame_of, double ratio) {
+  Strip changed = strip;
+  changed.first = frame_of(strip.first);
+  changed.last = std::max(changed.first, frame_of(strip.last));
+  changed.skip = std::min(strip.skip * ratio, frames_of_cycles(changed));
+  return changed;
+}
+
 Strips rescaled_strips(const Strips& strips, const std::function<int(int)>& frame_of, double ratio, double speed) {
   Strips scaled = strips;
   for (StripTrack& track : scaled.tracks) {
     for (Strip& strip : track.strips) {
       strip.start = frame_of(strip.start);
-      strip.speed = std::clamp(strip.speed * speed, kSlowest, kFastest);
+      strip.speed *= speed;
+      if (!(strip.speed >= kSlowest && strip.speed <= kFastest))
+        throw Error(strip.speed < kSlowest ? "the strip would play too slowly" : "the strip would play too fast",
+                    strip.name, "choose another speed, or change the strip's: it plays 0.05 to 20 times as fast");
       for (int* frames : {&strip.blend_in, &strip.blend_out})
         *frames = static_cast<int>(std::clamp<double>(std::round(*frames * ratio), 0, kLongestBlend));
     }

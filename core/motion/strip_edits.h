@@ -37,7 +37,7 @@ bool has_room(const StripTrack& track, int first, int last, double rate);
 Strip with_start(const Strip& strip, int frame, double rate);
 Strip with_end(const Strip& strip, int frame, double rate);
 // Returns the strip in two: the second begins at the frame and keeps the name `second_name`. Together they play as it
-// did, except that a fade in the middle of which it is split ends there. Throws Error if the frame is not inside.
+// did while they touch. Throws Error if the frame is not inside.
 std::pair<Strip, Strip> split(const Strip& strip, int frame, double rate, const std::string& second_name);
 
 // Returns the move along the ground by which the strip begins at the place and with the heading that the body has
@@ -47,7 +47,12 @@ GroundMove place_where_body_is(const Strips& strips, const StripPlace& place,
 
 // Returns strips that play the mirrored poses.
 Strips mirrored_strips(const Strips& strips, const Armature& armature);
-// Returns strips whose starts and fades are those at other frames.
+// Returns the strip that plays the same of its clip when that has other frames.
+//   frame_of  returns the new frame of a frame of the clip
+//   ratio     how many frames a frame of the clip becomes
+Strip with_clip_frames(const Strip& strip, const std::function<int(int)>& frame_of, double ratio);
+// Returns strips whose starts and fades are those at other frames. Throws Error for a strip whose speed would leave its
+// range.
 //   frame_of  returns the new frame of a frame
 //   speed     factor of their speeds
 Strips rescaled_strips(const Strips& strips, const std::function<int(int)>& frame_of, double ratio, double speed);

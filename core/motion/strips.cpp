@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 #include "core/base/error.h"
 #include "core/motion/clip.h"
@@ -12,9 +13,54 @@ namespace limber {
 
 namespace {
 
+constexpr double kRounding = 2e-6;  // frames
+
 double eased(double share) { return share * share * (3 - 2 * share); }
 
+// Returns whether the later strip, which begins where the earlier one ends, goes on with what that one plays.
+bool goes_on_with(const Strip& earlier, const Strip& later, double rate) {
+  if (earlier.clip != later.clip || earlier.speed != later.speed || earlier.reversed != later.reversed ||
+      earlier.mirrored != later.mirrored || earlier.goes_on != later.goes_on || earlier.blend != later.blend ||
+      earlier.blend_out != 0 || later.blend_in != 0 || earlier.bones != later.bones || earlier.place != later.place)
+    return false;
+  const double passed = earlier.skip + (double(later.start) - earlier.start) * frames_per_frame(earlier, rate);
+  if (earlier.first == later.first && earlier.last == later.last) return std::abs(passed - later.skip) < kRounding;
+  // The frames of both are parts of one cycle.
+  if (earlier.reversed || earlier.blend == StripBlend::AddChange) return false;
+  return std::abs(earlier.first + passed - later.first - later.skip) < kRounding &&
+         passed < earlier.last - earlier.first + kRounding && later.skip < later.last - later.first + kRounding;
+}
+
+// Finds for each strip the first strip of its run and the run's end, and which strips another one follows.
+void find_runs(const StripTrack& track, double rate, std::vector<StripRun>& runs) {
+  std::multimap<int, std::size_t> ending;  // by their ends, the strips before that nothing follows yet
+  for (std::size_t i = 0; i < track.strips.size(); ++i) {
+    const Strip& strip = track.strips[i];
+    const int end = end_of(strip, rate);
+    runs[i] = {.head = i, .start = strip.start, .end = end};
+    if (strip.muted) continue;
+    const auto [low, high] = ending.equal_range(strip.start);
+    const auto before =
+        std::find_if(low, high, [&](const auto& one) { return goes_on_with(track.strips[one.second], strip, rate); });
+    if (before != high) {
+      const std::size_t head = runs[before->second].head;
+      runs[before->second].has_next = true;
+      runs[i].head = head;
+      runs[head].end = end;
+      ending.erase(before);
+    }
+    if (end > strip.start) ending.emplace(end, i);
+  }
+}
+
 }  // namespace
+
+double frames_of_cycles(const Strip& strip) { return strip.repeat * (double(strip.last) - strip.first); }
+
+bool begins_within(const Strip& strip) {
+  const double frames = frames_of_cycles(strip);
+  return strip.skip >= 0 && strip.skip <= frames + 1e-9 * frames + kRounding;
+}
 
 void require_within_limits(const Strips& strips) {
   std::size_t count = 0;
@@ -25,6 +71,8 @@ void require_within_limits(const Strips& strips) {
         if (std::abs(std::int64_t{frame}) > kMostStripFrame)
           throw Error("the strip begins too far away", strip.name,
                       "keep it within " + std::to_string(kMostStripFrame) + " frames of frame 0");
+      if (!begins_within(strip))
+        throw Error("the strip begins behind the end of its clip", strip.name, "let it play more frames");
       for (const glm::dvec3& place : {strip.place.from, strip.place.to})
         for (int axis = 0; axis < 3; ++axis)
           if (!(std::abs(place[axis]) <= kFarthestMove))
@@ -50,26 +98,47 @@ std::vector<std::shared_ptr<const Clip>> clips_of(const Strips& strips) {
 double frames_per_frame(const Strip& strip, double rate) { return strip.speed * (strip.clip->rate / rate); }
 
 int end_of(const Strip& strip, double rate) {
-  const double frames = strip.repeat * (strip.last - strip.first) - strip.skip;
+  const double frames = frames_of_cycles(strip) - strip.skip;
   // 1e-6 frames are added, so that rounding errors do not cut off the last frame.
   const double length = std::floor(frames / frames_per_frame(strip, rate) + 1e-6);
   return static_cast<int>(std::min(double(kMostStripFrame), strip.start + std::max(0.0, length)));
 }
 
-int fade_in_of(const StripTrack& track, std::size_t index, double rate) {
-  const Strip& strip = track.strips[index];
-  int overlap = 0;
-  if (strip.blend == StripBlend::Replace)
-    for (std::size_t i = 0; i < index; ++i)
-      if (!track.strips[i].muted) overlap = std::max(overlap, end_of(track.strips[i], rate) - strip.start);
-  return std::max(strip.blend_in, std::min(overlap, end_of(strip, rate) - strip.start));
+std::vector<StripRun> runs_of(const StripTrack& track, double rate) {
+  std::vector<StripRun> runs(track.strips.size());
+  find_runs(track, rate, runs);
+  for (std::size_t i = 0; i < runs.size(); ++i) {  // an end is known when the run's strips have been walked through
+    runs[i].start = runs[runs[i].head].start;
+    runs[i].end = runs[runs[i].head].end;
+    if (!runs[i].has_next) runs[runs[i].head].fade_out = track.strips[i].blend_out;
+  }
+  std::int64_t latest = std::int64_t{-4} * kMostStripFrame;  // end of the runs that begin before
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    StripRun& run = runs[i];
+    const Strip& head = track.strips[run.head];
+    if (run.head != i) {
+      run.fade_in = runs[run.head].fade_in;
+      run.fade_out = runs[run.head].fade_out;
+      continue;
+    }
+    run.fade_in = head.blend_in;
+    const int length = run.end - run.start;
+    if (head.blend == StripBlend::Replace && latest > run.end) {
+      if (run.fade_in == 0) run.fade_in = length / 2;
+      if (run.fade_out == 0) run.fade_out = length - length / 2;
+    } else if (head.blend == StripBlend::Replace && latest > run.start) {
+      run.fade_in = std::max(run.fade_in, static_cast<int>(latest - run.start));
+    }
+    if (!head.muted) latest = std::max<std::int64_t>(latest, run.end);
+  }
+  return runs;
 }
 
-double share_at(const Strip& strip, int fade_in, int end, int frame) {
+double share_at(const StripRun& run, int frame) {
   const auto part = [](double passed, int frames) {
     return frames <= 0 ? 1.0 : eased(std::clamp(passed / frames, 0.0, 1.0));
   };
-  return part(double(frame) - strip.start, fade_in) * part(double(end) - frame, strip.blend_out);
+  return part(double(frame) - run.start, run.fade_in) * part(double(run.end) - frame, run.fade_out);
 }
 
 bool plays(const Strips& strips, std::size_t track) {

@@ -7,9 +7,14 @@
 // within a track from the earliest strip to the latest: each strip changes the pose that those before it have made, by
 // as much as its influence says. Where nothing plays, the rig is at rest.
 //
-// Strips of one track that overlap cross-fade: the later one fades in while the earlier one still plays. A strip that
-// holds keeps its last pose when it has ended, below the strips of its track that begin later. Before the first strip
-// of a track, that one holds its first pose.
+// Strips of one track that overlap cross-fade: the later one fades in while the earlier one still plays. One that ends
+// before the earlier one fades in over its first half and out over its second. A strip that holds keeps its last pose
+// when it has ended, below the strips of its track that begin later. Before the first strip of a track, that one holds
+// its first pose.
+//
+// Strips of one clip on one track that touch, and of which the later one goes on at the frame of the clip at which the
+// earlier one ends, play as one: fades, order and holding are those of the whole. A strip that is split so plays as
+// before.
 //
 // Time is counted in frames of the clip that has the strips. A strip keeps to time, not to frames: of a clip with
 // another rate it plays as many seconds as that clip does.
@@ -80,7 +85,12 @@ constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // of a clip
 constexpr int kLongestBlend = 100'000;                        // frames
 constexpr std::int64_t kMostStripFrame = 1 << 28;             // largest frame number of a strip, either sign
 constexpr double kFarthestMove = 1e7;                         // largest coordinate of a strip's place, mm
-// Throws Error for strips that no project can keep: too many of them, too many tracks, frames or places too far away.
+// Returns how many frames of its clip have passed when a strip that does not skip any ends.
+double frames_of_cycles(const Strip& strip);
+// Returns whether the strip begins within its cycles. Rounding may put its beginning a little behind their end.
+bool begins_within(const Strip& strip);
+// Throws Error for strips that no project can keep: too many of them, too many tracks, frames or places too far away,
+// a beginning behind the end.
 void require_within_limits(const Strips& strips);
 
 // Returns how many frames of a strip's clip pass in one frame of the strip.
@@ -88,12 +98,19 @@ void require_within_limits(const Strips& strips);
 double frames_per_frame(const Strip& strip, double rate);
 // Returns the frame at which the strip ends. It is the last one that plays.
 int end_of(const Strip& strip, double rate);
-// Returns over how many frames the strip fades in, because it says so or because it overlaps one before it.
-//   index  of the strip in the track
-int fade_in_of(const StripTrack& track, std::size_t index, double rate);
-// Returns the share of its influence that a strip has at a frame of it, [0, 1], as its fades say. It changes smoothly.
-//   fade_in  as fade_in_of() returns it
-double share_at(const Strip& strip, int fade_in, int end, int frame);
+
+// The strips that play as one with a strip, itself included.
+struct StripRun {
+  std::size_t head = 0;           // the first of them, counted in the track
+  int start = 0, end = 0;         // frames
+  int fade_in = 0, fade_out = 0;  // frames, because a strip says so or because the run overlaps a strip before it
+  bool has_next = false;          // whether another one follows the strip
+};
+// Returns the run of each strip of the track.
+std::vector<StripRun> runs_of(const StripTrack& track, double rate);
+// Returns the share of its influence that a strip has at a frame of its run, [0, 1], as the fades say. It changes
+// smoothly.
+double share_at(const StripRun& run, int frame);
 // Returns whether the track plays, as its own and the others' switches say.
 bool plays(const Strips& strips, std::size_t track);
 

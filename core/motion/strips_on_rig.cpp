@@ -39,16 +39,17 @@ StripsOnRig::StripsOnRig(std::shared_ptr<const Strips> strips, std::shared_ptr<c
   for (std::size_t t = 0; t < strips_->tracks.size(); ++t) {
     if (!plays(*strips_, t)) continue;
     const StripTrack& track = strips_->tracks[t];
+    const std::vector<StripRun> runs = runs_of(track, rate);
     std::vector<OnRig> row;
     for (std::size_t i = 0; i < track.strips.size(); ++i)
-      if (!track.strips[i].muted) row.push_back(prepared(track, i, rate, before));
+      if (!track.strips[i].muted) row.push_back(prepared(track.strips[i], runs[i], rate, before));
+    std::stable_sort(row.begin(), row.end(), [](const OnRig& a, const OnRig& b) { return a.run.head < b.run.head; });
     if (!row.empty()) tracks_.push_back(std::move(row));
   }
 }
 
-StripsOnRig::OnRig StripsOnRig::prepared(const StripTrack& track, std::size_t index, double rate,
+StripsOnRig::OnRig StripsOnRig::prepared(const Strip& strip, const StripRun& run, double rate,
                                          const StripsOnRig* before) {
-  const Strip& strip = track.strips[index];
   std::shared_ptr<const ClipOnRig>& clip = clips_[strip.clip.get()];
   if (!clip) {
     const ClipOnRig* known = nullptr;
@@ -61,11 +62,10 @@ StripsOnRig::OnRig StripsOnRig::prepared(const StripTrack& track, std::size_t in
     if (problem_.empty() && !clip->problem().empty())
       problem_ = "the strip \"" + strip.name + "\" does not move this rig: " + clip->problem();
   }
-  OnRig one{.strip = &strip, .clip = clip};
+  OnRig one{.strip = &strip, .clip = clip, .run = run};
   one.ratio = frames_per_frame(strip, rate);
-  one.total = strip.repeat * (strip.last - strip.first);
+  one.total = frames_of_cycles(strip);
   one.end = end_of(strip, rate);
-  one.fade_in = fade_in_of(track, index, rate);
   find_bones(one);
   const double steps = strip.last - strip.first;
   if (one.strip->goes_on && has_one_root_ && strip.repeat > 1 && steps > 0)
@@ -127,23 +127,25 @@ Pose StripsOnRig::pose_of(const OnRig& one, int frame) const {
 bool StripsOnRig::is_held(const std::vector<OnRig>& track, const OnRig& ended, int frame) {
   if (!ended.strip->holds || ended.strip->blend == StripBlend::Replace) return ended.strip->holds;
   return std::none_of(track.begin(), track.end(), [&](const OnRig& other) {
-    return &other != &ended && other.strip->start >= ended.end && other.strip->start <= frame;
+    return &other != &ended && other.run.start >= ended.end && other.run.start <= frame;
   });
 }
 
 std::vector<StripsOnRig::Layer> StripsOnRig::layers_at(int frame) const {
   std::vector<Layer> layers;
   const auto add = [&](const OnRig& one, int at) {
-    const double share = one.strip->influence * share_at(*one.strip, one.fade_in, one.end, at);
+    const double share = one.strip->influence * share_at(one.run, at);
     if (share > 0) layers.push_back({&one, share});
   };
   for (const std::vector<OnRig>& track : tracks_) {
     // Where a strip ends as another begins, only the other plays.
     const bool begins = std::any_of(track.begin(), track.end(),
-                                    [&](const OnRig& one) { return one.strip->start == frame && one.end > frame; });
+                                    [&](const OnRig& one) { return one.run.start == frame && one.run.end > frame; });
     std::vector<const OnRig*> ended, playing;
     for (const OnRig& one : track) {
-      const bool is_over = one.end < frame || (one.end == frame && begins && one.strip->start < frame);
+      const bool is_over =
+          one.end < frame || (one.end == frame && (one.run.has_next || (begins && one.run.start < frame)));
+      if (is_over && one.run.has_next) continue;
       if (is_over) ended.push_back(&one);
       else if (one.strip->start <= frame) playing.push_back(&one);
     }

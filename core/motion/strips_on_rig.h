@@ -36,8 +36,9 @@ class StripsOnRig {
   struct OnRig {
     const Strip* strip;
     std::shared_ptr<const ClipOnRig> clip;
-    double ratio = 1, total = 0;     // frames of the clip: in a frame of the strip; that have passed at its end
-    int end = 0, fade_in = 0;        // frames
+    double ratio = 1, total = 0;  // frames of the clip: in a frame of the strip; that have passed at its end
+    int end = 0;                  // frame
+    StripRun run;
     std::vector<char> changes;       // for each bone, whether the strip changes it; empty: all bones
     bool changes_root = true;        // whether the strip changes the body's shift
     GroundMove cycle;                // from the beginning of a cycle to its end
@@ -48,7 +49,7 @@ class StripsOnRig {
     double share;  // (0, 1]
   };
 
-  OnRig prepared(const StripTrack& track, std::size_t index, double rate, const StripsOnRig* before);
+  OnRig prepared(const Strip& strip, const StripRun& run, double rate, const StripsOnRig* before);
   void find_bones(OnRig& strip) const;
   // Returns the pose of the clip, mirrored if the strip is, when some of its frames have passed.
   Pose cycle_pose(const OnRig& strip, double passed) const;

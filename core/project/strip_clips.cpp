@@ -2,8 +2,9 @@
 #include "core/project/strip_clips.h"
 
 #include <algorithm>
+#include <cmath>
 
-#include "core/motion/strips.h"
+#include "core/motion/strip_edits.h"
 
 namespace limber {
 
@@ -46,10 +47,41 @@ void relink_strips(const Document& before, Document& next) {
   }
 }
 
-std::optional<std::string> clip_with_strips_of(const Document& document, const SharedClip& clip) {
-  for (const SharedClip& other : document.clips)
-    if (other->strips && has(clips_of(*other->strips), clip)) return other->name;
-  return std::nullopt;
+void follow_frames(Document& document, const SharedClip& clip, const SharedClip& changed, double ratio) {
+  const auto frame_of = [&](int frame) {
+    const double moved = clip->start + std::round((double(frame) - clip->start) * ratio);
+    return static_cast<int>(std::clamp(moved, -double(kMostStripFrame), double(kMostStripFrame)));
+  };
+  for (SharedClip& part : document.clips) {
+    if (!part->strips || !has(clips_of(*part->strips), clip)) continue;
+    Clip next = *part;
+    Strips strips = *part->strips;
+    const auto before = span_of(strips, next.rate);
+    for (StripTrack& track : strips.tracks)
+      for (Strip& strip : track.strips) {
+        if (strip.clip != clip) continue;
+        strip = with_clip_frames(strip, frame_of, ratio);
+        strip.clip = changed;
+      }
+    if (const auto after = span_of(strips, next.rate);
+        after && next.range_start == before->first && next.range_end == before->last)
+      next.range_start = after->first, next.range_end = after->last;
+    next.strips = std::make_shared<const Strips>(std::move(strips));
+    part = std::make_shared<const Clip>(std::move(next));
+  }
+}
+
+std::vector<StripUse> strip_uses(const Document& document, const SharedClip& clip) {
+  std::vector<StripUse> uses;
+  for (const SharedClip& other : document.clips) {
+    if (!other->strips) continue;
+    StripUse use{other->name};
+    for (const StripTrack& track : other->strips->tracks)
+      use.strips += static_cast<int>(std::count_if(track.strips.begin(), track.strips.end(),
+                                                   [&](const Strip& strip) { return strip.clip == clip; }));
+    if (use.strips > 0) uses.push_back(std::move(use));
+  }
+  return uses;
 }
 
 }  // namespace limber

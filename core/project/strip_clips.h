@@ -10,7 +10,16 @@ namespace limber {
 // its name, or renamed where another clip is in its place; otherwise it was deleted, and its strips are removed.
 void relink_strips(const Document& before, Document& next);
 
-// Returns the name of a clip of the document whose strips play the clip; nothing if there is none.
-std::optional<std::string> clip_with_strips_of(const Document& document, const std::shared_ptr<const Clip>& clip);
+// Lets the strips of `clip` play the same of `changed`, which is the clip with `ratio` frames in place of each one, as
+// core/motion/clip_speed.h makes it. The playing ranges that were those of the strips stay so.
+void follow_frames(Document& document, const std::shared_ptr<const Clip>& clip,
+                   const std::shared_ptr<const Clip>& changed, double ratio);
+
+// A clip of the document that has strips of another one.
+struct StripUse {
+  std::string clip;
+  int strips = 0;
+};
+std::vector<StripUse> strip_uses(const Document& document, const std::shared_ptr<const Clip>& clip);
 
 }  // namespace limber

@@ -54,6 +54,7 @@ Strip get_strip(ByteReader& in, const std::vector<std::shared_ptr<const Clip>>& 
   strip.skip = get_between(in, 0, kMostRepeats * 2 * double(kMostStripFrame));
   strip.speed = get_between(in, kSlowest, kFastest);
   strip.repeat = get_between(in, 0, kMostRepeats);
+  in.require(begins_within(strip));
   for (bool* flag : {&strip.reversed, &strip.mirrored, &strip.goes_on, &strip.holds, &strip.muted}) *flag = in.flag();
   strip.blend =
       static_cast<StripBlend>(in.get_below<std::uint8_t>(static_cast<std::uint64_t>(StripBlend::AddChange) + 1));

@@ -12,6 +12,7 @@
 #include "core/motion/loop_poses.h"
 #include "core/motion/mirror_clip.h"
 #include "core/motion/recorded_clip.h"
+#include "core/motion/strip_edits.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
@@ -105,6 +106,9 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
     throw Error("this length cannot be reached", frames_text(static_cast<int>(fields[2].value)),
                 "enter a length from " + std::to_string(static_cast<int>(std::ceil(steps / kFastest)) + 1) + " to " +
                     std::to_string(static_cast<std::int64_t>(steps / kSlowest) + 1));
+  if (clip->strips)  // throws Error if a strip's speed would leave its range
+    rescaled_strips(
+        *clip->strips, [](int frame) { return frame; }, 1, factor);
   std::set<int> moved;
   const std::set<int> keys = frames_of(clip->keys);
   for (const int frame : keys) moved.insert(static_cast<int>(std::lround((frame - clip->start) / factor)));
@@ -125,7 +129,7 @@ void take_in_speed(Editor& editor, const std::shared_ptr<const Clip>& source,
   std::optional<double> moment;
   if (editor.document().shown_clip() == source.get())
     moment = changed.start + std::round((double(editor.document().frame) - changed.start) / factor);
-  take_in_clip(editor, source, rig, "Change speed", changed, false, moment);
+  take_in_clip(editor, source, rig, "Change speed", changed, false, moment, 1 / factor);
 }
 
 // Changes the speed of a short clip at once, so that the user can adjust the speed afterwards. Changes a long clip in

@@ -11,6 +11,7 @@
 #include "core/motion/motion_edit.h"
 #include "core/motion/same_skeleton.h"
 #include "core/motion/up_axis.h"
+#include "core/project/strip_clips.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
@@ -172,7 +173,7 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
 }
 
 void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame) {
+                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame, double ratio) {
   settle_frame(editor);
   Document next = editor.document();
   const auto place = std::find(next.clips.begin(), next.clips.end(), source);
@@ -184,7 +185,9 @@ void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, con
     add_clip(next, std::move(clip));
   } else {
     next.clip = static_cast<int>(place - next.clips.begin());
-    next.clips[static_cast<std::size_t>(next.clip)] = std::make_shared<const Clip>(std::move(clip));
+    const auto changed = std::make_shared<const Clip>(std::move(clip));
+    next.clips[static_cast<std::size_t>(next.clip)] = changed;
+    if (ratio != 1) follow_frames(next, source, changed, ratio);
   }
   next.pose = pose_at_frame(next, &editor.timeline->prepared);
   editor.timeline->chosen.clear();

@@ -30,8 +30,9 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
 // Adds a clip that a background task has computed from another clip of the document, or replaces that other clip. Then
 // goes to `frame`, or without `frame` stays at the current frame; both are clamped to the playing range. Throws Error
 // if the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
+//   ratio  how many frames each frame of the source has become; strips of the source go on playing the same
 void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame = {});
+                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame = {}, double ratio = 1);
 
 void choose_clip(Editor& editor, int clip);
 // Reads a BVH file and opens a dialog that asks for the scale, up axis, first frame and frame rate of the new clip.

@@ -7,8 +7,10 @@
 #include "core/base/error.h"
 #include "core/motion/clip_keys.h"
 #include "core/motion/clip_speed.h"
+#include "core/project/strip_clips.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
+#include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/motion/motion_clip_edits.h"
@@ -143,16 +145,41 @@ void save_map(Editor& editor) {
                   }});
 }
 
-void delete_clip(Editor& editor) {
+void delete_shown(Editor& editor) {
   stop_playing(editor);
   Document next = editor.document();
   const std::string name = next.shown_clip()->name;
   next.clips.erase(next.clips.begin() + next.clip);
+  relink_strips(editor.document(), next);  // the pose is then that of the strips that are left
   next.clip = std::max(0, std::min(next.clip, static_cast<int>(next.clips.size()) - 1));
   if (const Clip* clip = next.shown_clip())
     next.frame = std::clamp(next.frame, all_frames(*clip).low, all_frames(*clip).high);
   next.pose = pose_at_frame(next);
   commit(editor, "Delete clip " + name, std::move(next));
+}
+
+// Deletes the shown clip; asks before if strips play it, because they go with it.
+void delete_clip(Editor& editor) {
+  const auto clip = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  const std::vector<StripUse> uses = strip_uses(editor.document(), clip);
+  if (uses.empty()) return delete_shown(editor);
+  stop_playing(editor);
+  Question question{.title = "Delete " + clip->name + " and its strips?", .icon = icon::kTrash};
+  for (const StripUse& use : uses)
+    question.lines.push_back(std::to_string(use.strips) + (use.strips == 1 ? " strip of " : " strips of ") + use.clip +
+                             (use.strips == 1 ? " plays it and goes with it." : " play it and go with it."));
+  if (constexpr std::size_t kListed = 3; question.lines.size() > kListed) {
+    const std::size_t others = question.lines.size() - kListed + 1;
+    question.lines.resize(kListed - 1);
+    question.lines.push_back("Strips of " + std::to_string(others) + " other clips go with it.");
+  }
+  question.answers = {{"Cancel", {}},
+                      {"Delete",
+                       [clip](Editor& e) {
+                         if (shown_clip(e) == clip.get()) delete_shown(e);
+                       },
+                       true}};
+  ask(editor, std::move(question));
 }
 
 // Trims the shown clip to its playing range. Frames of the motion outside the range are kept but not used; keys and
@@ -184,6 +211,18 @@ void untrim(Editor& editor) {
   });
 }
 
+// Gives the shown clip another frame rate. The play head goes to the frame of the same moment.
+void resample_shown(Editor& editor, double rate) {
+  if (!shown_clip(editor))
+    throw Error("the clip was deleted meanwhile", "resample", "select a clip and open the dialog again");
+  settle_frame(editor);
+  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  const double ratio = rate / source->rate;
+  const double moment = source->start + std::round((double(editor.document().frame) - source->start) * ratio);
+  take_in_clip(editor, source, editor.document().armature, "Resample clip", at_rate(*source, rate), false, moment,
+               ratio);
+}
+
 void ask_rate(Editor& editor) {
   editor.open_dialog(make_form(
       {"Resample the clip",
@@ -198,9 +237,7 @@ void ask_rate(Editor& editor) {
          return std::to_string(clip->range_end - clip->range_start + 1) + " frames become " +
                 std::to_string(static_cast<int>(std::round((clip->range_end - clip->range_start) * ratio)) + 1) + ".";
        },
-       [](Editor& e, const std::vector<FormField>& fields) {
-         edit_clip(e, "Resample clip", PoseThen::FromClip, [&](Clip& clip) { clip = at_rate(clip, fields[0].value); });
-       }}));
+       [](Editor& e, const std::vector<FormField>& fields) { resample_shown(e, fields[0].value); }}));
 }
 
 }  // namespace

@@ -67,11 +67,8 @@ std::string track_name_of(const Strips& strips) {
   return unique_track_name(strips, "Track " + std::to_string(strips.tracks.size() + 1));
 }
 
-// Adds a clip with a strip of the shown clip, and shows it.
-void make_strips(Editor& editor) {
-  stop_playing(editor);
-  settle_frame(editor);
-  Document next = editor.document();
+// Adds a clip with a strip of the shown clip to the document, and shows it. Returns the strip's name.
+std::string make_strips_in(Document& next) {
   const std::shared_ptr<const Clip> source = next.clips[static_cast<std::size_t>(next.clip)];
   Clip clip{.name = unique_clip_name(next.clips, source->name + " strips"), .rate = source->rate};
   clip.range_start = source->range_start;
@@ -82,8 +79,17 @@ void make_strips(Editor& editor) {
   clip.strips = std::make_shared<const Strips>(std::move(strips));
   next.clips.push_back(std::make_shared<const Clip>(std::move(clip)));
   next.clip = static_cast<int>(next.clips.size()) - 1;
+  return name;
+}
+
+// Adds a clip with a strip of the shown clip, and shows it.
+void make_strips(Editor& editor) {
+  stop_playing(editor);
+  settle_frame(editor);
+  Document next = editor.document();
+  const std::string source = next.shown_clip()->name, name = make_strips_in(next);
   next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  commit(editor, "Make strips of " + source->name, std::move(next));
+  commit(editor, "Make strips of " + source, std::move(next));
   show_strips(editor, true);
   choose_strip(editor, name);
 }
@@ -96,33 +102,62 @@ std::size_t track_for(Strips& strips, const Strip& strip, std::size_t from, doub
   return strips.tracks.size() - 1;
 }
 
-// Adds a strip of the clip at the frame. A strip on the lowest track begins where the body is, so that one take goes
-// on where another ends; one on a higher track lets go of the body at its ends.
-void add_strip(Editor& editor, const std::shared_ptr<const Clip>& source, int frame) {
-  std::string name;
-  const std::size_t from = active_track(editor).value_or(0);
-  const auto armature = editor.document().armature;
-  const double rate = strips_rate(editor);
+// Adds a strip of the clip at the frame, and returns its name. A strip on the lowest track begins where the body is, so
+// that one take goes on where another ends; one on a higher track lets go of the body at its ends.
+//   from  the lowest track on which it may lie
+std::string add_strip_to(Strips& strips, const std::shared_ptr<const Clip>& source, int frame, std::size_t from,
+                         const std::shared_ptr<const Armature>& armature, double rate) {
   const auto roots = armature ? std::count_if(armature->bones.begin(), armature->bones.end(),
                                               [](const Bone& bone) { return bone.parent < 0; })
                               : 0;
+  Strip strip = strip_of(source, strips, frame);
+  const std::string name = strip.name;
+  const std::size_t t = track_for(strips, strip, from, rate);
+  strip.holds = t == 0;
+  const bool follows = t == 0 && !strips.tracks[t].strips.empty() && strips.tracks[t].strips.front().start < frame;
+  insert_strip(strips.tracks[t], std::move(strip));
+  if (!follows || roots != 1) return name;
+  const StripPlace place = *find_strip(strips, name);
+  strips.tracks[place.track].strips[place.index].place = place_where_body_is(strips, place, armature, rate);
+  return name;
+}
+
+// Makes strips of the shown clip and adds another strip to them, as one edit.
+void make_strips_with(Editor& editor, const std::shared_ptr<const Clip>& source, int frame) {
+  stop_playing(editor);
+  settle_frame(editor);
+  Document next = editor.document();
+  make_strips_in(next);
+  auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
+  Clip clip = *shown;
+  Strips strips = *clip.strips;
+  const std::string name = add_strip_to(strips, source, frame, 0, next.armature, clip.rate);
+  require_within_limits(strips);
+  const StripSpan span = *span_of(strips, clip.rate);
+  clip.range_start = span.first;
+  clip.range_end = span.last;
+  clip.strips = std::make_shared<const Strips>(std::move(strips));
+  shown = std::make_shared<const Clip>(std::move(clip));
+  next.pose = pose_at_frame(next, &editor.timeline->prepared);
+  commit(editor, "Add strip of " + source->name, std::move(next));
+  show_strips(editor, true);
+  choose_strip(editor, name);
+}
+
+void add_strip(Editor& editor, const std::shared_ptr<const Clip>& source, int frame) {
+  if (!shown_strips(editor)) return make_strips_with(editor, source, frame);
+  show_strips(editor, true);
+  std::string name;
+  const std::size_t from = active_track(editor).value_or(0);
+  const double rate = strips_rate(editor);
   change_strips(editor, "Add strip of " + source->name, [&](Strips& strips) {
-    Strip strip = strip_of(source, strips, frame);
-    name = strip.name;
-    const std::size_t t = track_for(strips, strip, from, rate);
-    strip.holds = t == 0;
-    const bool follows = t == 0 && !strips.tracks[t].strips.empty() && strips.tracks[t].strips.front().start < frame;
-    insert_strip(strips.tracks[t], std::move(strip));
-    if (!follows || roots != 1) return;
-    const StripPlace place = *find_strip(strips, name);
-    strips.tracks[place.track].strips[place.index].place = place_where_body_is(strips, place, armature, rate);
+    name = add_strip_to(strips, source, frame, from, editor.document().armature, rate);
   });
   choose_strip(editor, name);
 }
 
 void ask_strip(Editor& editor) {
-  if (!shown_strips(editor)) make_strips(editor);
-  show_strips(editor, true);
+  const bool has_strips = shown_strips(editor) != nullptr;
   std::vector<std::shared_ptr<const Clip>> sources;
   std::vector<std::string> names;
   for (const auto& clip : editor.document().clips)
@@ -133,16 +168,19 @@ void ask_strip(Editor& editor) {
                  "Add",
                  {choice_of("Clip", "The clip that the strip plays.", names),
                   number_of("Start", "The frame at which it begins.", shown_frame(editor), -100'000, 1e6, "%.0f")},
-                 [sources](const Editor& e, const std::vector<FormField>& fields) {
-                   if (!shown_strips(e)) throw Error("there are no strips any more", "strip", "open this again");
+                 [=](const Editor& e, const std::vector<FormField>& fields) {
+                   if (!shown_clip(e) || (has_strips && !shown_strips(e)))
+                     throw Error("there are no strips any more", "strip", "open this again");
                    const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
                    const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
-                   return std::to_string(frames) + (frames == 1 ? " frame." : " frames of the clip.");
+                   return std::to_string(frames) + (frames == 1 ? " frame." : " frames of the clip.") +
+                          (shown_strips(e) ? "" : " A new clip plays " + shown_clip(e)->name + " as a strip, too.");
                  },
-                 [sources](Editor& e, const std::vector<FormField>& fields) {
+                 [=](Editor& e, const std::vector<FormField>& fields) {
                    const auto& source = sources[static_cast<std::size_t>(fields[0].chosen)];
                    const auto& clips = e.document().clips;
-                   if (!shown_strips(e) || std::find(clips.begin(), clips.end(), source) == clips.end())
+                   if (!shown_clip(e) || (has_strips && !shown_strips(e)) ||
+                       std::find(clips.begin(), clips.end(), source) == clips.end())
                      throw Error("the clip is not there any more", source->name, "open this again");
                    add_strip(e, source, static_cast<int>(std::lround(fields[1].value)));
                  }}));

@@ -94,7 +94,7 @@ void draw_cycles(Editor& editor, const Strip& strip, const Rect& place, Colour c
   }
 }
 
-void draw_strip(Editor& editor, const StripPlace& where) {
+void draw_strip(Editor& editor, const StripPlace& where, const StripRun& run) {
   const Look& look = editor.look;
   const StripView& view = strip_view(editor);
   const StripTrack& track = shown_strips(editor)->tracks[where.track];
@@ -108,15 +108,10 @@ void draw_strip(Editor& editor, const StripPlace& where) {
   fill(place, look.theme.panel, round);  // what lies below does not shine through
   fill(place, with_alpha(look.theme.accent_soft, alpha), round);
   draw_cycles(editor, strip, place, with_alpha(look.theme.accent_text, 0.5f * alpha));
-  const int fade_in = fade_in_of(track, where.index, strips_rate(editor));
-  const auto frames_wide = [&](int frames) {
-    return static_cast<float>(frames / editor.timeline->window.count) * editor.timeline->ruler.width();
-  };
+  const auto x = [&](int frame) { return x_of(*editor.timeline, frame); };
   ImGui::PushClipRect(im(seen.low), im(seen.high), true);
-  if (fade_in > 0)
-    draw_fade(look, {place.low.x, place.high.y}, {place.low.x + frames_wide(fade_in), place.low.y}, edge);
-  if (strip.blend_out > 0)
-    draw_fade(look, {place.high.x, place.high.y}, {place.high.x - frames_wide(strip.blend_out), place.low.y}, edge);
+  if (run.fade_in > 0) draw_fade(look, {x(run.start), place.high.y}, {x(run.start + run.fade_in), place.low.y}, edge);
+  if (run.fade_out > 0) draw_fade(look, {x(run.end), place.high.y}, {x(run.end - run.fade_out), place.low.y}, edge);
   ImGui::PopClipRect();
   outline(place, edge, round, chosen ? 2 * look.line() : look.line());
   const Rect words{{std::max(place.low.x, view.rows.low.x) + look.px(8), place.low.y},
@@ -153,12 +148,14 @@ void draw_rows(Editor& editor) {
   for (std::size_t t = 0; t < strips.tracks.size(); ++t)
     for (std::size_t i = 0; i < strips.tracks[t].strips.size(); ++i)
       if (const Strip& strip = strips.tracks[t].strips[i]; strip.holds && !strip.muted) draw_hold(editor, {t, i});
-  for (std::size_t t = 0; t < strips.tracks.size(); ++t)
+  for (std::size_t t = 0; t < strips.tracks.size(); ++t) {
+    const std::vector<StripRun> runs = runs_of(strips.tracks[t], strips_rate(editor));
     for (std::size_t i = 0; i < strips.tracks[t].strips.size(); ++i) {
       const Rect place = intersection(strip_rect(editor, {t, i}), view.rows);
       if (!place.empty()) register_widget(editor, "strip " + strips.tracks[t].strips[i].name, place);
-      draw_strip(editor, {t, i});
+      draw_strip(editor, {t, i}, runs[i]);
     }
+  }
   if (!view.box) return;
   const Rect box = intersection(*view.box, view.rows);
   fill(box, with_alpha(look.theme.select, 0.15f));

@@ -37,6 +37,7 @@ void change_one(Strips& strips, const std::string& name, const std::function<voi
   Strip* strip = find_active(strips, name);
   if (!strip) return;
   edit(*strip);
+  strip->skip = std::min(strip->skip, frames_of_cycles(*strip));
   for (StripTrack& track : strips.tracks) sort_strips(track);
 }
 

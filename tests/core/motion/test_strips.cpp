@@ -19,64 +19,9 @@
 #include "core/motion/strip_edits.h"
 #include "core/motion/strips_on_rig.h"
 #include "core/rig/mirror.h"
-#include "tests/support/sliding_walker.h"
+#include "tests/support/strip_takes.h"
 
 namespace limber::test {
-
-namespace {
-
-using SharedClip = std::shared_ptr<const Clip>;
-using Rig = std::shared_ptr<const Armature>;
-
-Rig rig() {
-  static const Rig kRig = std::make_shared<const Armature>(walker());
-  return kRig;
-}
-
-// Returns a take in which every bone turns in its own way, and the body travels and turns.
-SharedClip take(const std::string& name, int frames, int seed, double rate = 30) {
-  std::mt19937 random(static_cast<unsigned>(seed));
-  std::uniform_real_distribution<double> any(-1, 1);
-  std::vector<glm::dvec3> axes;
-  for (std::size_t bone = 0; bone < rig()->bones.size(); ++bone)
-    axes.emplace_back(any(random), any(random), any(random));
-  const auto pose_at = [&](int frame) {
-    Pose pose = rest_pose(*rig());
-    for (std::size_t bone = 0; bone < axes.size(); ++bone) {
-      const glm::dvec3 turn = std::sin(0.07 * frame + static_cast<double>(bone) + 0.5) * axes[bone];
-      pose.rotation[bone] = glm::angleAxis(glm::length(turn), glm::normalize(turn));
-    }
-    pose.root_translation = {5.0 * seed * frame, -20.0 * frame, 10 * std::sin(0.3 * frame)};
-    return pose;
-  };
-  Clip clip = clip_of(std::make_shared<const Motion>(motion_of_poses(*rig(), frames, rate, pose_at)), name);
-  clip.retarget.travel = Travel::Free;
-  return std::make_shared<const Clip>(clip);
-}
-
-Strips one_strip(const SharedClip& clip, int start) {
-  Strips strips;
-  strips.tracks.push_back({.name = "Track", .strips = {strip_of(clip, {}, start)}});
-  return strips;
-}
-Strip& only(Strips& strips) { return strips.tracks[0].strips[0]; }
-
-Pose at(const Strips& strips, int frame, double rate = 30) {
-  return StripsOnRig(std::make_shared<const Strips>(strips), rig(), rate).at(frame);
-}
-Pose at(const SharedClip& clip, int frame) { return ClipOnRig(clip, rig()).at(frame); }
-
-// The largest angle between the rotations of two poses, radians, and the distance of their roots, mm.
-double far(const Pose& a, const Pose& b) {
-  double most = glm::distance(a.root_translation, b.root_translation);
-  for (std::size_t bone = 0; bone < a.rotation.size(); ++bone) {
-    const glm::dquat between = glm::conjugate(a.rotation[bone]) * b.rotation[bone];
-    most = std::max(most, 2 * std::hypot(between.x, between.y, between.z));
-  }
-  return most;
-}
-
-}  // namespace
 
 TEST_CASE("strips: one strip with full influence is its clip, bit for bit, and holds its ends") {
   const SharedClip clip = take("walk", 40, 1);
@@ -119,7 +64,7 @@ TEST_CASE("strips: strips that overlap cross-fade, and the fade's ends are exact
   const SharedClip first = take("walk", 40, 1), second = take("sit", 40, 3);
   Strips strips = one_strip(first, 0);
   insert_strip(strips.tracks[0], strip_of(second, strips, 30));
-  CHECK(fade_in_of(strips.tracks[0], 1, 30) == 9);  // from 30 to 39, where the first strip ends
+  CHECK(runs_of(strips.tracks[0], 30)[1].fade_in == 9);  // from 30 to 39, where the first strip ends
   CHECK(at(strips, 30) == at(first, 30));
   CHECK(at(strips, 39) == at(second, 9));
   CHECK(at(strips, 45) == at(second, 15));

@@ -2,6 +2,7 @@
 // Strips in documents and projects.
 #include "core/project/strip_clips.h"
 
+#include <limits>
 #include <random>
 #include <unordered_map>
 
@@ -160,6 +161,28 @@ TEST_CASE("project: strips that are damaged are refused, whatever is wrong with 
     }
   }
   CHECK(refused > 500);
+}
+
+TEST_CASE("project: a strip that begins behind its end is refused as damaged") {
+  const auto clip = small_document().clips[1];
+  Strips strips;
+  strips.tracks.push_back({.name = "Track", .strips = {strip_of(clip, {}, 0)}});
+  Strip& strip = strips.tracks[0].strips[0];
+  strip.first = 0;
+  strip.last = 10;
+  strip.repeat = 3;
+  const auto read_back = [&](double skip) {
+    strip.skip = skip;
+    ByteWriter out;
+    put_strips(out, strips, {clip});
+    const std::string bytes = out.take();
+    ByteReader in(bytes, [] { throw Error("damaged", "here", ""); });
+    return get_strips(in, {clip});
+  };
+  for (const double skip : {0.0, 12.5, 30.0}) CHECK(read_back(skip).tracks[0].strips[0].skip == skip);
+  for (const double skip : {-1e-3, 30.1, 1e13, 1e300, std::numeric_limits<double>::infinity(),
+                            std::numeric_limits<double>::quiet_NaN()})
+    CHECK_THROWS_AS(read_back(skip), Error);
 }
 
 TEST_CASE("project: strips play a clip as it was edited, follow its new name, and go with it") {

@@ -291,7 +291,7 @@ TEST_CASE("strip view: a strip stops beside another, with Shift it overlaps and 
   test.hold(Key::Ctrl, false);
   test.hold(Key::Shift, false);
   CHECK(strip_named(*test.editor, "bending 2").start == 45);
-  CHECK(fade_in_of(strips_in(*test.editor).tracks[0], 1, 30) == 15);
+  CHECK(runs_of(strips_in(*test.editor).tracks[0], 30)[1].fade_in == 15);
   // The pose in the middle of the fade lies between both.
   const Pose pose = clip_on_rig(*test.editor)->at(52);
   CHECK(bend_of(pose) > 7);
@@ -373,6 +373,78 @@ TEST_CASE("strip view: the sidebar changes the active strip, and undo takes it b
   test.play("click \"Strip/Mirrored\"\n wait-idle");
   CHECK(strip_named(editor, "bending").mirrored);
   CHECK(test.fact("edit") == "Set strip's Mirrored");
+}
+
+TEST_CASE("strip view: Add strip changes nothing before it is confirmed, and is one edit then") {
+  Document document = limb_with_strips();
+  document.clips.resize(2);
+  document.clip = 0;
+  StripEditor test(document);
+  Editor& editor = *test.editor;
+  const auto position = editor.history.position();
+  run(editor, "strips.add");
+  test.play("wait-idle\n key Escape\n wait-idle");
+  CHECK(editor.document() == document);
+  CHECK(editor.history.position() == position);
+  run(editor, "strips.add");
+  test.play("wait-idle\n key Return\n wait-idle");
+  CHECK(editor.history.position() == position + 1);
+  REQUIRE(editor.document().clips.size() == 3);
+  CHECK(strips_in(editor).tracks.size() == 2);
+  CHECK(has_strip(editor, "bending"));
+  CHECK(has_strip(editor, "bending 2"));
+  test.undo();
+  CHECK(editor.document() == document);
+}
+
+TEST_CASE("strip view: deleting a clip says which strips go with it, and the pose is of those that are left") {
+  Document document = limb_with_strips();
+  document.clip = 1;  // the keys, which the upper track plays over the bending
+  StripEditor test(std::move(document));
+  Editor& editor = *test.editor;
+  go_to_frame(editor, 30);
+  Document shown = editor.document();
+  shown.clips = {shown.clips[0], shown.clips[2], shown.clips[1]};
+  shown.clip = 2;
+  editor.history.reset(std::move(shown), "Open limb");
+  run(editor, "motion.delete_clip");
+  test.play("wait-idle");
+  REQUIRE(editor.dialog);
+  test.play("key Escape\n wait-idle");
+  CHECK(editor.document().clips.size() == 3);
+  run(editor, "motion.delete_clip");
+  test.play("wait-idle\n key Return\n wait-idle");
+  REQUIRE(editor.document().clips.size() == 2);
+  CHECK(!has_strip(editor, "keys"));
+  CHECK(editor.document().frame == 30);
+  CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(30).epsilon(0.01));
+  // A clip that no strip plays goes at once.
+  run(editor, "motion.delete_clip");
+  CHECK(editor.document().clips.size() == 1);
+}
+
+TEST_CASE("strip view: another frame rate or speed of a clip leaves its strips the same part of it") {
+  Document document = limb_with_strips();
+  document.clip = 0;
+  StripEditor test(std::move(document));
+  Editor& editor = *test.editor;
+  const auto strips = [&]() -> const Strips& { return *editor.document().clips[2]->strips; };
+  const auto bend_at = [&](int frame) {
+    return bend_of(ClipOnRig(editor.document().clips[2], editor.document().armature).at(frame));
+  };
+  run(editor, "motion.resample");
+  test.play("wait-idle\n key Ctrl+A\n type \"60\"\n key Return\n wait-idle\n key Return\n wait-idle");
+  CHECK(editor.document().clips[0]->rate == 60);
+  CHECK(strips().tracks[0].strips[0].last == 120);
+  CHECK(strips().tracks[0].strips[0].clip == editor.document().clips[0]);
+  CHECK(end_of(strips().tracks[0].strips[0], 30) == 60);
+  for (const int frame : {5, 15, 55}) CHECK(bend_at(frame) == doctest::Approx(frame).epsilon(0.01));
+  test.undo();
+  CHECK(strips().tracks[0].strips[0].last == 60);
+  run(editor, "motion.speed");
+  test.play("wait-idle\n key Ctrl+A\n type \"2\"\n key Return\n wait-idle\n key Return\n wait-idle");
+  CHECK(strips().tracks[0].strips[0].last == 30);
+  CHECK(bend_at(10) == doctest::Approx(20).epsilon(0.01));
 }
 
 TEST_CASE("strip view: Ctrl+Tab goes through keys, curves and strips, and the button lists them") {
