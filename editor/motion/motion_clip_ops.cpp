@@ -173,12 +173,9 @@ void delete_clip(Editor& editor) {
     question.lines.resize(kListed - 1);
     question.lines.push_back("Strips of " + std::to_string(others) + " other clips go with it.");
   }
-  question.answers = {{"Cancel", {}},
-                      {"Delete",
-                       [clip](Editor& e) {
-                         if (shown_clip(e) == clip.get()) delete_shown(e);
-                       },
-                       true}};
+  question.answers = {{"Cancel", {}}, {"Delete", [clip](Editor& e) {
+                                         if (shown_clip(e) == clip.get()) delete_shown(e);
+                                       }}};
   ask(editor, std::move(question));
 }
 

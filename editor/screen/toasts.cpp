@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws toasts, which are short messages at the bottom right of the 3D view. Infos stay 4 s, warnings 8 s, errors until
-// the user closes them. At most three toasts are visible, or one if only slices are shown; a line above the toasts
-// tells how many older messages there are. While the pointer is over a toast, no toast disappears and no new toast
-// appears.
+// Draws toasts, which are short messages at the bottom right of the 3D view, or left of or above what is drawn over the
+// view there: the gizmo, legends, the scale bar, the tour's bubble, the fields of the last operation. Infos stay 4 s,
+// warnings 8 s, errors until the user closes them. At most three toasts are visible, or one if only slices are shown; a
+// line above the toasts tells how many older messages there are. While the pointer is over a toast, no toast disappears
+// and no new toast appears.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/view_projection.h"
+#include "editor/selection/transform_gizmo.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/severity_style.h"
 
@@ -137,17 +147,65 @@ bool points_at_toasts(const Editor& editor) {
   });
 }
 
-// Returns where the lower end of a toast has to be so that the toast does not cover the tour's bubble or the fields of
-// the last operation, which the user may need at the same time.
-float free_bottom(const Editor& editor, const Rect& toast) {
-  float bottom = toast.high.y;
-  for (const Widget& widget : editor.widgets.widgets()) {
-    if (widget.name != "tour/box" && !widget.name.ends_with("last operation/box")) continue;
-    const Rect kept = widget.rect.grown(editor.look.px(kGap));
-    const Rect moved{{toast.low.x, bottom - toast.height()}, {toast.high.x, bottom}};
-    if (moved.overlaps(kept)) bottom = kept.low.y;
+// Returns the rectangles that toasts leave free. Where there is no room for that, they leave the first `needed` free,
+// in which the user may have to do something at the same time.
+struct Kept {
+  std::vector<Rect> rects;
+  std::size_t needed = 0;
+};
+Kept kept_rects(const Editor& editor) {
+  Kept kept;
+  const float gap = editor.look.px(kGap);
+  const auto add = [&](const auto& is_kept) {
+    for (const Widget& widget : editor.widgets.widgets())
+      if (is_kept(std::string_view(widget.name))) kept.rects.push_back(widget.rect.grown(gap));
+  };
+  add([](std::string_view name) { return name == "tour/box" || name.ends_with("last operation/box"); });
+  kept.needed = kept.rects.size();
+  add([](std::string_view name) {
+    return name.ends_with("/legend") || name.ends_with("/scale bar") || name.starts_with("3D view/axis ");
+  });
+  for (const ViewPlace& place : editor.layout.view_places)
+    if (place.id == ViewId::Body && !place.side_a)
+      if (const auto gizmo = gizmo_rect(editor, ViewProjection(editor, place))) kept.rects.push_back(gizmo->grown(gap));
+  return kept;
+}
+
+bool is_free(const Rect& rect, std::span<const Rect> kept) {
+  return std::none_of(kept.begin(), kept.end(), [&](const Rect& one) { return rect.overlaps(one); });
+}
+
+// Returns the free rectangle of this size that is nearest to the area's lower right corner. It stands at the right, in
+// the middle or at the left of the area.
+std::optional<Rect> free_rect(const Rect& area, const glm::vec2& size, std::span<const Rect> kept) {
+  std::optional<Rect> best;
+  float least = 0;
+  for (const float right : {area.high.x, std::round(area.centre().x + size.x / 2), area.low.x + size.x}) {
+    std::vector<float> bottoms{area.high.y};
+    for (const Rect& one : kept)
+      if (one.low.y <= area.high.y && one.low.y - size.y >= area.low.y) bottoms.push_back(one.low.y);
+    for (const float bottom : bottoms) {
+      const Rect rect{{right - size.x, bottom - size.y}, {right, bottom}};
+      const float way = 0.5f * (area.high.x - right) + area.high.y - bottom;
+      if ((best && way >= least) || !is_free(rect, kept)) continue;
+      best = rect;
+      least = way;
+    }
   }
-  return bottom;
+  return best;
+}
+
+// Returns where the lowest toast is drawn: where it was, as long as it covers nothing there, so that it does not jump
+// about while the gizmo moves.
+Rect place_of_lowest(const Editor& editor, const Rect& area, const glm::vec2& size, const Kept& kept, bool held) {
+  if (const Widget* before = editor.widgets.find("toast 0/box")) {
+    const Rect rect{before->rect.high - size, before->rect.high};
+    const bool is_column =
+        rect.high.x == area.high.x || rect.low.x == area.low.x || std::abs(rect.centre().x - area.centre().x) < 1;
+    if (held || (is_column && area.contains(rect) && is_free(rect, kept.rects))) return rect;
+  }
+  if (const auto rect = free_rect(area, size, kept.rects)) return *rect;
+  return free_rect(area, size, std::span(kept.rects).first(kept.needed)).value_or(Rect{area.high - size, area.high});
 }
 
 }  // namespace
@@ -169,9 +227,10 @@ void draw_toasts(Editor& editor) {
   for (std::size_t at = toasts.size(); at-- > 0;)
     if (toasts[at].since >= 0) seen.push_back(at);
 
-  const Rect views = place_of_toasts(editor);
-  const float width = std::min(look.px(kWidth), views.width() - look.px(24)), right = views.high.x - look.px(12);
-  float bottom = views.high.y - look.px(12);
+  const Rect views = place_of_toasts(editor), area = views.grown(-look.px(12));
+  const float width = std::min(look.px(kWidth), area.width());
+  const Kept kept = kept_rects(editor);
+  float bottom = area.high.y, right = area.high.x;
   std::size_t closed = toasts.size();
   const std::size_t most = std::min(seen.size(), editor.layout.place_of(ViewId::Body) ? kMost : 1);
   std::size_t shown = 0;
@@ -179,8 +238,9 @@ void draw_toasts(Editor& editor) {
     const std::size_t at = seen[shown];
     const Toast toast = toasts[at];  // a copy, because a button of this toast may add toasts to the list
     const Shape shape = shape_of(editor, toast, width);
-    bottom = free_bottom(editor, {{right - width, bottom - shape.height}, {right, bottom}});
-    const Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
+    Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
+    if (shown == 0) rect = place_of_lowest(editor, area, rect.size(), kept, held);
+    else if (!is_free(rect, kept.rects)) break;
     const std::size_t count = toasts.size();
     const bool closes = draw_toast(editor, toast, shape, rect, static_cast<int>(shown));
     // Stop drawing, because the toast's button has changed the list.
@@ -188,6 +248,7 @@ void draw_toasts(Editor& editor) {
     if (closes) closed = at;
     if (life_of(toast.severity) < 1e9) editor.wake_at(toast.since + life_of(toast.severity) - kFadeOut);
     bottom = rect.low.y - look.px(kGap);
+    right = rect.high.x;
   }
   if (closed < toasts.size()) toasts.erase(toasts.begin() + static_cast<std::ptrdiff_t>(closed));
   else if (seen.size() > shown) draw_more(editor, seen.size() - shown, bottom, right);

@@ -302,8 +302,9 @@ void draw_scale_bar(Editor& editor, const Rect& rect, double millimetres_per_pix
   const float pixels = std::round(static_cast<float>(length / millimetres_per_pixel)),
               right = rect.high.x - look.px(28), y = rect.high.y - look.px(26);
   if (rect.width() < pixels + look.px(120)) return;
-  fill({{right - pixels - look.px(6), y - look.px(20)}, {right + look.px(6), y + look.px(8)}},
-       with_alpha(look.theme.view_plate, 0.5f), look.px(4));
+  const Rect plate{{right - pixels - look.px(6), y - look.px(20)}, {right + look.px(6), y + look.px(8)}};
+  fill(plate, with_alpha(look.theme.view_plate, 0.5f), look.px(4));
+  register_widget(editor, "scale bar", plate);
   const float line = look.line(), tick = look.px(5);
   for (const Rect& stroke : {Rect{{right - pixels, y}, {right, y + 2 * line}},
                              Rect{{right - pixels, y - tick}, {right - pixels + 2 * line, y}},

@@ -417,6 +417,14 @@ std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view) 
                      : axes_of(space, *armature, pose, *bone, view)};
 }
 
+std::optional<Rect> gizmo_rect(const Editor& editor, const ViewProjection& view) {
+  const auto gizmo = gizmo_in(editor, view);
+  const auto centre = gizmo ? view.pixel_of(gizmo->centre) : std::nullopt;
+  if (!centre) return std::nullopt;
+  const float reach = editor.look.px(static_cast<float>(gizmo->tool == Tool::Rotate ? kViewRing : kArrowEnd + kCone));
+  return Rect{glm::vec2(*centre) - reach, glm::vec2(*centre) + reach};
+}
+
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel) {
   const auto centre = view.pixel_of(gizmo.centre);
   if (!centre) return std::nullopt;

@@ -32,6 +32,8 @@ struct Gizmo {
 
 // Returns the gizmo that the selected tool shows in a view; nothing when it shows none.
 std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view);
+// Returns the rectangle that the gizmo covers in a view, pixels; nothing when there is none.
+std::optional<Rect> gizmo_rect(const Editor& editor, const ViewProjection& view);
 // Returns the part of the gizmo under the pixel; nothing when there is none.
 //   scale  scale of the interface, 1: 100 %
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel);

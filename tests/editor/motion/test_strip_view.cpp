@@ -413,7 +413,7 @@ TEST_CASE("strip view: deleting a clip says which strips go with it, and the pos
   test.play("key Escape\n wait-idle");
   CHECK(editor.document().clips.size() == 3);
   run(editor, "motion.delete_clip");
-  test.play("wait-idle\n key Return\n wait-idle");
+  test.play("wait-idle\n click Delete\n wait-idle");
   REQUIRE(editor.document().clips.size() == 2);
   CHECK(!has_strip(editor, "keys"));
   CHECK(editor.document().frame == 30);

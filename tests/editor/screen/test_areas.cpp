@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keys go to the area under the pointer, and the widget under the pointer does not move.
+#include "editor/context/view_projection.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/motion/timeline.h"
+#include "editor/selection/transform_gizmo.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/small_clip.h"
 
@@ -137,6 +139,50 @@ TEST_CASE("areas: messages stand over the 3D view and leave the slices free, and
   CHECK(test.fact("text:One more") == "absent");
   test.play("move \"Axial/view\"");
   CHECK(test.fact("text:One more") == "shown");
+}
+
+TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale bar") {
+  const auto covered = [](LimbEditor& test) {
+    Editor& editor = *test.editor;
+    editor.messages.toasts.clear();
+    test.play("wait-idle");
+    editor.messages.toast_error("It failed", "and this says why");
+    test.player.settle();
+    const Rect toast = editor.widgets.find("toast 0/box")->rect;
+    CHECK(editor.layout.place_of(ViewId::Body)->contains(toast));
+    std::string names;
+    for (const Widget& widget : editor.widgets.widgets())
+      if ((widget.name == "3D view/legend" || widget.name == "3D view/scale bar") && widget.rect.overlaps(toast))
+        names += widget.name + " ";
+    for (const ViewPlace& place : editor.layout.view_places)
+      if (place.id == ViewId::Body)
+        if (const auto gizmo = gizmo_rect(editor, ViewProjection(editor, place)); gizmo && gizmo->overlaps(toast))
+          names += "gizmo";
+    return names;
+  };
+  LimbEditor test;
+  test.play("key Ctrl+3\nwait-idle");
+  test.editor->selection.bone = 1;
+  test.editor->selection.bones = {1};
+  test.editor->tool = Tool::Rotate;
+  test.play("wait-idle");
+  const ViewPlace& body = test.editor->layout.view_places.front();
+  REQUIRE(gizmo_rect(*test.editor, ViewProjection(*test.editor, body)));
+  CHECK(covered(test) == "");
+  // The gizmo at the lower right, where messages usually are.
+  for (const float way : {120.0f, 180.0f, 300.0f}) {
+    const ViewProjection view(*test.editor, body);
+    const glm::dvec3 centre = gizmo_in(*test.editor, view)->centre;
+    const auto corner = view.in_plane(glm::dvec2(body.rect.high - way), centre, view.direction_to_eye(centre));
+    REQUIRE(corner);
+    test.editor->views->body.camera.centre += centre - *corner;
+    CHECK(covered(test) == "");
+  }
+  test.play("key Ctrl+2\nwait-idle\nclick \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
+  CHECK(test.editor->widgets.find("3D view/legend"));
+  CHECK(covered(test) == "");
+  test.play("key Ctrl+Alt+Q\nwait-idle");
+  CHECK(covered(test) == "");
 }
 
 TEST_CASE("areas: the status bar's hints are those of the timeline while the pointer is over it") {
