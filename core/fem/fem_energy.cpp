@@ -114,6 +114,8 @@ void FemEnergy::number() {
 
 Cholesky& FemEnergy::matrix() { return *matrix_; }
 
+int FemEnergy::repeated_in_double() const { return matrix_ ? matrix_->repeated_in_double() : 0; }
+
 void FemEnergy::build_broad_phase(const NodePositions& x) {
   if (contact_.empty()) return;
   const CpuTimer timer(seconds_.contact);

@@ -111,6 +111,7 @@ class FemEnergy {
 
   Cholesky& matrix();  // returns the Hessian of the last newton_step()
   int factorizations() const { return factorizations_; }
+  int repeated_in_double() const;             // number of factorizations that single precision was too inexact for
   int analyses() const { return analyses_; }  // number of analyses of the sparsity pattern, which contact changes
   FemSeconds& seconds() { return seconds_; }
 

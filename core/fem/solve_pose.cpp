@@ -187,6 +187,7 @@ ContactForm PoseSolve::contact() const {
 void PoseSolve::count_spent() {
   result_.factorizations += energy_->factorizations();
   result_.analyses += energy_->analyses();
+  result_.repeated_in_double += energy_->repeated_in_double();
   seconds_ += energy_->seconds();
 }
 

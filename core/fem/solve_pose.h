@@ -88,6 +88,7 @@ struct SolvedPose {
   double reached = 0;      // position on the path that V has reached, [0, 1]
   std::string blocked_by;  // message for the user: what stopped the solve; empty if it converged
   int steps = 0, iterations = 0, factorizations = 0, analyses = 0;
+  int repeated_in_double = 0;    // number of factorizations that single precision was too inexact for
   double residual = 0;           // longest motion of a node in the last full Newton step, mm
   double min_det_f = 1;          // smallest det F of the tets of flesh in V
   double min_det_f_of_path = 1;  // smallest det F of tets of flesh at the ends of all steps

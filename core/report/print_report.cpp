@@ -82,6 +82,9 @@ void print_solve(std::ostream& out, const Report& report, const DeformReport& de
     out << line("%s %.1f %% of the pose in %d steps, %d iterations, residual %.3f mm",
                 solve.converged ? "solved:" : "NOT SOLVED, ended at", 100 * solve.reached, solve.steps,
                 solve.iterations, solve.residual_mm);
+    if (solve.repeated_in_double > 0)
+      out << line("%d of %d factorizations repeated in double precision, as single precision was too inexact",
+                  solve.repeated_in_double, solve.factorizations);
     if (solve.sliding_nodes > 0)
       out << line("slides: %lld nodes of flesh slide over bone, the furthest by %.1f mm, off by %.2f mm at most",
                   static_cast<long long>(solve.sliding_nodes), solve.largest_slide_mm, solve.largest_slide_gap_mm);

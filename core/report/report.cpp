@@ -153,6 +153,7 @@ Json solve_of(const SolveReport& solve) {
               {"analyses", solve.analyses},
               {"residual", solve.residual_mm},
               {"bone_drift_mm", solve.bone_drift_mm}});
+  if (solve.repeated_in_double > 0) row["repeated_in_double"] = solve.repeated_in_double;
   if (solve.sliding_nodes > 0)
     row["sliding"] = {{"nodes", solve.sliding_nodes},
                       {"largest_mm", solve.largest_slide_mm},

@@ -78,8 +78,9 @@ struct SolveReport {
   double reached = 0;      // share of the way from rest to the pose that was reached, [0, 1]
   std::string blocked_by;  // message for the user: what blocks the pose; empty if the solve converged
   int steps = 0, iterations = 0, factorizations = 0;
-  int analyses = 0;        // number of analyses of the matrix's sparsity pattern; contact changes the pattern
-  double residual_mm = 0;  // longest motion of a node in the last Newton step, mm
+  int repeated_in_double = 0;  // number of factorizations that single precision was too inexact for
+  int analyses = 0;            // number of analyses of the matrix's sparsity pattern; contact changes the pattern
+  double residual_mm = 0;      // longest motion of a node in the last Newton step, mm
   // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they
   // are written at their exact positions.
   double bone_drift_mm = 0;

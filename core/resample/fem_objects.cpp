@@ -252,6 +252,7 @@ SolvedPose FemObjects::move(FemModel& model, const std::vector<RigidTransform>& 
   find_away(solved.objects);
   stay(model);
   solved.steps += from.steps, solved.iterations += from.iterations, solved.factorizations += from.factorizations;
+  solved.repeated_in_double += from.repeated_in_double;
   solved.analyses += from.analyses, solved.inverted += from.inverted, solved.seconds += from.seconds;
   solved.min_det_f_of_path = std::min(solved.min_det_f_of_path, from.min_det_f_of_path);
   return solved;
@@ -310,6 +311,7 @@ SolvedPose FemObjects::press(FemModel& model, const std::vector<RigidTransform>&
         } else {
           gentle.steps = solved.steps, gentle.iterations = solved.iterations;
           gentle.factorizations = solved.factorizations, gentle.analyses = solved.analyses;
+          gentle.repeated_in_double = solved.repeated_in_double;
           gentle.seconds = solved.seconds;
           solved = gentle, away_ = gentle_away;
         }

@@ -184,6 +184,7 @@ SolveReport report_of(const SolvedPose& solved) {
           .steps = solved.steps,
           .iterations = solved.iterations,
           .factorizations = solved.factorizations,
+          .repeated_in_double = solved.repeated_in_double,
           .analyses = solved.analyses,
           .residual_mm = solved.residual,
           .bone_drift_mm = solved.bone_drift_mm,

@@ -198,6 +198,16 @@ TEST_CASE(
   print_report(table, report);
   CHECK(table.str().find("NOT SOLVED, ended at 75.0 % of the pose") != std::string::npos);
 
+  // Factorizations in double precision are told only where there were some.
+  CHECK_FALSE(solve.contains("repeated_in_double"));
+  CHECK(table.str().find("double precision") == std::string::npos);
+  report.deform->solve->factorizations = 31;
+  report.deform->solve->repeated_in_double = 2;
+  CHECK(json::parse(to_json(report))["solve"]["repeated_in_double"] == 2);
+  std::ostringstream repeated;
+  print_report(repeated, report);
+  CHECK(repeated.str().find("2 of 31 factorizations repeated in double precision") != std::string::npos);
+
   report.deform->mesh->self_intersections = 0;
   report.deform->mesh->min_gap_mm = 0.5;
   written = json::parse(to_json(report));
