@@ -177,10 +177,27 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
   return result;
 }
 
+bool keeps_in_place(const Clip& clip) { return clip.motion && clip.retarget.travel != Travel::Free; }
+
+// Returns whether feet are planted in the poses of the body that travels. While root motion keeps the body in place no
+// foot stands. Keys of the body's shift and constraints hold where the body is, so with these it is not let go.
+bool is_let_go(const Clip& clip, const Cleaning& cleaning) {
+  return cleaning.plants_feet && keeps_in_place(clip) && clip.keys.root.empty() && !clip.constraints;
+}
+
+// Returns the clip whose poses are cleaned.
+std::shared_ptr<const Clip> cleaned_source(const std::shared_ptr<const Clip>& source, const Cleaning& cleaning) {
+  if (!is_let_go(*source, cleaning)) return source;
+  Clip travels = *source;
+  travels.retarget.travel = Travel::Free;
+  return std::make_shared<const Clip>(std::move(travels));
+}
+
 void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, int first, const Cleaning& cleaning,
              const std::shared_ptr<const Armature>& rig, const Result& result) {
   const bool is_new = cleaning.becomes == Becomes::NewClip;
   Clip clip = clip_of_poses(*source, *rig, result.poses, first);
+  if (is_let_go(*source, cleaning)) clip.retarget.travel = source->retarget.travel;
   if (is_new) clip.name += cleaning.made;
   take_in_clip(editor, source, rig, cleaning.label, std::move(clip), is_new);
   if (result.is_short) editor.messages.warn(result.line, result.detail);
@@ -194,7 +211,7 @@ void start_cleaning(Editor& editor, const Cleaning& cleaning) {
   const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
   start_task(editor, cleaning.label,
              [source, rig = editor.document().armature, cleaning, first, last](Progress& progress) -> Finish {
-               const ClipOnRig clip(source, rig);
+               const ClipOnRig clip(cleaned_source(source, cleaning), rig);
                if (!clip.problem().empty()) throw Error("the clip cannot be cleaned", source->name, clip.problem());
                const auto result = std::make_shared<const Result>(clean(clip, first, last, cleaning, progress));
                return [=](Editor& e) { take_in(e, source, first, cleaning, rig, *result); };
@@ -240,9 +257,10 @@ void ask_cleaning(Editor& editor) {
          if (cleaning.plants_feet && !feet)
            throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
          const auto [first, last] = playing_range(e);
-         const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
          return "Cleans " + frames_text(first, last) + ". The clip's keys are baked into the motion." +
-                (cleaning.plants_feet && is_locked
+                (is_let_go(*shown_clip(e), cleaning)
+                     ? " Feet are planted as the body travels; root motion then keeps it in place again."
+                 : cleaning.plants_feet && keeps_in_place(*shown_clip(e))
                      ? " Root motion keeps the body in place, so few feet stand: set it to Free first."
                      : "");
        },

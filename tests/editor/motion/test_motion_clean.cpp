@@ -94,6 +94,26 @@ TEST_CASE("cleaning clips: feet stand, the new clip plays what was computed, and
   CHECK(largest_distance(test.rig, test.limbs, test.played(), after) == 0);
 }
 
+TEST_CASE("cleaning clips: feet of a body that root motion keeps in place are planted as it travels") {
+  WalkerEditor test;
+  const auto wanted = clean_motion(test.rig, test.limbs, smoothed(test.played(), kRate, 6), kRate, true, {}, 0.15);
+  REQUIRE(wanted.plants.size() >= 4);
+  for (const Travel travel : {Travel::Locked, Travel::InPlace}) {
+    choose_clip(*test.editor, 0);
+    edit_clip(*test.editor, "Root motion", PoseThen::FromClip, [&](Clip& clip) { clip.retarget.travel = travel; });
+    test.play("click \"Motion/Clip/Clean clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle");
+    CHECK(test.fact("toast").find("No standing foot") == std::string::npos);
+    CHECK(shown_clip(*test.editor)->retarget.travel == travel);
+    if (travel == Travel::Locked)
+      for (const Pose& pose : test.played()) CHECK(glm::length(pose.root_translation) < 1e-6);
+    // Let go, the body travels, and the feet stand.
+    edit_clip(*test.editor, "Root motion", PoseThen::FromClip,
+              [&](Clip& clip) { clip.retarget.travel = Travel::Free; });
+    CHECK(test.largest_slide(wanted.plants, test.played()) < 2);
+    CHECK(largest_distance(test.rig, test.limbs, test.played(), wanted.poses) < 0.05);
+  }
+}
+
 TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with the clip's keys kept in the motion") {
   WalkerEditor test;
   // Sets a key of the spine, which carries the head and the arms.
