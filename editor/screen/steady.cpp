@@ -48,6 +48,26 @@ const Widget* with_id(const Editor& editor, ImGuiID id) {
   return nullptr;
 }
 
+// Returns the widget that must not move: the one under the pointer, or the field of a search.
+const Widget* steady_widget(const Editor& editor) {
+  if (editor.layout.sidebar.contains(editor.input.pointer)) return pointed_at(editor);
+  return editor.outliner.searching ? editor.widgets.find("sections/Outliner/search") : nullptr;
+}
+
+// Scrolls the sidebar's sections. Returns by how many pixels they will be scrolled.
+float scroll_sections(const ImGuiWindow& sidebar, float by) {
+  for (ImGuiWindow* window : ImGui::GetCurrentContext()->Windows) {
+    if (!window->Active || window->ParentWindow != &sidebar || window->Size.y < 0.9f * sidebar.Size.y) continue;
+    const float content = window->DC.CursorMaxPos.y - window->DC.CursorStartPos.y;
+    const float scroll =
+        std::clamp(window->Scroll.y + by, 0.0f, std::max(0.0f, content - window->InnerRect.GetHeight()));
+    const float way = scroll - window->Scroll.y;
+    window->Scroll.y = scroll;
+    return way;
+  }
+  return 0;
+}
+
 // Returns the id of the widget's section: "sidebar/sections/Bone/Length" is in the section Bone.
 ImGuiID section_of(const Widget& widget) {
   constexpr std::string_view kSections = "sidebar/sections/";
@@ -95,7 +115,8 @@ bool has_moved_under_pointer(Editor& editor) {
   const int state =
       static_cast<int>(editor.workspace) + 8 * static_cast<int>(rect.width()) + 65536 * static_cast<int>(rect.height());
   const bool same = noted.GetInt(kState) == state, held = editor.input.down(MouseButton::Left);
-  if (!same || (!held && !rect.contains(editor.input.pointer))) {
+  const bool points = held || rect.contains(editor.input.pointer);
+  if (!same || (!points && (shift != 0 || !steady_widget(editor)))) {
     noted.SetInt(kWidget, 0);
     noted.SetInt(kState, state);
     noted.SetFloat(kShift, 0);
@@ -110,10 +131,12 @@ bool has_moved_under_pointer(Editor& editor) {
   if (id != 0 && !scrolled && !widget && section != 0)
     way = std::round(noted.GetFloat(section) - noted.GetFloat(kHead));
   if (way != 0) {
-    noted.SetFloat(kShift, shift - way);
-    return true;
+    const float scrolled_by = scroll_sections(*window, way);
+    noted.SetFloat(kScroll, scroll + scrolled_by);
+    if (points) noted.SetFloat(kShift, shift - (way - scrolled_by));
+    if (points || scrolled_by != 0) return true;
   }
-  const Widget* now = held && id != 0 ? with_id(editor, id) : pointed_at(editor);
+  const Widget* now = held && id != 0 ? with_id(editor, id) : steady_widget(editor);
   note(noted, now, scroll);
   return false;
 }

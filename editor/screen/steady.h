@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps the sidebar's widget under the pointer at its place on the screen. If content above this widget appears,
-// disappears or grows, all sections of the sidebar are shifted to compensate for the change in height. The shift ends
-// when the pointer leaves the sidebar, or when another workspace is shown.
+// Keeps the sidebar's widget under the pointer at its place on the screen, or the field of a search while the pointer is
+// elsewhere. If content above this widget appears, disappears or grows, the sidebar is scrolled to compensate for the
+// change in height. Where it cannot be scrolled that far, its sections are shifted; the shift ends when the pointer
+// leaves the sidebar, or when another workspace is shown.
 #pragma once
 
 namespace limber::editor {

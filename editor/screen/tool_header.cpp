@@ -21,12 +21,14 @@ class Header {
   // Begins to draw the buttons of the tool header from the left.
   //   drawn         false: draws nothing, and only finds which groups of buttons fit into the header
   //   short_labels  true: buttons show icons in place of labels
-  Header(Editor& editor, bool drawn, bool short_labels)
+  //   labelled      the number of groups from the left that have labels; the others show icons
+  Header(Editor& editor, bool drawn, bool short_labels, int labelled)
       : editor_(editor),
         bar_(editor.layout.tool_header),
         x_(editor.look.px(8)),
         drawn_(drawn),
-        short_labels_(short_labels) {}
+        short_labels_(short_labels),
+        labelled_(labelled) {}
 
   // Draws a row of adjacent buttons, one for each operator, of which one is active.
   //   words  true: draws labels in place of icons, unless the header has room only for icons
@@ -161,9 +163,10 @@ class Header {
     ImGui::EndPopup();
   }
   bool dropped_any() const { return !dropped_.empty(); }
-  // Returns the width of a toggle button in this header, px at scale 1.
-  //   labelled  the button's width with a label, for a header that has room for labels
-  float toggle_width(float labelled) const { return short_labels_ ? 36 : labelled; }
+  int groups() const { return groups_; }  // so far
+  // Returns the width of a toggle button in the next group, px at scale 1.
+  //   labelled  the button's width with a label, for a group that has room for labels
+  float toggle_width(float labelled) const { return is_short(groups_ + 1) ? 36 : labelled; }
   // Returns true if a group of buttons still fits into the header. If the group does not fit, adds its operators to the
   // menu of the "..." button.
   //   width  width of the group, px at scale 1
@@ -171,6 +174,7 @@ class Header {
     return fits(width, std::vector<std::string>(ids.begin(), ids.end()));
   }
   bool fits(float width, const std::vector<std::string>& ids) {
+    ++groups_;
     if (dropped_.empty() && x_ + px(width) < right_ - px(44)) return true;
     // The operators of a choice stand between separators. Neighbouring single operators stand together.
     const bool choice = ids.size() > 1;
@@ -185,9 +189,10 @@ class Header {
   static constexpr char kSeparator[] = "-";
 
   float px(float size) const { return editor_.look.px(size); }
+  bool is_short(int group) const { return short_labels_ || group > labelled_; }
   ButtonLook face_of(const Operator& op, bool segment) const {
     const bool layout = segment && *op.icon;
-    const bool icon_alone = layout || (short_labels_ && *op.icon);
+    const bool icon_alone = layout || (is_short(groups_) && *op.icon);
     return {op.icon, icon_alone ? "" : op.label};
   }
   void place(const std::string& id, const std::string& label, float width, ButtonStyle style) {
@@ -200,6 +205,7 @@ class Header {
   Rect bar_;
   float x_, right_ = 1e9f;
   bool drawn_, short_labels_;
+  int labelled_, groups_ = 0;
   std::vector<std::string> dropped_;  // operators in the menu of the "..." button, with separators
   bool dropped_choice_ = false;       // true: the operators that were dropped last belong together
 };
@@ -301,6 +307,21 @@ void put_options(Editor& editor, Header& header) {
   }
 }
 
+// Returns how many groups have labels: as many as there are, or from the left as many as leave room for all groups.
+int labelled_groups(Editor& editor) {
+  Header all(editor, false, false, 1000);
+  put_options(editor, all);
+  if (!all.dropped_any()) return 1000;
+  int fits = 0, drops = all.groups();
+  while (drops - fits > 1) {
+    const int middle = (fits + drops) / 2;
+    Header measured(editor, false, false, middle);
+    put_options(editor, measured);
+    (measured.dropped_any() ? drops : fits) = middle;
+  }
+  return fits;
+}
+
 }  // namespace
 
 void draw_tool_header(Editor& editor) {
@@ -309,11 +330,9 @@ void draw_tool_header(Editor& editor) {
   begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
   fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
-  // First measure whether all groups of buttons fit with labels. If they do not, draw the buttons without labels.
-  // Groups that still do not fit go into the menu of the "..." button.
-  Header measured(editor, false, editor.layout.short_labels);
-  put_options(editor, measured);
-  Header header(editor, true, editor.layout.short_labels || measured.dropped_any());
+  // Groups that do not fit even without labels go into the menu of the "..." button.
+  const bool short_labels = editor.layout.short_labels;
+  Header header(editor, true, short_labels, short_labels ? 0 : labelled_groups(editor));
   put_options(editor, header);
   if (editor.layout.several()) {
     if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {

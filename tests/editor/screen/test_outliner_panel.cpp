@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "tests/editor/keyboard.h"
 #include "tests/editor/sitting.h"
 #include "tests/editor/small_limb.h"
 
@@ -187,6 +188,30 @@ TEST_CASE("outliner: what is found below the fold of the list is scrolled to, an
   test.play("key Return\n wait-idle");
   REQUIRE(test.editor->selection.bone);
   CHECK(*test.editor->selection.bone == 59);
+}
+
+TEST_CASE("outliner: a bone found by its name stays in sight when the sections above show it") {
+  for (const std::string workspace : {"key Ctrl+3", "key Ctrl+1"}) {
+    CAPTURE(workspace);
+    SmallEditor test({1280, 640});
+    test.editor->history.reset(body_with_bones(), "Open");
+    test.play(workspace + "\nwait-idle\nmove \"3D view/view\"\nkey Ctrl+F\n" +
+              "type \"Bone 2\"\nwait-idle");
+    const Widget* found = test.editor->widgets.find("Outliner/bone Bone 2/name");
+    REQUIRE(found);
+    const glm::vec2 before = found->rect.low;
+    press_key(*test.host, Key::Return);
+    for (int frame = 0; frame < 5; ++frame) {
+      test.player.step();
+      const Widget* row = test.editor->widgets.find("Outliner/bone Bone 2/name");
+      REQUIRE(row);
+      CHECK(row->rect.low == before);
+    }
+    CHECK(test.editor->selection.bone == 2);
+    test.player.settle();
+    REQUIRE(test.editor->widgets.find("Outliner/bone Bone 2/name"));
+    CHECK(test.editor->widgets.find("Outliner/bone Bone 2/name")->rect.low == before);
+  }
 }
 
 TEST_CASE("outliner: a thousand tissues cost no more than what is seen of them") {

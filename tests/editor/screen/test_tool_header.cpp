@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The tool header of a window that gets narrower.
+#include <doctest/doctest.h>
+
+#include "tests/editor/small_editor.h"
+#include "tests/editor/small_limb.h"
+
+using namespace limber;
+using namespace limber::editor;
+using namespace limber::test;
+
+TEST_CASE("tool header: as a window gets narrower, groups of the Resample workspace lose their labels one by one") {
+  std::vector<std::size_t> counts;
+  for (int width = 1700; width >= 1180; width -= 20) {
+    LimbEditor test({width, 760});
+    test.play("key Ctrl+4\nwait-idle");
+    const Rect& header = test.editor->layout.tool_header;
+    std::size_t labelled = 0;
+    for (const char* id : {"compare.side_by_side", "result.overlap", "fem.tets", "report.open", "file.export"}) {
+      const Operator* op = find_operator(*test.editor, id);
+      for (const Widget& widget : test.editor->widgets.widgets())
+        if (widget.region == Region::ToolHeader && widget.name.ends_with(id)) {
+          CHECK(widget.rect.high.x <= header.high.x);
+          labelled += widget.rect.width() > 44;
+        }
+      REQUIRE(op);
+    }
+    counts.push_back(labelled);
+  }
+  CHECK(counts.front() == 5);
+  for (std::size_t i = 1; i < counts.size(); ++i) {
+    CHECK(counts[i] <= counts[i - 1]);
+    CHECK(counts[i - 1] - counts[i] <= 1);
+  }
+  CHECK(counts.back() < 5);
+}
