@@ -31,7 +31,7 @@ class Header {
         labelled_(labelled) {}
 
   // Draws a row of adjacent buttons, one for each operator, of which one is active.
-  //   words  true: draws labels in place of icons, unless the header has room only for icons
+  //   words  true: draws labels beside icons, unless the group has room only for icons
   void segments(std::initializer_list<const char*> ids, bool words = false) {
     segments(std::vector<std::string>(ids.begin(), ids.end()), words);
   }
@@ -39,10 +39,8 @@ class Header {
     for (const std::string& id : ids) {
       const Operator* op = find_operator(editor_, id);
       ButtonLook face = face_of(*op, !words);
-      if (words && !face.label.empty()) face.icon = "";
-      const float width = *face.icon && face.label.empty()
-                              ? px(36)
-                              : std::round(text_size(editor_.look.fonts.regular, face.label).x + px(20));
+      const float width = *face.icon ? (face.label.empty() ? px(36) : width_of_button(editor_, face))
+                                     : std::round(text_size(editor_.look.fonts.regular, face.label).x + px(20));
       place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Chosen : ButtonStyle::Plain);
       x_ += px(1);
     }
@@ -283,7 +281,7 @@ void put_options(Editor& editor, Header& header) {
   }
   if (editor.workspace == Workspace::Resample) {
     const auto kCompared = {"compare.side_by_side", "compare.wipe", "compare.difference"};
-    if (header.fits(3 * header.toggle_width(88), kCompared)) header.segments(kCompared, true);
+    if (header.fits(3 * header.toggle_width(112), kCompared)) header.segments(kCompared, true);
     const auto kColours = {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy", "fem.show_gap"};
     if (header.fits(150, kColours)) header.choice("Colours", kColours);
     if (header.fits(header.toggle_width(90), {"result.overlap"})) header.toggle("result.overlap");
@@ -307,16 +305,30 @@ void put_options(Editor& editor, Header& header) {
   }
 }
 
+// Draws all buttons but the one of the menu.
+void put_buttons(Editor& editor, Header& header) {
+  put_options(editor, header);
+  if (editor.layout.several()) {
+    if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
+      header.label("Slices");
+      header.segments({"slice.show_labels", "slice.show_outlines"});
+    }
+    if (header.fits(100, {"view.cross_hair"})) header.toggle("view.cross_hair");
+  }
+  for (const char* id : {"view.clip_box", "view.clip_plane"})
+    if (header.fits(header.toggle_width(120), {id})) header.toggle(id);
+}
+
 // Returns how many groups have labels: as many as there are, or from the left as many as leave room for all groups.
 int labelled_groups(Editor& editor) {
   Header all(editor, false, false, 1000);
-  put_options(editor, all);
+  put_buttons(editor, all);
   if (!all.dropped_any()) return 1000;
   int fits = 0, drops = all.groups();
   while (drops - fits > 1) {
     const int middle = (fits + drops) / 2;
     Header measured(editor, false, false, middle);
-    put_options(editor, measured);
+    put_buttons(editor, measured);
     (measured.dropped_any() ? drops : fits) = middle;
   }
   return fits;
@@ -333,16 +345,7 @@ void draw_tool_header(Editor& editor) {
   // Groups that do not fit even without labels go into the menu of the "..." button.
   const bool short_labels = editor.layout.short_labels;
   Header header(editor, true, short_labels, short_labels ? 0 : labelled_groups(editor));
-  put_options(editor, header);
-  if (editor.layout.several()) {
-    if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
-      header.label("Slices");
-      header.segments({"slice.show_labels", "slice.show_outlines"});
-    }
-    if (header.fits(100, {"view.cross_hair"})) header.toggle("view.cross_hair");
-  }
-  for (const char* id : {"view.clip_box", "view.clip_plane"})
-    if (header.fits(header.toggle_width(120), {id})) header.toggle(id);
+  put_buttons(editor, header);
   header.more();
   end_region(editor);
 }

@@ -11,7 +11,7 @@ using namespace limber::test;
 
 TEST_CASE("tool header: as a window gets narrower, groups of the Resample workspace lose their labels one by one") {
   std::vector<std::size_t> counts;
-  for (int width = 1700; width >= 1180; width -= 20) {
+  for (int width = 1700; width >= 1180; width -= 40) {
     LimbEditor test({width, 760});
     test.play("key Ctrl+4\nwait-idle");
     const Rect& header = test.editor->layout.tool_header;
