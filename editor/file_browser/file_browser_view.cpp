@@ -5,6 +5,7 @@
 #include <imgui_internal.h>
 
 #include "core/platform/desktop.h"
+#include "core/study/text.h"
 #include "core/volume_io/volume_format.h"
 #include "editor/context/user_folders.h"
 #include "editor/dialogs/dialog.h"
@@ -320,7 +321,8 @@ void FileBrowser::draw_foot(Editor& editor, const Rect& rect) {
   } else {
     const auto count = rows_.size();
     put_text(editor, look.fonts.small, look.theme.text2, rest,
-             contents_.complete ? std::to_string(count) + (count == 1 ? " entry" : " entries") : "Reading\u2026");
+             contents_.complete ? grouped(static_cast<std::int64_t>(count)) + (count == 1 ? " entry" : " entries")
+                                : "Reading\u2026");
   }
   if (saving() && !remark_.empty()) editor.messages.warn(std::exchange(remark_, ""));
   if (pressed_accept) folders_only() ? finish_folder(editor) : accept(editor);

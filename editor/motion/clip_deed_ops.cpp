@@ -13,6 +13,7 @@
 #include "core/motion/mirror_clip.h"
 #include "core/motion/recorded_clip.h"
 #include "core/motion/strip_edits.h"
+#include "core/study/text.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
@@ -47,7 +48,7 @@ std::shared_ptr<const Clip> shared_clip(const Editor& editor) {
   return editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
 }
 
-std::string frames_text(int frames) { return std::to_string(frames) + (frames == 1 ? " frame" : " frames"); }
+std::string frames_text(int frames) { return grouped(frames) + (frames == 1 ? " frame" : " frames"); }
 
 // Throws Error if no clip or rig is left, or if the playing range has too many frames.
 void require_frames(const Editor& editor) {
@@ -228,7 +229,7 @@ void ask_loop(Editor& editor) {
          const LoopSettings settings = loop_of(fields);
          const std::int64_t frames = std::int64_t{last - first} * settings.repeats + 1;
          if (frames > kMostFrames)
-           throw Error("these repeats have too many frames", std::to_string(frames) + " frames", "enter fewer repeats");
+           throw Error("these repeats have too many frames", grouped(frames) + " frames", "enter fewer repeats");
          const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
          return frames_text(last - first + 1) + " become " + frames_text(static_cast<int>(frames)) +
                 ", keys included." +

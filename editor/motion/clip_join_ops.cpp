@@ -9,6 +9,7 @@
 #include "core/motion/motion_edit.h"
 #include "core/motion/recorded_clip.h"
 #include "core/motion/up_axis.h"
+#include "core/study/text.h"
 #include "editor/context/background_task.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/file_browser/file_browser.h"
@@ -107,7 +108,7 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
   markers.insert(std::upper_bound(markers.begin(), markers.end(), seam,
                                   [](int frame, const Marker& marker) { return frame < marker.frame; }),
                  {seam, next.name});
-  result.line = std::to_string(made.poses.size()) + " frames: " + next.name + " begins at " + std::to_string(seam);
+  result.line = grouped(std::ssize(made.poses)) + " frames: " + next.name + " begins at " + std::to_string(seam);
   if (!wish.settings.keeps_feet) return result;
   double slides = 0;
   for (const Plant& plant : made.plants) slides = std::max(slides, error_of(plant, *rig, limbs, made.poses).slide);
@@ -154,14 +155,14 @@ std::string join_outcome(const Editor& editor, const NextTake& next, const std::
     throw Error("the cross-fade is longer than a motion", std::to_string(wish.settings.fade) + " frames",
                 "enter 1 to " + std::to_string(std::min(here, there)));
   if (here + there > kMostFrames)
-    throw Error("the joined clip has too many frames", std::to_string(here + there) + " frames", "set a shorter range");
+    throw Error("the joined clip has too many frames", grouped(here + there) + " frames", "set a shorter range");
   const auto limbs = planted_limbs(*editor.document().armature);
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
   if (wish.settings.keeps_feet && !has_legs)
     throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
   const bool is_locked = shown_clip(editor)->motion && shown_clip(editor)->retarget.travel == Travel::Locked;
-  return std::to_string(here) + " frames and " + std::to_string(there) + " of " + next.name + " become " +
-         std::to_string(here + there - wish.settings.fade) + ", keys included." +
+  return grouped(here) + " frames and " + grouped(there) + " of " + next.name + " become " +
+         grouped(here + there - wish.settings.fade) + ", keys included." +
          (is_locked ? " Root motion keeps the body in place: for travel, set it to Free first." : "");
 }
 

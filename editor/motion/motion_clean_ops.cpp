@@ -11,6 +11,7 @@
 #include "core/motion/close_gap.h"
 #include "core/motion/pose_filter.h"
 #include "core/motion/recorded_clip.h"
+#include "core/study/text.h"
 #include "editor/context/background_task.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
@@ -173,7 +174,7 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
   } else {
     result.poses = smooth;
   }
-  result.line = std::to_string(result.poses.size()) + " frames cleaned";
+  result.line = grouped(std::ssize(result.poses)) + " frames cleaned";
   return result;
 }
 

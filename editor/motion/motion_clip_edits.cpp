@@ -12,6 +12,7 @@
 #include "core/motion/same_skeleton.h"
 #include "core/motion/up_axis.h"
 #include "core/project/strip_clips.h"
+#include "core/study/text.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
@@ -34,9 +35,9 @@ struct Incoming {
 
 std::string facts_of(const Motion& motion) {
   char text[160];
-  std::snprintf(text, sizeof text, "%d joints, %d frames, %.2f s at %.5g frames per second.",
-                static_cast<int>(motion.joints.size()), motion.frame_count, motion.frame_count * motion.frame_time,
-                1 / motion.frame_time);
+  std::snprintf(text, sizeof text, "%d joints, %s frames, %.2f s at %.5g frames per second.",
+                static_cast<int>(motion.joints.size()), grouped(motion.frame_count).c_str(),
+                motion.frame_count * motion.frame_time, 1 / motion.frame_time);
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include "core/motion/clip_keys.h"
 #include "core/motion/clip_speed.h"
 #include "core/project/strip_clips.h"
+#include "core/study/text.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/confirm_dialog.h"
@@ -231,8 +232,8 @@ void ask_rate(Editor& editor) {
          if (!clip)
            throw Error("the clip was deleted meanwhile", "resample", "select a clip and open the dialog again");
          const double ratio = fields[0].value / clip->rate;
-         return std::to_string(clip->range_end - clip->range_start + 1) + " frames become " +
-                std::to_string(static_cast<int>(std::round((clip->range_end - clip->range_start) * ratio)) + 1) + ".";
+         return grouped(clip->range_end - clip->range_start + 1) + " frames become " +
+                grouped(static_cast<int>(std::round((clip->range_end - clip->range_start) * ratio)) + 1) + ".";
        },
        [](Editor& e, const std::vector<FormField>& fields) { resample_shown(e, fields[0].value); }}));
 }

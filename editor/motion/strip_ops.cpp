@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/motion/recorded_clip.h"
+#include "core/study/text.h"
 #include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator.h"
@@ -173,7 +174,7 @@ void ask_strip(Editor& editor) {
                      throw Error("there are no strips any more", "strip", "open this again");
                    const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
                    const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
-                   return std::to_string(frames) + (frames == 1 ? " frame." : " frames of the clip.") +
+                   return grouped(frames) + (frames == 1 ? " frame." : " frames of the clip.") +
                           (shown_strips(e) ? "" : " A new clip plays " + shown_clip(e)->name + " as a strip, too.");
                  },
                  [=](Editor& e, const std::vector<FormField>& fields) {
@@ -199,7 +200,7 @@ void bake_strips(Editor& editor) {
     return [=](Editor& e) {
       take_in_clip(e, source, rig, "Bake strips to clip", *baked, true);
       show_face(e, TimelineFace::Rows);
-      e.messages.ok(std::to_string(baked->motion->frame_count) + " frames baked",
+      e.messages.ok(grouped(baked->motion->frame_count) + " frames baked",
                     "The clip " + shown_clip(e)->name + " plays what the strips play");
     };
   });

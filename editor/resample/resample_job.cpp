@@ -12,6 +12,7 @@
 #include "core/rig_io/rig_io.h"
 #include "core/seams/seams_io.h"
 #include "core/skin/weights_io.h"
+#include "core/study/text.h"
 #include "core/volume_io/volume_io.h"
 #include "editor/file_browser/temp_folder.h"
 #include "editor/resample/results.h"
@@ -196,9 +197,9 @@ void tell(Editor& editor, const std::string& name) {
     char line[64], detail[96];
     std::snprintf(line, sizeof line, "resampled in %.1f s", facts->seconds);
     if (facts->change_percent)
-      std::snprintf(detail, sizeof detail, "volume %+.2f %%, %lld overlap voxels", *facts->change_percent,
-                    static_cast<long long>(facts->overlap_voxels));
-    else std::snprintf(detail, sizeof detail, "%lld overlap voxels", static_cast<long long>(facts->overlap_voxels));
+      std::snprintf(detail, sizeof detail, "volume %+.2f %%, %s overlap voxels", *facts->change_percent,
+                    grouped(facts->overlap_voxels).c_str());
+    else std::snprintf(detail, sizeof detail, "%s overlap voxels", grouped(facts->overlap_voxels).c_str());
     editor.messages.ok(name + " " + line, detail, "result.show_last");
     for (const std::string& warning : facts->warnings) editor.messages.warn(name, capitalized(warning));
   }

@@ -40,10 +40,14 @@ void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>
     right -= width;
   }
   // Width of the method's name, px: enough for "FEM with contact", or in a narrow row for the start of this name.
-  const float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);
+  float method = look.px(row.width() > look.px(kNarrow) ? 124 : 56);
+  // A name that is longer than its column takes the room that the method's name leaves free.
+  const float name = row.low.x + look.px(34), gap = look.px(8);
+  const float missing = text_size(first, words[0]).x + 1 - (right - method - gap - name);
+  const float unused = method - text_size(look.fonts.regular, words[1]).x - gap;
+  method -= std::max(0.0f, std::min(missing, unused));
   put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
-  put_text(editor, first, colours[0],
-           Rect{{row.low.x + look.px(34), row.low.y}, {right - method - look.px(8), row.high.y}}, words[0]);
+  put_text(editor, first, colours[0], Rect{{name, row.low.y}, {right - method - gap, row.high.y}}, words[0]);
 }
 
 std::string side_of(const Editor& editor, const std::shared_ptr<const Result>& result) {

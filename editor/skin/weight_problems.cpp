@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/study/text.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
@@ -57,10 +58,10 @@ void start_finding_problems(Editor& editor) {
       e.skin->painting->problems = found;
       e.skin->painting->problem = -1;
       const auto count = found->problems.size();
-      e.messages.ok(
-          kFinding,
-          count == 0 ? "The weights have no problems" : std::to_string(count) + (count == 1 ? " problem" : " problems"),
-          count == 0 ? "" : "skin.next_problem");
+      e.messages.ok(kFinding,
+                    count == 0 ? "The weights have no problems"
+                               : grouped(static_cast<std::int64_t>(count)) + (count == 1 ? " problem" : " problems"),
+                    count == 0 ? "" : "skin.next_problem");
       e.touch();
     };
   });

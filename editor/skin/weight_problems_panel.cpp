@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws the list of weight problems by kind, with counts. A click on a row selects the problem and moves the views to
 // it; the row's button repairs it.
+#include "core/study/text.h"
 #include "editor/skin/weight_problems.h"
 
 #include <algorithm>
@@ -27,7 +28,7 @@ void draw_kind(Editor& editor, Column& column, WeightProblem::Kind kind, std::si
            Rect{{rect.low.x + look.px(10), rect.low.y}, {rect.high.x - look.px(50), rect.high.y}}, name_of(kind));
   put_text(editor, look.fonts.small, look.theme.text2,
            Rect{{rect.high.x - look.px(50), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}},
-           std::to_string(count), Align::Right);
+           grouped(static_cast<std::int64_t>(count)), Align::Right);
 }
 
 // Returns the text of a problem's row: the names of the problem's bones, such as "Humerus, Forearm". The heading above
@@ -53,7 +54,7 @@ void draw_problem(Editor& editor, Column& column, const FoundProblems& found, in
   const Pressed pressed = press_area(editor, "name", name);
   put_icon(look.fonts.regular, repaired ? look.theme.ok : look.theme.warn, icon, repaired ? icon::kOk : icon::kWarning);
   const Rect count{{icon.high.x, rect.low.y}, {icon.high.x + look.px(kCount), rect.high.y}};
-  put_text(editor, look.fonts.small, look.theme.text2, count, std::to_string(problem.voxels.size()), Align::Right);
+  put_text(editor, look.fonts.small, look.theme.text2, count, grouped(std::ssize(problem.voxels)), Align::Right);
   put_text(editor, look.fonts.regular, repaired ? look.theme.text2 : look.theme.text,
            Rect{{count.high.x + look.px(6), name.low.y}, name.high}, bones_of(problem, *found.armature));
   if (pressed.hovered) tooltip(editor, name, words, "Click to go to this problem.");
