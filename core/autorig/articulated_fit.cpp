@@ -443,7 +443,7 @@ std::vector<Segment> segments_of(const Armature& rig, const std::vector<std::uin
   return segments;
 }
 
-// Returns a byte per bone: 1 for bones that can be fitted to the axis of a rod (a round bar that represents a bone in
+// Returns a byte per bone: 1 for a bone that can be fitted to the axis of a rod (a round bar that represents a bone in
 // the volume). Hands, fingers and the jaw get 0, because hands are too short and have too many bones.
 std::vector<std::uint8_t> without_hands(const Armature& rig) {
   std::vector<std::uint8_t> kept;

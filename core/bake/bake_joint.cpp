@@ -25,19 +25,20 @@ namespace limber {
 
 namespace {
 
-constexpr double kLeastRange = 5, kWidest = 170;  // degrees
-// Nodes of the lattice along a tet's edge. Shifts are linear in a tet, but not from tet to tet: with half as many
-// nodes, tens of voxels of a bent elbow's crease are claimed twice.
+// degrees: smallest extent of the range, and largest angle of either end
+constexpr double kLeastRange = 5, kWidest = 170;
+// Number of lattice nodes along an edge of a tet. The shifts are linear within a tet, but change their slope from tet
+// to tet: with half as many nodes, tens of voxels in the crease of a bent elbow overlap.
 constexpr double kNodesPerTet = 4;
-constexpr int kLargestStep = 8;      // voxels between nodes
-constexpr double kNothing = 0.03;    // mm: nodes that never shift further are left out
-constexpr float kBoneCorner = 0.1f;  // weight of a corner inside bone, which is posed rigidly all the same
+constexpr int kLargestStep = 8;      // largest distance between nodes, voxels
+constexpr double kNothing = 0.03;    // mm: a shift that is never larger counts as zero; such nodes are left out
+constexpr float kBoneCorner = 0.1f;  // weight in the fit of a corner inside bone; low, as bone is posed rigidly anyway
 
-// One angle that is solved, on one side of rest.
+// One angle at which the joint is solved, on one side of rest.
 struct SolvedAngle {
   double degrees = 0;
-  bool is_baked = false;                // false: only to tell the error
-  std::vector<RigidTransform> motions;  // of the bones of the weights
+  bool is_baked = false;                // false: the solve only serves to measure the error here
+  std::vector<RigidTransform> motions;  // of the bones that the weights name
   Eigen::MatrixX3d V;
 };
 // The solves on one side of rest, which share a mesh.
@@ -48,7 +49,7 @@ struct SolvedSide {
   double tet_mm = 0;
 };
 
-// What the solves need of the body.
+// The body and its data, which all solves of a joint use.
 struct RigidTissue {
   const Body& body;
   const BoundBody& bound;
@@ -75,7 +76,8 @@ void check(const Armature& rig, int bone, const BakeSettings& settings) {
     throw Error("a joint is not baked at so many angles", std::to_string(settings.angles), "write a number of 1 to 30");
 }
 
-// Returns the angles to solve on one side of rest: the baked ones, and one before each of them to tell the error.
+// Returns the angles to solve on one side of rest: the baked ones, and halfway before each of them one at which only
+// the error is measured.
 std::vector<SolvedAngle> angles_to(double end, const BakeSettings& settings) {
   const double share = std::abs(end) / (settings.high - settings.low);
   const int baked = end == 0 ? 0 : std::max(1, static_cast<int>(std::lround(share * settings.angles)));
@@ -90,7 +92,7 @@ std::vector<SolvedAngle> angles_to(double end, const BakeSettings& settings) {
   return angles;
 }
 
-// Solves the angles on one side of rest, as far as they are reached.
+// Solves the angles on one side of rest in turn, up to the first that the solver does not reach.
 SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axis, std::vector<SolvedAngle> angles,
                       const BakeSettings& settings, JointBake& bake, Progress& progress) {
   const Body& body = tissue.body;
@@ -147,7 +149,7 @@ glm::vec3 in_half_precision(const glm::dvec3& v) {
   return half;
 }
 
-// Where a solve has the corners around the joint, minus where blending has them, mm.
+// For each corner around the joint, its position in a solve minus its position by blending, mm.
 struct SolvedCorners {
   double degrees = 0;
   bool is_baked = false;
@@ -210,7 +212,7 @@ BakeError error_at(const std::shared_ptr<const BakedJoint>& joint, double degree
     if (!corners.is_soft[c]) continue;
     const glm::dvec3 shift = to_world * glm::dvec3(flesh.shift_at(glm::dvec3(corners.corner[c])));
     const double mm = glm::distance(shift, glm::dvec3(difference[c]));
-    // Tissue that neither moves at all is no part of the joint.
+    // Corners that neither the solve nor the baked joint shifts are no part of the joint: they would lower the error.
     if (mm < kNothing && glm::length(difference[c]) < kNothing) continue;
     all.push_back(mm);
     if (corners.is_skin[c]) skin.push_back(mm);
@@ -221,7 +223,7 @@ BakeError error_at(const std::shared_ptr<const BakedJoint>& joint, double degree
           .largest_mm = most_of(all, 1)};
 }
 
-// Solves the joint on both sides of rest, as far as it is reached.
+// Solves the joint on both sides of rest, on each side up to the first angle that the solver does not reach.
 std::vector<SolvedSide> solve_sides(const RigidTissue& tissue, int bone, const BakeSettings& settings, JointBake& bake,
                                     Progress& progress) {
   std::vector<SolvedSide> sides;

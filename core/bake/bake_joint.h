@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Bakes a joint (deform/baked_joint.h): solves it by finite elements at angles from rest to either end of its range,
-// each from the shape of the angle before, and keeps what the solves do beyond blending. The angles halfway between the
-// baked ones are solved too, and used only to tell the error there.
+// each from the shape of the angle before, and stores how far the solved shapes differ from blending. The angles
+// halfway between the baked ones are solved too, and used only to tell the error there.
 //
 // All angles on one side of rest share one model: the tissue that may deform, and the ends of bones that count as part
 // of the joint, are those of the whole range, and nothing waits for contact (Fem::is_exact). Then shapes change

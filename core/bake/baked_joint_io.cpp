@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::string_view kHead = "limber baked joint 1\n";
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;
-constexpr std::size_t kLargest = std::size_t{1} << 31;  // unpacked bytes
-// Unpacked bytes per byte of the file. Deflate makes at most 1032 of one; real files have 1 to 20.
+constexpr std::size_t kLargest = std::size_t{1} << 31;  // unpacked bytes; a file that unpacks to more is refused
+// A file with more unpacked bytes per packed byte is refused. Deflate reaches 1032 at most; real files have 1 to 20.
 constexpr std::size_t kMostUnpacked = 200;
 constexpr int kMostAngles = 64, kMostStep = 64;
 constexpr std::int32_t kFurthestNode = 1 << 20;
-constexpr float kFurthestShift = 2000;  // mm
+constexpr float kFurthestShift = 2000;  // mm; a file with a larger shift is refused
 
 [[noreturn]] void damaged(const std::string& where) {
   throw Error("this is no baked joint, or it is damaged", where, "bake the joint again: limber bake-joint");
@@ -74,7 +74,7 @@ void put_nodes(ByteWriter& writer, const std::vector<std::int32_t>& nodes) {
   for (const auto& [first, count] : runs) writer.put(first), writer.put(count);
 }
 
-// Reads the nodes, which all have shifts further on.
+// Reads the places of the nodes. Their shifts follow later in the file.
 //   angles  number of angles with shifts
 std::vector<std::int32_t> get_nodes(ByteReader& reader, const glm::ivec3& size, std::size_t angles, std::size_t bytes) {
   const std::int64_t places = std::int64_t{size.x} * size.y * size.z;

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kBending = 0.01;    // a corner inside tissue weighs 1
-constexpr double kTolerance = 1e-6;  // of the residual, relative to that of zero shifts
+constexpr double kBending = 0.01;    // weight of the second sum in corner_fit.h; a corner inside tissue weighs 1
+constexpr double kTolerance = 1e-6;  // the iterations end when the residual is this share of that of zero shifts
 constexpr int kMostIterations = 400;
 
 double dot(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {
@@ -43,7 +43,7 @@ CornerFit::CornerFit(std::vector<glm::ivec3> corners, std::vector<float> weight,
   add_corners();
 }
 
-// Finds the nodes that corners have shares of, and their neighbours.
+// Lists the nodes with a share in some corner, and the neighbours of each of them.
 void CornerFit::number_nodes() {
   const std::size_t row = size_.x, slice = row * size_.y;
   index_.assign(slice * size_.z, 0);  // 1 marks a node until the nodes are counted

@@ -22,7 +22,7 @@ class CornerFit {
  public:
   //   corners  #C corners, as the voxel whose lowest corner each is; no corner twice
   //   weight   #C, each above 0
-  //   step     corners from node to node, along each axis
+  //   step     number of corners from one node to the next, along each axis
   CornerFit(std::vector<glm::ivec3> corners, std::vector<float> weight, const glm::ivec3& step);
 
   const glm::ivec3& first() const { return first_; }  // node n of the box lies at the corner (first + n) * step
@@ -48,7 +48,8 @@ class CornerFit {
   std::vector<glm::ivec3> corners_;
   std::vector<float> weight_;
   glm::ivec3 step_, first_{0}, size_{0};
-  std::vector<std::int32_t> nodes_, index_;            // index_: of each place of the box in nodes_; -1: no node
+  // nodes_: places of the nodes in the box; index_: for each place of the box, its index in nodes_, or -1
+  std::vector<std::int32_t> nodes_, index_;
   std::vector<std::int32_t> columns_;                  // #N by 27: neighbours of each node; -1: none
   std::vector<double> matrix_;                         // #N by 27
   std::vector<std::array<std::int32_t, 3>> in_a_row_;  // three nodes in a row along an axis

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 
-// Returns, for each brick, whether its tissue bends or is meshed, or that of a neighbour.
+// Returns for each brick whether tissue in it or in a neighbouring brick bends or is meshed.
 std::vector<std::uint8_t> bricks_around_joint(const TissueVoxels& tissue, const SkinWeights& weights,
                                               const std::vector<std::vector<RigidTransform>>& motions,
                                               const std::vector<const TissueMask*>& meshed) {
@@ -71,7 +71,7 @@ JointCorners joint_corners(const LabelVolume& volume, const TissueVoxels& tissue
     CornerWeights influences(tissue, weights, itself, b);
     for (int at = 0; at < 9 * 9 * 9; ++at) {
       const glm::ivec3 in(at % 9, at / 9 % 9, at / 81), corner = tissue.bricks()[b].corner + in;
-      // The first brick with tissue around a corner lists it.
+      // A corner lies in several bricks. It is listed once, by the first brick that has tissue around it.
       std::int64_t lister = -1;
       bool is_soft = false, is_skinned = false;
       for_each_around(tissue, corner, [&](const glm::ivec3& v) {
@@ -130,7 +130,7 @@ CarriedCorners::CarriedCorners(const JointCorners& corners, const LabelVolume& v
   points_ = std::make_unique<CarriedPoints>(mesh_, volume.grid, points, furthest_mm);
 }
 
-// Poses the corners of voxels that stick out of the mesh.
+// Sets the posed corners of voxels that stick out of the mesh and are pressed flat there (posed_tets.h).
 void CarriedCorners::press_riders(const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& motions,
                                   std::vector<glm::dvec3>& posed) const {
   const PosedLattice lattice(volume_, tissue_, weights_, motions, Blend::Linear, glm::dvec3(1));
@@ -151,7 +151,7 @@ std::vector<glm::dvec3> CarriedCorners::posed(const Eigen::MatrixX3d& V,
   std::vector<glm::dvec3> posed(corners_.size());
   parallel_for(corners_.size(), 4096, [&](std::int64_t begin, std::int64_t end) {
     for (auto c = begin; c < end; ++c) {
-      // Bones with the same motion count as one.
+      // The weights of bones with the same motion are added up.
       int most = -1;
       double largest = 0;
       for (auto i = corners_.offsets[c]; i < corners_.offsets[c + 1]; ++i) {

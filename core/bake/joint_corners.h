@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The corners of the voxels around a joint (lattice.h): where blending poses them, and where a solved mesh does.
+// The corners of the voxels around a joint (lattice.h), and their positions when posed by blending and by a solved
+// mesh.
 #pragma once
 
 #include <memory>
@@ -19,7 +20,7 @@ struct JointCorners {
   std::vector<std::int64_t> offsets;   // #C + 1: where the influences of each corner begin
   std::vector<BoneWeight> influences;  // ascending by bone
   std::vector<std::uint8_t> is_soft;   // #C: whether a voxel of soft tissue is around the corner
-  std::vector<std::uint8_t> is_skin;   // #C: whether a voxel of skin is
+  std::vector<std::uint8_t> is_skin;   // #C: whether a voxel of skin is around the corner
   std::int64_t size() const { return std::ssize(corner); }
 };
 
@@ -47,10 +48,10 @@ class CarriedCorners {
                  const SkinWeights& weights, const DeformingRegion& moving, std::shared_ptr<const TetMesh> mesh,
                  double furthest_mm);
 
-  // Returns the posed corners, world, mm. Corners of tissue in the mesh move with it, and those just outside are
-  // pressed flat where another part of the mesh is near, as in posed_tets.h. Corners in bone do so too, so that the
-  // cells of bone and of the flesh around it stay neighbours; bone is painted where its own motion has it. All others
-  // follow the bone whose motion has most of their weight.
+  // Returns the posed corners, world, mm. Corners of tissue in the mesh move with the mesh, and those just outside are
+  // pressed flat where another part of the mesh is near, as in posed_tets.h. Corners in bone move with the mesh too, so
+  // that the cells of bone and of the flesh around it stay neighbours; the bone itself is painted by its rigid motion.
+  // All other corners follow the bone whose motion has most of their weight.
   //   V        #V by 3 posed nodes, world, mm
   //   motions  of the bones of the weights in this pose
   std::vector<glm::dvec3> posed(const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& motions) const;
@@ -62,7 +63,7 @@ class CarriedCorners {
   const JointCorners& corners_;
   const LabelVolume& volume_;
   const TissueVoxels& tissue_;
-  SkinWeights weights_;  // rigid in tissue that does not deform, too
+  SkinWeights weights_;  // in tissue that does not deform, each voxel follows one bone
   const DeformingRegion& moving_;
   std::shared_ptr<const TetMesh> mesh_;
   std::unordered_map<std::int64_t, std::int64_t> index_;  // of each corner in the mesh, by its place in the volume

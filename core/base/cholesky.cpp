@@ -445,7 +445,7 @@ bool Cholesky::Factor::iterate() {
   better.resize(x.size());
   single.solve(residual, better);
   way = better;
-  // The residual's product with its preconditioned self is about the squared energy of the error.
+  // The dot product of the residual and the preconditioned residual is about the squared energy of the error.
   double error = dot(residual, better);
   if (!std::isfinite(error)) return false;
   const double enough = kAccuracy * kAccuracy * error;
@@ -460,7 +460,7 @@ bool Cholesky::Factor::iterate() {
       residual[i] -= length * image[i];
     }
     single.solve(residual, better);
-    // By the change of the residual instead of its whole, which stays exact with a preconditioner that rounds.
+    // Uses the change of the residual, not the whole residual (Polak-Ribiere), because the preconditioner is inexact.
     const double next = dot(residual, better);
     double turned = 0;
     for (std::size_t i = 0; i < x.size(); ++i) turned -= length * image[i] * better[i];

@@ -29,7 +29,7 @@ namespace limber {
 namespace {
 constexpr float kOne = 1, kMinusOne = -1, kZero = 0;
 constexpr int kStep = 1;
-// Wider supernodes are split, because each stores the unused triangle above its diagonal.
+// Supernodes with more columns are split, because each panel also stores the unused triangle above its diagonal.
 constexpr int kMostColumns = 256;
 
 Supernodes split(const Supernodes& wide) {

@@ -34,7 +34,8 @@ struct SparseColumns {
 
 class FloatFactor {
  public:
-  // Takes the structure of the factors of all matrices to come. Throws Error when memory does not suffice.
+  // Sets the structure, the positions of entries, that the factors of all later matrices have. Throws Error when memory
+  // does not suffice.
   void analyse(const Supernodes& supernodes);
   // Factorizes a matrix, whose entries must lie in the structure. Returns false when it is not positive definite in
   // single precision; then solve() must not be called.
@@ -45,7 +46,7 @@ class FloatFactor {
   std::int64_t size() const { return panel_first_.empty() ? 0 : panel_first_.back(); }  // numbers, 4 bytes each
 
  private:
-  // What one supernode adds to a later one: its rows [begin, end) are columns of the later supernode.
+  // The contribution of one supernode to a later one: its rows [begin, end) are columns of the later supernode.
   struct Update {
     int from;
     int begin, end;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The energy of flesh that slides along rigid bones, per node of flesh at a bone:
 //    N/2 (d(y) - d0)^2 + t/2 |y - y0|^2
-// y is the node in the bone's frame, which is where the bone's motion would have come from; y0 is its place at rest, d
-// the signed distance from the bone's surface (distance_field.h) and d0 the distance at rest. The first term is a stiff
-// spring along the surface's normal in both directions: the node neither enters the bone nor leaves it. The second is
-// the thin layer of loose tissue (fascia) between flesh and bone: a weak spring to the place at rest. This is contact
-// in both directions with a rigid distance field; nothing has to search for pairs.
+// y is the node's position in the bone's frame: its posed position, moved back by the bone's motion; y0 is its place at
+// rest, d the signed distance from the bone's surface (distance_field.h) and d0 the distance at rest. The first term is
+// a stiff spring along the surface's normal in both directions: the node neither enters the bone nor leaves it. The
+// second is the thin layer of loose tissue (fascia) between flesh and bone: a weak spring to the place at rest. This is
+// contact in both directions with a rigid distance field; nothing has to search for pairs.
 #pragma once
 
 #include <memory>
@@ -30,17 +30,18 @@ struct SlideForm {
   std::vector<Node> nodes;
   std::vector<std::shared_ptr<const DistanceField>> surface;  // by bone, at rest; null: nothing slides on it
   std::vector<RigidTransform> posed_from_rest;                // by bone
-  NodePositions moved;  // #nodes: motion that is taken off a node's position first; empty: none
+  NodePositions moved;  // #nodes: motion that is subtracted from each node's position before all else; empty: none
 
   double value(const NodePositions& x) const;
   void add_gradient(const NodePositions& x, NodePositions& gradient) const;
-  // Adds the Hessian. The projected one leaves out what the surface's curvature would take away.
+  // Adds the Hessian. The projected Hessian leaves out the negative eigenvalues that come from the surface's curvature.
   void add_curvature(const NodePositions& x, HessianKind curvature, const Cholesky& matrix,
                      std::span<const int> unknown, std::span<double> values) const;
   // Returns the Hessian of one entry of `nodes`, in the world's axes.
   Eigen::Matrix3d curvature_of(const Node& node, const NodePositions& x, HessianKind curvature) const;
 
-  // How far a node lies from its place at rest along the bone, and from its distance at rest; mm.
+  // A node's distance from its rest position along the bone's surface, and the change of its distance from the surface;
+  // mm.
   struct Slide {
     double along = 0, off = 0;
   };

@@ -17,8 +17,9 @@ namespace {
 
 // Cosine of the angle from a surface's normal within which another bone counts as in front of it.
 constexpr double kInFront = 0.5;
-// Distance from the bone's nearest voxel up to which the tissue on the bone decides, and the furthest distance of that
-// voxel, in edges of tets. Where skin is thin, the mesh's bone ends below the voxels' bone (LatticeNetSettings).
+// Distances in edges of tets. A node slides if most soft voxels on bone near it are loose tissue. The nearest of these
+// voxels must lie within kFurthest; those at most kDecides further away than the nearest one count. Where skin is thin,
+// the mesh's bone ends below the voxels' bone (LatticeNetSettings).
 constexpr double kDecides = 0.5, kFurthest = 2;
 // Of a bone's surface: the distance between the samples, the distance over which it is smoothed, and the margin around
 // the sliding nodes, in edges of tets.
@@ -179,7 +180,7 @@ void let_slide(FemModel& model, const std::vector<std::uint8_t>& slides, double 
     if (slides[v]) copy[v] = nodes + int(sliding.size()), sliding.push_back(v);
   if (sliding.empty()) return;
 
-  std::vector<std::uint16_t> region(nodes, TetMesh::kSoft);  // of the bone's tets at each node
+  std::vector<std::uint16_t> region(nodes, TetMesh::kSoft);  // bone region of the tets at each node; kSoft: none
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
     for (int& v : mesh.T.row(t)) {
       if (mesh.region[t] != TetMesh::kSoft) region[v] = mesh.region[t];

@@ -32,7 +32,7 @@ constexpr double kMaySlide = 1.01;            // allowed slide of the body's foo
 constexpr double kMayExceed[] = {0.25, 0.6};  // further allowed slide, mm: of the ankle, of the toes
 // Factor on kMayExceed for stances that are found with the full limits of speed and height.
 constexpr double kMayExceedMoving = 3;
-// In one round, an urge is multiplied by a factor within these limits.
+// Limits of the factor by which an urge is multiplied in one round.
 constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;
 // Regularization of the rotations of thigh and shank that move the ankle (turns_of_leg), as a share of the summed
 // squared lengths of thigh and shank. kMayMiss is for horizontal movement, kMayRise for vertical. The larger the share,

@@ -12,9 +12,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kFarthest = 1 << 27;  // frames
+constexpr std::int64_t kFarthest = 1 << 27;  // frames; a longer move is shortened to this
 
-// Returns the wanted number of tracks, or the nearest by which all strips come to tracks that exist.
+// Returns `wanted`, or the nearest number of tracks by which all strips move to tracks that exist.
 int fitting_tracks(const Strips& strips, const std::set<std::string>& chosen, int wanted) {
   int low = static_cast<int>(strips.tracks.size()), high = 0;
   for (int t = 0; t < std::ssize(strips.tracks); ++t)
@@ -31,9 +31,9 @@ StripMove fitting_move(const Strips& strips, const std::set<std::string>& chosen
   move.frames = static_cast<int>(std::clamp<std::int64_t>(move.frames, -kFarthest, kFarthest));
   move.tracks = fitting_tracks(strips, chosen, wanted.tracks);
   if (overlaps == Overlaps::Allowed) return move;
-  // Of each strip that moves and each that stays on the track it moves to, the frames by which they would overlap.
+  // A moving strip and a staying strip on its new track: the moves by which they would overlap, frames.
   struct Barred {
-    std::int64_t low, high;  // moves between these overlap
+    std::int64_t low, high;  // the strips overlap if the move is between these two
   };
   std::vector<Barred> barred;
   for (int t = 0; t < std::ssize(strips.tracks); ++t)

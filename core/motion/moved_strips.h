@@ -11,8 +11,8 @@
 namespace limber {
 
 struct StripMove {
-  int frames = 0;  // later
-  int tracks = 0;  // higher
+  int frames = 0;  // number of frames by which the strips move later; negative: earlier
+  int tracks = 0;  // number of tracks by which the strips move up; negative: down
 
   bool operator==(const StripMove&) const = default;
 };
@@ -25,7 +25,7 @@ enum class Overlaps { Allowed, Avoided };
 StripMove fitting_move(const Strips& strips, const std::set<std::string>& chosen, const StripMove& wanted, double rate,
                        Overlaps overlaps);
 
-// Returns the strips after a move. The tracks that it leads to must exist.
+// Returns the strips after a move. The tracks to which it moves strips must exist.
 Strips moved_strips(const Strips& strips, const std::set<std::string>& chosen, const StripMove& move);
 
 // Adds copies of strips to their tracks. Returns the names of the copies.

@@ -19,8 +19,8 @@ constexpr int kLongestEase = 2000;  // an ease of more frames is cut to this num
 // A limb is stretched at most to this share of its length, so that its knee or elbow stays slightly bent and the
 // direction of the bend is defined.
 constexpr double kStretch = 0.999;
-// A body sinks at most by this share of a leg's length so that the foot reaches its position; further, the foot stays
-// above the position.
+// Largest distance that a body sinks so that a foot reaches its position, as a share of the leg's length. If that is
+// not enough, the foot stays above the position.
 constexpr double kDeepest = 0.15;
 
 glm::dvec3 joint_of(const PosedRig& rig, const PlantedLimb& limb) {
@@ -100,7 +100,7 @@ class Planter {
   // Returns how far the body should move in a frame, mm: the weighted mean of the displacements of its planted feet. If
   // the body moves with its feet, the legs change their shape less.
   glm::dvec3 carrying(const Pose& pose, int frame) const {
-    // Weight of the displacement zero in the mean, so that one planted foot does not move the body fully.
+    // Weight in the mean of an additional displacement zero, so that one planted foot does not move the body fully.
     constexpr double kOfFree = 0.1;
     const PosedRig rig(armature_, pose);
     glm::dvec3 sum(0);

@@ -28,12 +28,13 @@ std::optional<int> whole(double number) {
   return std::abs(number - nearest) < 1e-6 ? std::optional(static_cast<int>(nearest)) : std::nullopt;
 }
 
-// Returns whether the strip's frames can be trimmed by its clip's first and last frame.
+// Returns whether the strip plays its clip's frames once, forwards and from the first: it can then be trimmed by
+// changing the first or last of these frames.
 bool plays_once(const Strip& strip) {
   return strip.repeat == 1 && strip.skip == 0 && !strip.reversed && strip.blend != StripBlend::AddChange;
 }
 
-// The frames that a clip has: those of its motion, and its playing range.
+// Returns the range of frames that contains the clip's motion and its playing range.
 StripSpan frames_of_clip(const Clip& clip) {
   StripSpan span{clip.range_start, std::max(clip.range_start, clip.range_end)};
   if (clip.motion) span = {std::min(span.first, clip.start), std::max(span.last, clip.end())};

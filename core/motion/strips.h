@@ -33,39 +33,39 @@ namespace limber {
 
 struct Clip;
 
-// How a strip changes the pose below it. Replace: bones turn towards the strip's rotations. Add: they are turned
-// further by the strip's rotations from rest, about their own axes, and a strip at rest changes nothing. AddChange:
-// likewise, by what the strip has turned since its first frame.
+// How a strip changes the pose that the strips before it have made. Replace: bones turn towards the strip's rotations.
+// Add: they are turned further by the strip's rotations from rest, about their own axes, and a strip at rest changes
+// nothing. AddChange: they are turned further by the strip's rotations since its first frame.
 enum class StripBlend : std::uint8_t { Replace, Add, AddChange };
 
 struct Strip {
   std::string name;                  // unique among the strips of a clip
   std::shared_ptr<const Clip> clip;  // never null, and without strips of its own
-  int start = 0;                     // the frame at which it begins
-  int first = 0, last = 0;           // the clip's frames that are a whole cycle of it, both included, first <= last
-  // Frames of the clip, counted in the order in which they play, that have passed when the strip begins. It may lie in
-  // a later cycle.
+  int start = 0;                     // frame at which the strip begins
+  int first = 0, last = 0;  // frames of the clip that make one cycle of the strip, both included, first <= last
+  // Number of frames of the clip that are skipped when the strip begins, counted in the order in which they play. It
+  // may be longer than a cycle.
   double skip = 0;
   double speed = 1;       // 2 plays twice as fast, [kSlowest, kFastest] of core/motion/clip_speed.h
-  double repeat = 1;      // how many cycles have passed when it ends, (0, kMostRepeats]
-  bool reversed = false;  // a cycle plays from `last` to `first`
+  double repeat = 1;      // number of cycles that have passed when the strip ends, (0, kMostRepeats]
+  bool reversed = false;  // each cycle plays from `last` to `first`
   bool mirrored = false;  // left and right are swapped
-  bool goes_on = true;    // each cycle begins at the place and with the heading at which the one before it ended
-  bool holds = true;      // its last pose stays, below later strips of its track
-  bool muted = false;     // it does not play
+  bool goes_on = true;    // each cycle begins at the position and heading at which the one before it ended
+  bool holds = true;      // true: the last pose of the strip is held below later strips of its track
+  bool muted = false;     // true: the strip does not play
   StripBlend blend = StripBlend::Replace;
-  double influence = 1;             // [0, 1]
-  int blend_in = 0, blend_out = 0;  // frames over which its influence grows at its start, and goes at its end
-  std::optional<std::set<std::string>> bones;  // names of the bones that it changes; nothing: all bones
-  GroundMove place;                            // moves and turns the body along the ground
+  double influence = 1;             // share of the pose that the strip decides, [0, 1]
+  int blend_in = 0, blend_out = 0;  // frames over which the influence grows at the start, and falls at the end
+  std::optional<std::set<std::string>> bones;  // names of the bones that the strip changes; nothing: all bones
+  GroundMove place;  // move along the ground that is applied to the body while the strip plays
 
   bool operator==(const Strip&) const = default;  // compares the pointer of the clip
 };
 
 struct StripTrack {
   std::string name;           // unique among the tracks
-  bool muted = false;         // its strips do not play
-  bool solo = false;          // only tracks with this play, if there are any
+  bool muted = false;         // true: the strips of the track do not play
+  bool solo = false;          // if any track has this, only the tracks that have it play
   std::vector<Strip> strips;  // sorted by start
 
   bool operator==(const StripTrack&) const = default;

@@ -107,7 +107,7 @@ Pose StripsOnRig::pose_of(const OnRig& one, int frame) const {
   const double steps = strip.last - strip.first;
   double passed =
       std::clamp(strip.skip + (double(frame) - strip.start) * one.ratio, std::min(strip.skip, one.total), one.total);
-  // The end of the last cycle is not the beginning of another one.
+  // At the end of the last cycle no further cycle begins.
   int cycles = 0;
   if (steps > 0) {
     cycles = static_cast<int>(std::floor(passed / steps + kWhole / steps));
@@ -122,8 +122,8 @@ Pose StripsOnRig::pose_of(const OnRig& one, int frame) const {
   return move == GroundMove{} ? pose : moved(*armature_, std::move(pose), move);
 }
 
-// A strip that replaces stays below those that begin when it has ended, so that they fade in over its last pose. One
-// that adds is followed by them, or both would add.
+// Returns whether the last pose of an ended strip is still held. A strip that replaces is held while later strips play,
+// so that they fade in over its last pose. A strip that adds is held only until a later one begins, as both would add.
 bool StripsOnRig::is_held(const std::vector<OnRig>& track, const OnRig& ended, int frame) {
   if (!ended.strip->holds || ended.strip->blend == StripBlend::Replace) return ended.strip->holds;
   return std::none_of(track.begin(), track.end(), [&](const OnRig& other) {
@@ -138,7 +138,7 @@ std::vector<StripsOnRig::Layer> StripsOnRig::layers_at(int frame) const {
     if (share > 0) layers.push_back({&one, share});
   };
   for (const std::vector<OnRig>& track : tracks_) {
-    // Where a strip ends as another begins, only the other plays.
+    // In a frame in which one strip ends and another begins, only the second plays.
     const bool begins = std::any_of(track.begin(), track.end(),
                                     [&](const OnRig& one) { return one.run.start == frame && one.run.end > frame; });
     std::vector<const OnRig*> ended, playing;
@@ -159,7 +159,7 @@ std::vector<StripsOnRig::Layer> StripsOnRig::layers_at(int frame) const {
   return layers;
 }
 
-// Returns whether nothing of the pose below a layer is left.
+// Returns whether the layer replaces the whole pose below it.
 bool StripsOnRig::covers(const Layer& layer) const {
   return layer.share == 1 && layer.strip->changes.empty() && layer.strip->strip->blend == StripBlend::Replace;
 }

@@ -29,7 +29,8 @@ class StripsOnRig {
               const StripsOnRig* before = nullptr);
 
   Pose at(int frame) const;
-  // Says which strip cannot move the rig, and why: one line; empty if all can. Such a strip plays the rest pose.
+  // Returns one line that says which strips cannot move the rig, and why; empty if all can. Such a strip plays the rest
+  // pose.
   const std::string& problem() const { return problem_; }
 
  private:
@@ -41,17 +42,17 @@ class StripsOnRig {
     StripRun run;
     std::vector<char> changes;       // for each bone, whether the strip changes it; empty: all bones
     bool changes_root = true;        // whether the strip changes the body's shift
-    GroundMove cycle;                // from the beginning of a cycle to its end
-    std::optional<Pose> first_pose;  // of strips that add their change
+    GroundMove cycle;                // move of the body from the beginning of a cycle to its end
+    std::optional<Pose> first_pose;  // first pose of the strip; only for StripBlend::AddChange
   };
   struct Layer {
     const OnRig* strip;
-    double share;  // (0, 1]
+    double share;  // influence times fade, (0, 1]
   };
 
   OnRig prepared(const Strip& strip, const StripRun& run, double rate, const StripsOnRig* before);
   void find_bones(OnRig& strip) const;
-  // Returns the pose of the clip, mirrored if the strip is, when some of its frames have passed.
+  // Returns the pose of the strip's clip after `passed` of its frames, mirrored if the strip is.
   Pose cycle_pose(const OnRig& strip, double passed) const;
   Pose pose_of(const OnRig& strip, int frame) const;
   static bool is_held(const std::vector<OnRig>& track, const OnRig& ended, int frame);
@@ -62,7 +63,7 @@ class StripsOnRig {
   std::shared_ptr<const Strips> strips_;
   std::shared_ptr<const Armature> armature_;
   std::map<const Clip*, std::shared_ptr<const ClipOnRig>> clips_;
-  std::vector<std::vector<OnRig>> tracks_;  // of those that play, without muted strips
+  std::vector<std::vector<OnRig>> tracks_;  // the strips of the playing tracks, without muted strips
   bool has_one_root_ = true;
   std::string problem_;
 };

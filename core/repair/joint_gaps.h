@@ -14,7 +14,7 @@
 
 namespace limber {
 
-// Classes of tissues. The volumes of the first three are preserved.
+// Classes of tissues. The repair preserves the volumes of the first three.
 enum class FleshClass : std::uint8_t { Skin, Fat, Muscle, Other };
 constexpr int kFleshClasses = 3;  // Skin, Fat and Muscle, whose volumes are preserved
 // Returns the class of each label.

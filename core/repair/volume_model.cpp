@@ -16,9 +16,9 @@ constexpr float kLeastVolume = 0.25f;
 // Factors of the terms of the total, chosen on the Bender arm. Smaller factors of the last three would lower the volume
 // changes at +90 degrees to 1 %, but leave ripples on the skin and bulge the upper arm.
 constexpr double kFold = 1, kOverlap = 0.5;
-constexpr double kLocal = 0.5;   // factor of this term: squared volume change of single voxels
-constexpr double kShear = 0.02;  // factor of this term: squared shear
-constexpr double kBend = 6;      // factor of this term: squared bend of the field, as the change of strain over a cell
+constexpr double kLocal = 0.5;   // factor of the sum of the squared volume changes of single voxels
+constexpr double kShear = 0.02;  // factor of the sum of the squared shears
+constexpr double kBend = 6;  // factor of the squared bend of the field, measured as the change of strain over a cell
 // Half width, in percent, of the range around 0 in which |x| is replaced by a smooth function, since the minimizer
 // needs a continuous derivative.
 constexpr double kRounding = 0.2;

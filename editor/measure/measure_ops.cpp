@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators that measure the body, and that change the list of measurements.
+// Operators that begin to measure the body, and operators that change the list of measurements.
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_polls.h"
 #include "editor/dialogs/form_dialog.h"

@@ -31,7 +31,7 @@ enum class Becomes { NewClip, SameClip };
 // Settings that say how the shown clip is cleaned. Frames of `hold` and `gap` are counted from the first frame of the
 // playing range.
 struct Cleaning {
-  std::string label, made;  // name of the edit; suffix of the new clip's name
+  std::string label, made;  // label: name of the edit; made: suffix of the new clip's name
   double smooth = 0;        // cutoff frequency of the smoothing filter, Hz; 0: not filtered
   bool plants_feet = false;
   std::optional<Plant> hold;

@@ -22,7 +22,7 @@ namespace limber::editor {
 
 namespace {
 
-// Length units that a BVH file may have, in mm; 0: the unit is found by fitting the motion to the rig.
+// Length units, in mm, among which the unit of a BVH file is selected; 0: found by fitting the motion to the rig.
 constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};
 
 // A motion that was read from a file, before the user confirms its import.

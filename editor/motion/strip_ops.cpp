@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators of the timeline's faces, and of strips and their tracks.
+// Operators that select what the timeline shows (rows, graph or strips), and operators of strips and their tracks.
 #include <algorithm>
 #include <cmath>
 
@@ -22,7 +22,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 1e6;  // upper limit on the frames that are baked at once
+constexpr std::int64_t kMostFrames = 1e6;  // strips that play more frames are not baked
 
 // ---- Why operators cannot run
 
@@ -95,7 +95,8 @@ void make_strips(Editor& editor) {
   choose_strip(editor, name);
 }
 
-// Returns the active track if it has room for the strip, or the lowest that is above it and has; otherwise a new one.
+// Returns the active track if it has room for the strip, else the lowest track above it that has room, else a new
+// track.
 std::size_t track_for(Strips& strips, const Strip& strip, std::size_t from, double rate) {
   for (std::size_t t = from; t < strips.tracks.size(); ++t)
     if (has_room(strips.tracks[t], strip.start, std::max(strip.start + 1, end_of(strip, rate)), rate)) return t;
@@ -235,7 +236,7 @@ void mute_chosen(Editor& editor) {
   });
 }
 
-// Splits the selected strips at the shown frame, or where none is selected all that play there.
+// Splits at the shown frame the selected strips or, if none is selected, all strips that play there.
 void split_at_head(Editor& editor) {
   const int frame = shown_frame(editor);
   const double rate = strips_rate(editor);

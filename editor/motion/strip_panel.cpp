@@ -68,7 +68,7 @@ void draw_tracks(Editor& editor, const Rect& area) {
 
 // ---- The strips
 
-// Darkens the corner of a strip above the line along which its influence grows or goes.
+// Darkens the corner of a strip above the line along which its influence rises or falls.
 void draw_fade(const Look& look, const glm::vec2& end, const glm::vec2& full, Colour line) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const glm::vec2 corner(end.x, full.y);
@@ -105,7 +105,7 @@ void draw_strip(Editor& editor, const StripPlace& where, const StripRun& run) {
              chosen = view.chosen.contains(strip.name);
   const float alpha = sounds ? 1.0f : 0.4f, round = look.px(kRounding);
   const Colour edge = with_alpha(chosen ? look.theme.select : look.theme.accent, chosen ? 1.0f : alpha);
-  fill(place, look.theme.panel, round);  // what lies below does not shine through
+  fill(place, look.theme.panel, round);  // covers what was drawn below, so that it does not show through
   fill(place, with_alpha(look.theme.accent_soft, alpha), round);
   draw_cycles(editor, strip, place, with_alpha(look.theme.accent_text, 0.5f * alpha));
   const auto x = [&](int frame) { return x_of(*editor.timeline, frame); };
@@ -121,7 +121,7 @@ void draw_strip(Editor& editor, const StripPlace& where, const StripRun& run) {
              sounds ? look.theme.text : look.theme.text2, words, title_of(strip));
 }
 
-// Draws a line from the end of a strip to the next one of its track, where its last pose is held.
+// Draws a line from the end of a strip that holds its last pose to the next strip of its track.
 void draw_hold(Editor& editor, const StripPlace& where) {
   const Look& look = editor.look;
   const StripView& view = strip_view(editor);
@@ -197,7 +197,7 @@ void draw_strips(Editor& editor, const Rect& rect) {
     if (empty_state(editor, all, has_strips ? "No strips yet" : "This clip has no strips", op->label)) run(editor, *op);
     return;
   }
-  scroll_tracks(editor, 0);  // fewer tracks may be left than were scrolled over
+  scroll_tracks(editor, 0);  // keeps the scroll position valid if tracks were removed
   register_widget(editor, "strips", view.rows);
   draw_tracks(editor, list);
   if (!shown_strips(editor)) return;  // a switch of a track may have replaced the document

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the strips' view in place of the timeline's rows: the tracks' names with their switches, and the strips.
+// Draws the strips in place of the timeline's rows: the tracks' names with their switches, and the strips on the
+// tracks.
 #pragma once
 
 #include "editor/motion/strip_view.h"

@@ -14,9 +14,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kFar = 1e6;  // farthest frame that can be typed
+constexpr double kFar = 1e6;  // a frame number beyond plus or minus this cannot be typed
 
-// A number of the active strip that the panel shows and changes.
+// A field for one number of the active strip.
 struct StripNumber {
   const char *title, *tip;
   double shown = 0, low = 0, high = 1;
@@ -25,7 +25,8 @@ struct StripNumber {
   std::function<void(Strip&, double)> set;
 };
 
-// Draws the field. View and body show the change while the user edits the number, and one edit is committed at the end.
+// Draws the field. The strips and the body show the change while the user edits the number, and one edit is committed
+// at the end.
 void draw_number(Editor& editor, const Rect& rect, const StripNumber& number) {
   auto& edited = editor.edited_number;
   // The field is named after its strip, so that what is typed for one strip never changes another.
@@ -151,7 +152,7 @@ void draw_blend(Editor& editor, Column& column, const Strip& strip) {
 }
 
 void draw_flags(Editor& editor, Column& column) {
-  // Over the whole width, as these names need more room than a field has.
+  // Each row has its whole width for the check boxes, as their names need more room than a field has.
   const auto row = [&] {
     const Rect all = column.row(26);
     const float edge = editor.look.px(10), gap = editor.look.px(2);
@@ -168,7 +169,7 @@ void draw_flags(Editor& editor, Column& column) {
             "Each cycle begins at the place and with the heading at which the one before it ended.", &Strip::goes_on);
 }
 
-// Draws two buttons of operators.
+// Draws two buttons that run operators, in one row.
 void draw_deeds(Editor& editor, Column& column, const std::string& title, const char* set, const char* words,
                 const char* clear) {
   const Look& look = editor.look;

@@ -15,10 +15,10 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kEnd = 6;          // width of a strip's end that trims it, pixels at scale 1
-constexpr float kSnap = 8;         // pixels at scale 1
+constexpr float kEnd = 6;          // the pointer trims a strip this close to the strip's end, pixels at scale 1
+constexpr float kSnap = 8;         // a strip snaps to a frame this close to it, pixels at scale 1
 constexpr float kStart = 3;        // the pointer moves this far before a press drags, pixels at scale 1
-constexpr double kFurthest = 1e7;  // frames
+constexpr double kFurthest = 1e7;  // frames; a drag moves strips at most this far
 
 double frames_of_pixels(const Timeline& timeline, float pixels) {
   return pixels / std::max(1.0f, timeline.ruler.width()) * timeline.window.count;
@@ -36,7 +36,7 @@ std::vector<int> snap_frames(const Editor& editor, const Strips& strips, const s
   return frames;
 }
 
-// Returns the least change of `frame` that puts it on one of the frames to snap to; nothing if none is near.
+// Returns the smallest change that moves `frame` to one of the targets; nothing if no target is near.
 std::optional<int> snap_of(const Editor& editor, const std::vector<int>& targets, int frame) {
   const double reach = frames_of_pixels(*editor.timeline, editor.look.px(kSnap));
   std::optional<int> least;
@@ -46,8 +46,8 @@ std::optional<int> snap_of(const Editor& editor, const std::vector<int>& targets
   return least;
 }
 
-// A change of strips by the pointer, as they were when it began. A job that ends in the meantime may show another clip;
-// then the change is dropped.
+// The strips at the beginning of a drag, which changes them. If a job that ends during the drag shows another clip, the
+// drag is dropped.
 struct Begun {
   std::shared_ptr<const Clip> clip;
   Strips strips;
@@ -76,7 +76,7 @@ struct Begun {
     change_strips(editor, label, [&](Strips& next) { next = *changed; });
   }
 
-  // Shows the strips moved, and returns by how much they are.
+  // Shows the strips moved as `wanted`, as far as they fit and after snapping, and returns the move that is shown.
   StripMove move(Editor& editor, StripMove wanted, bool snaps) const {
     std::optional<int> snap;
     if (snaps) {
@@ -258,7 +258,7 @@ void press_strips(Editor& editor) {
   const int t = track_at(editor, editor.input.pointer.y);
   if (t < 0 || t >= std::ssize(strips.tracks)) return draw_strip_box(editor);
   const auto track = static_cast<std::size_t>(t);
-  // Of strips that overlap, the later one lies over the others.
+  // Where strips overlap, the later one is drawn on top, so it is hit first.
   for (std::size_t i = strips.tracks[track].strips.size(); i-- > 0;) {
     const Rect place = strip_rect(editor, {track, i});
     if (!place.contains(editor.input.pointer)) continue;

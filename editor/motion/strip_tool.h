@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the pointer does in the strips' view: it selects, moves and trims strips, draws selection rectangles and pans.
+// Handles the pointer in the strips' view: selects, moves and trims strips, draws selection rectangles and pans.
 //
-// Dragged strips snap to the ends of others and to the play head; with Ctrl they do not. They stop beside others; with
-// Shift they go over them, and those of one track then cross-fade.
+// Dragged strips snap to the ends of other strips and to the play head; Ctrl switches this off. They do not overlap
+// other strips, unless Shift is held: strips of one track that overlap cross-fade.
 #pragma once
 
 #include "editor/motion/strip_view.h"

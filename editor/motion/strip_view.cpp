@@ -13,9 +13,9 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kGap = 1;  // above and below a strip in its track, pixels at scale 1
+constexpr float kGap = 1;  // free height above and below a strip in its track, pixels at scale 1
 
-// Keeps the playing range that of the strips, if it was.
+// Applies an edit of the strips. If the playing range was the range of the strips before, it is so afterwards.
 void change_clip(Clip& clip, const std::function<void(Strips&)>& edit) {
   Strips strips = clip.strips ? *clip.strips : Strips{};
   const auto before = span_of(strips, clip.rate);
@@ -32,7 +32,7 @@ Strip* find_active(Strips& strips, const std::string& name) {
   return place ? &strips.tracks[place->track].strips[place->index] : nullptr;
 }
 
-// Changes the strip, and keeps the order of its track.
+// Applies the edit to one strip, and sorts its track again.
 void change_one(Strips& strips, const std::string& name, const std::function<void(Strip&)>& edit) {
   Strip* strip = find_active(strips, name);
   if (!strip) return;
@@ -61,7 +61,7 @@ void show_strips(Editor& editor, bool on) {
     Arrangement& arrangement = editor.arrangement();
     arrangement.timeline = true;
     arrangement.console = false;
-    editor.timeline->chosen.clear();  // keys in rows that are not seen must not be changed
+    editor.timeline->chosen.clear();  // the rows of keys are hidden, and hidden keys must not be changed
   }
   editor.timeline->shows_strips = on;
   editor.touch();

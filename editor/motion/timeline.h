@@ -87,9 +87,9 @@ struct Timeline {
   std::unique_ptr<ClipOnRig> prepared;
   std::unique_ptr<FrameLog> frame_log;  // measured drawing times; null: not measured
 
-  // Whether the strips are shown in place of the markers, the clip and the keys; never together with the graph.
+  // True: the strips are shown in place of the markers, the clip and the keys. Never true together with shows_graph.
   bool shows_strips = false;
-  std::shared_ptr<StripView> strips;  // their state (editor/motion/strip_view.h); null until they are shown
+  std::shared_ptr<StripView> strips;  // state of the strips' view (editor/motion/strip_view.h); null until it is shown
 };
 
 // ---- The shown clip and frame

@@ -14,7 +14,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFurthest = 1e7;     // frame numbers are clamped to plus or minus this
-constexpr double kLeastScale = 0.01;  // factors by which time is scaled have at least this absolute value
+constexpr double kLeastScale = 0.01;  // smaller factors of time, in absolute value, are raised to this
 
 void show_under_pointer(Editor& editor) {
   const double frame =
