@@ -28,8 +28,8 @@ std::vector<std::vector<GlidedJoint>> glide_poses(std::vector<Pose>& poses, cons
                                                   const Body& body, const Armature& rig, const TissueVoxels& tissue,
                                                   SkinWeights& weights, Progress& progress);
 
-// Returns a warning with the number of voxels that two bones claim, and the joints whose bones still overlap. Returns
-// "" if there is neither.
+// Returns a warning with the number of posed voxels that two bones fill, and the joints whose bones still overlap.
+// Returns "" if there is neither.
 //   joints  the shifted joints; empty where joints do not glide
 std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joints, std::int64_t claimed_twice);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// limber bake-joint VOLUME --rig RIG --bone B [--range LOW,HIGH] [--angles N] [--weights W] [--tissues T]
-//   [--bones L,L] [--quality draft|normal|fine] [--no-contact] [--glide off|voxel|joint|MM] [--seams FILE|none]
-//   -o JOINT.bake: solves a joint by finite elements at a few angles and keeps what they do beyond blending, for
-//   limber resample --baked.
+// limber bake-joint VOLUME --rig RIG --bone B [--range LOW,HIGH] [--angles N] [--weights W] [--tissues T] [--bones L,L]
+//   [--quality draft|normal|fine] [--no-contact] [--glide off|voxel|joint|MM] [--seams FILE|none] -o JOINT.bake: solves
+//   a joint by finite elements at a few angles, and writes how far the solved shapes differ from blending, for limber
+//   resample --baked.
 #include "core/bake/bake_joint.h"
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Hashes what a joint is baked from, so that a baked joint is refused on another body.
+// Hashes the data that a joint is baked from, so that a baked joint is refused on another body.
 #pragma once
 
 #include "core/deform/baked_joint.h"
@@ -9,12 +9,13 @@
 
 namespace limber {
 
-//   is_bone  by label
-//   weights  as bound, before bone tissue is made rigid
+// Returns the hashes of a body.
+//   is_bone  1 for each label that is bone tissue
+//   weights  the bound weights, before bone tissue is made rigid
 BakeSource bake_source(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
                        const Armature& armature, const SkinWeights& weights);
 
-// Throws Error, which says what differs, when a joint was baked from another body.
+// Throws Error, which says what differs, if a joint was baked from another body.
 void check_source(const BakedJoint& joint, const BakeSource& body);
 
 }  // namespace limber

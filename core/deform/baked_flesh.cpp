@@ -18,7 +18,7 @@ glm::ivec3 floor_divided(const glm::ivec3& a, const glm::ivec3& b) {
   return glm::ivec3(glm::floor(glm::dvec3(a) / glm::dvec3(b)));
 }
 
-// Throws Error if nodes lie outside the volume, by more than the cell around its last corner.
+// Throws Error if the lattice of a joint reaches beyond the volume by more than one lattice cell.
 void check_inside(const BakedJoint& joint, const Grid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t low = std::int64_t{joint.first[axis]} * joint.step[axis];
@@ -106,7 +106,7 @@ BakedFlesh::BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::
   });
 }
 
-// Returns whether any corner from `low` to `high` has a shift.
+// Returns whether one of the nodes around the corners `low` to `high` has a shift.
 bool BakedFlesh::Field::touches(const glm::ivec3& low, const glm::ivec3& high) const {
   const glm::ivec3 from = glm::max(floor_divided(low, step) - first, glm::ivec3(0));
   const glm::ivec3 to = glm::min(-floor_divided(-high, step) - first, size - 1);
@@ -119,11 +119,11 @@ bool BakedFlesh::Field::touches(const glm::ivec3& low, const glm::ivec3& high) c
 
 BakedFlesh::Field::Along BakedFlesh::Field::along(int axis, double place) const {
   const double node = place / step[axis] - first[axis], low = std::floor(node);
-  // Places beyond the box come to lie just outside it.
+  // A place outside the box gets the nearest position just outside it, where shifts are zero.
   return {static_cast<int>(std::clamp(low, -2.0, double(size[axis]))), static_cast<float>(node - low)};
 }
 
-// Returns the shift between eight nodes. Nodes outside the box have none.
+// Returns the shift at a place between eight nodes. Nodes outside the box have the shift zero.
 glm::vec3 BakedFlesh::Field::between(const Along& x, const Along& y, const Along& z) const {
   glm::vec3 sum(0);
   for (int k = 0; k < 2; ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shifts of baked joints (baked_joint.h) in one pose. Shifts of several joints add up.
+// The shifts that baked joints (baked_joint.h) add to blended tissue in one pose. Shifts of several joints add up.
 #pragma once
 
 #include <array>
@@ -12,16 +12,16 @@
 
 namespace limber {
 
-// A baked joint in a pose.
+// A baked joint, and the rotation that it has in a pose.
 struct BentJoint {
   std::shared_ptr<const BakedJoint> baked;
-  double degrees = 0;                  // its turn about the baked axis
+  double degrees = 0;                  // rotation of the joint about the baked axis
   glm::dquat parent_turn{1, 0, 0, 0};  // rotation, from rest, of the bone above the joint
 
   bool operator==(const BentJoint&) const = default;
 };
 
-// The nodes of a baked joint around a place, with their trilinear shares.
+// Finds the lattice nodes of a baked joint around a place, and their trilinear weights.
 class BakedSampler {
  public:
   // Keeps a reference to the joint, which must outlive this object.
@@ -30,24 +30,25 @@ class BakedSampler {
 
   struct Shares {
     int count = 0;                     // 0: no node with a shift is around the place
-    std::array<std::int32_t, 8> node;  // index into BakedJoint::nodes
+    std::array<std::int32_t, 8> node;  // indices in BakedJoint::nodes
     std::array<float, 8> share;
   };
-  //   place  in units of voxels, where the lowest corner of voxel v is v
+  // Returns the nodes with shifts around a place.
+  //   place  in units of voxels; voxel v begins at v, its lowest corner
   Shares at(const glm::dvec3& place) const;
-  // Returns the nearest node with a shift, at most `reach` voxels away along each axis, with the whole share.
+  // Returns the nearest node with a shift, at most `reach` voxels away along each axis, with the weight 1.
   Shares nearest(const glm::ivec3& place, int reach) const;
 
  private:
   const BakedJoint* joint_;
-  std::vector<std::int32_t> index_;  // of each place of the box in the joint's nodes; -1: none
+  std::vector<std::int32_t> index_;  // for each place of the box, its index in BakedJoint::nodes; -1: no shift there
 };
 
 class BakedFlesh final : public FleshShifts {
  public:
-  // Keeps a reference to `tissue`, which must outlive this object. Joints at rest have no shifts.
-  //   grid  of the volume
-  //   throws Error when a joint was baked from a larger volume
+  // Keeps a reference to `tissue`, which must outlive this object. Ignores joints that are at rest.
+  //   grid    the volume's grid
+  //   throws  Error when a joint was baked from a larger volume
   BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::vector<BentJoint>& joints);
 
   bool empty() const { return fields_.empty(); }  // true if no corner has a shift
@@ -55,19 +56,19 @@ class BakedFlesh final : public FleshShifts {
   bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const override;
   glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const override;
   bool bends(std::int64_t brick) const override { return bends_[brick]; }
-  // Returns the shift at a place in units of voxels, where the lowest corner of voxel v is v.
+  // Returns the shift at a place, which is in units of voxels; voxel v begins at v, its lowest corner.
   glm::vec3 shift_at(const glm::dvec3& place) const;
 
  private:
-  // The shifts of one joint.
+  // The shifts of one joint at the nodes of its lattice.
   struct Field {
-    // The two nodes around a place along one axis: `low` and the next; `share` is that of the next.
+    // The two nodes around a place along one axis: node `low` and the next one, which has the weight `share`.
     struct Along {
       int low;
       float share;
     };
     glm::ivec3 step, first, size;
-    std::vector<glm::vec3> shift;  // of each node of the box, voxels; zero for nodes without one
+    std::vector<glm::vec3> shift;  // shift of each node of the box, voxels; zero if none is stored
 
     bool touches(const glm::ivec3& low, const glm::ivec3& high) const;
     void add(const glm::ivec3& low, CornerShifts& shifts) const;
@@ -78,7 +79,7 @@ class BakedFlesh final : public FleshShifts {
 
   const TissueVoxels* tissue_;
   std::vector<Field> fields_;
-  std::vector<std::uint8_t> bends_;  // by brick
+  std::vector<std::uint8_t> bends_;  // for each brick, whether a shift bends it
 };
 
 }  // namespace limber

@@ -9,8 +9,8 @@ namespace limber {
 
 namespace {
 
-// Adds `factor` times the slope at x[at] of the parabola through the three angles around it. With two angles it is the
-// slope of the line.
+// Adds to `shares` the weights, times `factor`, whose sum of values is the slope at x[at] of the parabola through three
+// neighbouring angles. If there are only two angles, uses the slope of the line.
 void add_slope(const std::vector<double>& x, int at, double factor, std::vector<double>& shares) {
   const int last = static_cast<int>(x.size()) - 1;
   if (last == 1) {
@@ -21,7 +21,7 @@ void add_slope(const std::vector<double>& x, int at, double factor, std::vector<
   const int middle = std::clamp(at, 1, last - 1);
   const int three[3] = {middle - 1, middle, middle + 1};
   for (int i = 0; i < 3; ++i) {
-    // The derivative of Lagrange's polynomial of angle i.
+    // The derivative of the Lagrange polynomial that is 1 at this angle and 0 at the other two.
     const int j = three[(i + 1) % 3], k = three[(i + 2) % 3], own = three[i];
     shares[own] += factor * (2 * x[at] - x[j] - x[k]) / ((x[own] - x[j]) * (x[own] - x[k]));
   }
@@ -47,7 +47,7 @@ TurnAboutAxis turn_about_axis(const glm::dquat& turn, const glm::dvec3& axis) {
   double degrees = glm::degrees(2 * std::atan2(along, turn.w));
   if (degrees > 180) degrees -= 360;
   if (degrees <= -180) degrees += 360;
-  // What is left turns about an axis that is perpendicular to `axis`.
+  // The remaining rotation is about an axis perpendicular to `axis`.
   const double about = std::min(1.0, std::hypot(along, turn.w));
   return {degrees, glm::degrees(2 * std::acos(about))};
 }

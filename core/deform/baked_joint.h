@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A baked joint: what finite elements do to the flesh around a joint beyond what blending by dual quaternions does, at
-// a few angles of the joint. Solved once (core/bake/bake_joint.h), it makes every pose of the joint look as if it had
-// been solved, at the cost of blending.
+// A baked joint: the difference between finite elements and blending by dual quaternions, in the flesh around a joint
+// at a few of its angles. Solved once (core/bake/bake_joint.h), it makes every pose of the joint look as if it had been
+// solved, at the cost of blending.
 //
-// The joint turns about one axis. At each baked angle the nodes of a lattice hold the shift from the blended place of
-// the flesh there to its solved place, along the axes of the bone above the joint. Between the angles shifts follow a
-// cubic curve that passes through the shifts of the baked angles, with the slopes of parabolas through three of them
-// [Catmull & Rom 1974, A class of local interpolating splines, for unequal distances]; between the nodes they are
-// interpolated trilinearly. At rest the shift is exactly zero.
+// The joint turns about one axis. At each baked angle the nodes of a lattice store the vector from the blended position
+// of the flesh at the node to its solved position, along the axes of the bone above the joint. Between the angles
+// shifts follow a cubic curve that passes through the shifts of the baked angles, with the slopes of parabolas through
+// three of them [Catmull & Rom 1974, A class of local interpolating splines, for unequal distances]; between the nodes
+// they are interpolated trilinearly. At rest the shift is exactly zero.
 //
 // Joints with cardinal correctives of this kind: Kry, James & Pai 2002, EigenSkin.
 #pragma once
@@ -34,10 +34,11 @@ struct BakeSource {
   bool operator==(const BakeSource&) const = default;
 };
 
-// How far a baked joint is from finite elements at one angle, over the corners of the voxels of soft tissue.
+// The distances between the baked joint and finite elements at one angle, over the corners of the voxels of soft
+// tissue.
 struct BakeError {
   double degrees = 0;
-  double flesh_mm = 0, skin_mm = 0;  // 95 % of all soft tissue, and of skin, are nearer
+  double flesh_mm = 0, skin_mm = 0;  // 95 % of the distances in soft tissue, and in skin, are smaller
   double largest_mm = 0;
 
   bool operator==(const BakeError&) const = default;
@@ -48,33 +49,34 @@ struct BakedJoint {
   glm::dvec3 axis{0};           // unit axis about which the joint turns, world at rest
   std::vector<double> degrees;  // #A baked angles from rest, ascending; one of them is 0
   BakeSource source;
-  std::string glide;                         // the word of core/body/glide_poses.h by which joints glided
-  std::string quality;                       // of the tets: draft, normal or fine
-  bool contact = true;                       // whether skin touched skin instead of passing through
+  std::string glide;    // setting by which joints glided in the solves: a word of core/body/glide_poses.h
+  std::string quality;  // quality of the tet mesh: draft, normal or fine
+  bool contact = true;  // true: skin touched skin in the solves instead of passing through
   std::vector<BakeError> at_baked, between;  // errors at the baked angles, and at angles between them, ascending
 
-  // Node n of the box `size` lies at the corner (first + n) * step of the voxels: corner c is the lowest corner of
-  // voxel c.
+  // Node n of the lattice, a box of `size` nodes, lies at the lowest corner of voxel (first + n) * step.
   glm::ivec3 step{1}, first{0}, size{0};
-  std::vector<std::int32_t> nodes;  // #N places in the box, x fastest, of the nodes that have shifts; ascending
-  // #A lists of #N shifts, mm, in the precision of half floats; the list of the angle 0 is empty.
+  std::vector<std::int32_t> nodes;  // #N indices of the nodes that have shifts, in the box with x fastest; ascending
+  // #A lists of #N shifts, mm, rounded to half precision. The list for the angle 0 is empty.
   std::vector<std::vector<glm::vec3>> shifts;
 
   bool operator==(const BakedJoint&) const = default;
 };
 
-// Returns the error between baked angles that is largest by its skin_mm or flesh_mm; zero if none is known.
+// Returns the largest errors of all angles between baked ones, and the angle with the worst of them; zero if there are
+// none.
 BakeError worst_between(const BakedJoint& joint);
 
-// The turn of a joint as far as it is about an axis.
+// A rotation split into its part about an axis and the remaining part.
 struct TurnAboutAxis {
-  double degrees = 0;        // (-180, 180]
-  double other_degrees = 0;  // the angle of the rest of the turn, [0, 180]
+  double degrees = 0;        // angle about the axis, (-180, 180]
+  double other_degrees = 0;  // angle of the remaining rotation, [0, 180]
 };
 TurnAboutAxis turn_about_axis(const glm::dquat& turn, const glm::dvec3& axis);
 
-// Returns the share of each baked angle in the shifts at an angle, at most four of them, ascending by angle; no share
-// for the angle 0. Angles beyond the baked ones count as the last of them.
+// Returns the weights of the baked angles in the shift at an angle, at most four, as pairs (index of the baked angle,
+// weight), ascending. The baked angle 0 has no shift and gets no weight. Beyond the baked angles, the nearest one
+// counts.
 std::vector<std::pair<int, double>> shares_at(const std::vector<double>& degrees, double angle);
 
 }  // namespace limber

@@ -52,7 +52,7 @@ struct CellPiece {
 //   spacing  size of a voxel, mm
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing);
-// The same as cell_pieces() above, but only for the given bricks (indices into tissue.bricks()).
+// Does the same as cell_pieces() above, but only for the given bricks (indices into tissue.bricks()).
 std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights& weights, int step,
                                    const glm::dvec3& spacing, std::span<const std::int64_t> bricks);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Corrections that are added to blended tissue, as shifts of the corners of its voxels: the volume that flesh gets back
-// (settled_flesh.h), or what finite elements do at a joint (baked_flesh.h). Shifts are in voxels along the axes of the
+// Corrections that are added to blended tissue, as shifts of the corners of its voxels: those that restore the volume
+// of flesh (settled_flesh.h), and those of baked joints (baked_flesh.h). Shifts are in voxels along the axes of the
 // posed volume. A corner has one shift, whichever brick asks for it, so that posed cells leave no gap.
 #pragma once
 
@@ -19,11 +19,11 @@ class FleshShifts {
   using CornerShifts = std::array<glm::vec3, 729>;
   // Computes the corner shifts of a brick. Returns whether it has any; if not, `shifts` is not written.
   virtual bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const = 0;
-  // Returns the shift of one corner of a voxel near a seam.
-  //   lowest  the lowest of the eight voxels around the corner
-  //   around  bits of those of the eight voxels whose cells give the shift: bit 0 for the lowest, and x fastest; not 0
+  // Returns the shift of one corner of a voxel near a seam. lowest the lowest of the eight voxels around the corner
+  //   around one bit for each of the eight voxels around the corner, x fastest: 1 if the voxel's cell contributes to
+  //   the shift; not 0
   virtual glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const = 0;
-  // Returns whether the shifts bend a brick also where its tissue follows one bone.
+  // Returns whether the shifts bend the tissue of a brick even if all of it follows one bone.
   virtual bool bends(std::int64_t brick) const = 0;
 };
 

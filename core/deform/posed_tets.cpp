@@ -20,7 +20,8 @@ constexpr int kPosedBin = 16;  // edge of a search bin, voxels: a quarter of an 
 // overlapping if they are at most this far apart at rest, voxels. A crease may press them together: riders stick out by
 // two voxels on both sides, and the crease is one voxel wide.
 constexpr int kCrease = 5;
-constexpr int kSlides = 1 << 20;  // the same for flesh that slides over bone, which may come from anywhere
+// as kCrease, but for flesh that slides over bone: it may come from anywhere, so nothing counts as overlapping
+constexpr int kSlides = 1 << 20;
 constexpr int kSide = TissueVoxels::kBrick + 1;
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }

@@ -500,7 +500,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
                     "check the pose and the rig");
     return FixedPoint(std::lrint(at.x * kFixedOne), std::lrint(at.y * kFixedOne), std::lrint(at.z * kFixedOne));
   };
-  // Returns whether a baked joint moves a vertex otherwise than before.
+  // Returns true if this update changes a vertex's shift by baked joints.
   const auto shifts_anew = [&](std::int64_t place) { return shifts && shifts_.has_changed(place); };
   // Returns the posed position of a vertex. If `motion` is not null, also writes the blended motion of the vertex's
   // bones to it; cells that bend need this motion.

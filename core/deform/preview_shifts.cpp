@@ -7,8 +7,8 @@
 
 namespace limber {
 
-// Returns the shifts of the vertices of cells. The nodes of a joint may lie in tissue alone, but the cells around the
-// skin have vertices in air: these take the shift of the nearest node.
+// Computes the shifts of a joint at the lattice's vertices. The joint may have nodes only in tissue. So vertices in the
+// air around the skin get the shift of the nearest node.
 PreviewShifts::Table PreviewShifts::sampled(const PreviewLattice& lattice, const BakedJoint& joint) {
   const BakedSampler sampler(joint, lattice.grid);
   std::vector<std::uint8_t> is_vertex(lattice.places(), 0);
@@ -52,7 +52,7 @@ bool PreviewShifts::set(const PreviewLattice& lattice, const std::vector<BentJoi
   } else {
     std::fill(shift_.begin(), shift_.end(), glm::vec3(0));
     std::fill(is_near_.begin(), is_near_.end(), 0);
-    // Vertices of joints that are no longer given have changed, too.
+    // The shift of a vertex near a joint that is no longer given has changed too.
     for (const Table& table : tables_)
       for (const std::int32_t place : table.places) is_near_[place] = 1;
     tables_.clear();

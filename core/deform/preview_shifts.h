@@ -25,15 +25,17 @@ class PreviewShifts {
 
  private:
   struct Table {
-    std::vector<std::int32_t> places;              // vertices with shifts
-    std::vector<std::vector<glm::vec3>> by_angle;  // mm, for each baked angle; empty for 0
+    std::vector<std::int32_t> places;  // indices of the vertices that have shifts
+    // shifts of these vertices for each baked angle, mm; empty for the angle 0
+    std::vector<std::vector<glm::vec3>> by_angle;
   };
   static Table sampled(const PreviewLattice& lattice, const BakedJoint& joint);
 
   std::vector<BentJoint> joints_;
-  std::vector<Table> tables_;          // one for each joint
-  std::vector<glm::vec3> shift_;       // by place; empty until the first joint
-  std::vector<std::uint8_t> is_near_;  // by place: 1 for vertices with shifts in this or the last pose
+  std::vector<Table> tables_;     // sampled shifts of each joint
+  std::vector<glm::vec3> shift_;  // shift of each vertex, by place; empty until the first joint is set
+  // by place: 1 for vertices that have shifts in the current or in the previous pose
+  std::vector<std::uint8_t> is_near_;
 };
 
 }  // namespace limber

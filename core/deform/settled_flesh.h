@@ -46,8 +46,8 @@ class SettledFlesh final : public FleshShifts {
 
   const Report& report() const { return report_; }
 
-  // Where the cells around a corner have different shifts, the corner has the mean shift. A brick has shifts where it
-  // bends.
+  // Computes the shifts of the brick's corners. Where the cells around a corner have different shifts, the corner has
+  // the mean shift. A brick has shifts if the pose bends it.
   bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const override;
   glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const override;
   bool bends(std::int64_t) const override { return false; }

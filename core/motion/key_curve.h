@@ -15,8 +15,8 @@
 // Let T0, T1 be the numbers of frames to the keys before and after, and s0, s1 the constant velocities from and to
 // these keys. An automatic key has the tangent (T0 s0 + T1 s1) / (T0 + T1) [Catmull & Rom 1974]. A clamped key uses
 // only the parts of s0 and s1 that have the same direction: for a bone, the parts along the bisector of s0 and s1; for
-// the shift, the components of equal sign. Its tangent is at most three times the smaller part, so that no part
-// reverses between keys [Fritsch & Carlson 1980]. The first and the last key have the tangent zero.
+// the shift, the components of equal sign. Its tangent is at most three times the smaller part, so that the curve does
+// not turn back between keys [Fritsch & Carlson 1980]. The first and the last key have the tangent zero.
 #pragma once
 
 #include "core/motion/keyframes.h"

@@ -16,8 +16,8 @@
 // earlier one ends, play as one: fades, order and holding are those of the whole. A strip that is split so plays as
 // before.
 //
-// Time is counted in frames of the clip that has the strips. A strip keeps to time, not to frames: of a clip with
-// another rate it plays as many seconds as that clip does.
+// Time is counted in frames of the clip that has the strips. A clip with another rate keeps its duration in seconds, so
+// it takes another number of frames.
 #pragma once
 
 #include <cstdint>
