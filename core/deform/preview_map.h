@@ -14,7 +14,7 @@
 // elsewhere. So each node stores its distance from such tissue; where the distance is negative, beyond the sheet's
 // border, the map is empty.
 //
-// Baked joints (preview_shifts.h) shift the vertices around them, and what lies between the vertices with them.
+// Baked joints (preview_shifts.h) shift the vertices around them, and so the tissue between these vertices.
 //
 // Where tissue moves with a tet mesh, as while a FEM solve runs, vertices near the mesh move with the mesh
 // (carried_points.h) instead of with their bones. All cells then use the trilinear map of their corners.

@@ -27,8 +27,8 @@ SplitCorners::SplitCorners(const TissueVoxels& tissue, const SkinWeights& weight
 
 unsigned SplitCorners::joined_voxels(const glm::ivec3& voxel, int corner) const {
   const glm::ivec3 lowest = voxel - 1 + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-  // Voxels around the corner, one bit for each: those found so far to be connected with the voxel, and those from which
-  // the search has yet to go on. At first both contain only the voxel itself.
+  // `joined` and `open` have one bit for each of the eight voxels around the corner: those found so far to be connected
+  // with the voxel, and those whose neighbours have not been searched yet. At first both contain only the voxel.
   unsigned joined = 1u << (~corner & 7), open = joined;
   while (open) {
     const int from = std::countr_zero(open);

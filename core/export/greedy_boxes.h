@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Divides the tissue of a label volume into few boxes, each with a single label. A box starts at the first tissue voxel
-// that is in no box yet. It is extended along x as far as the voxels have its label, then along y as far as whole rows
-// do, then along z as far as whole layers do.
+// that is in no box yet. It is extended along x as far as the voxels have its label, then along y and z as far as whole
+// rows and layers have it.
 #pragma once
 
 #include <vector>

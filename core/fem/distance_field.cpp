@@ -138,7 +138,7 @@ void DistanceField::smooth(int axis) {
 DistanceAt DistanceField::at(const Eigen::RowVector3d& place) const {
   std::array<int, 3> first;
   std::array<Cubic, 3> cubic{Cubic(0), Cubic(0), Cubic(0)};
-  Eigen::RowVector3d inside;  // the nearest place in the grid
+  Eigen::RowVector3d inside;  // the position in the grid that is nearest to `place`
   bool is_inside = true;
   for (int c = 0; c < 3; ++c) {
     const double at = (place[c] - low_[c]) / spacing_, held = std::clamp(at, 1.0, size_[c] - 2.0);

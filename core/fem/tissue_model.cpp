@@ -272,7 +272,8 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
   sliding.motions = settings.motions, sliding.joint_mm = settings.joint_mm, sliding.closing_mm = settings.closing_mm;
   const std::vector<std::uint8_t> slides = sliding_nodes(volume, tissues, mesh, bone, sliding);
   for (std::size_t i = 0; i < slides.size(); ++i)
-    if (slides[i]) in_joint[i] = 0;  // no other bone lies in front of it, however near
+    // a node over which tissue slides has no other bone in front, so it belongs to no joint
+    if (slides[i]) in_joint[i] = 0;
   for (int t = 0; t < mesh.T.rows(); ++t) {
     int first = kNone;
     bool between = false, inside = true;

@@ -34,7 +34,8 @@ struct TissueModelSettings {
   // weights.bones().
   std::vector<std::vector<RigidTransform>> motions = {};
   double closing_mm = 8;  // nodes of bone that are closer to another bone in one of the motions belong to a joint
-  SlidingSettings sliding = {};  // where loose tissue slides over bone; its motions and distances are set from above
+  // where loose tissue slides over bone; tissue_model() sets its motions and distances from the members above
+  SlidingSettings sliding = {};
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa
   double stiffest = 360;                                         // stiffer soft tissue gets this shear modulus, kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // material of tets of bone; shear modulus in kPa

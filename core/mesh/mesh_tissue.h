@@ -24,8 +24,9 @@ struct MeshSettings {
   // Positions of joints that bend, world, mm; nodes near them are half as far apart.
   std::vector<glm::dvec3> fine_around;
   double fine_radius_mm = 40;
-  std::vector<LatticeNetSettings::Covered> covered = {};  // see LatticeNetSettings
-  TetrahedralizeLimits limits = {};                       // limits on TetGen's time and memory
+  // places where bones keep below the surface (LatticeNetSettings::Covered)
+  std::vector<LatticeNetSettings::Covered> covered = {};
+  TetrahedralizeLimits limits = {};  // limits on TetGen's time and memory
 };
 
 struct TissueMesh {

@@ -209,7 +209,8 @@ struct Candidate {
   std::uint16_t region;
 };
 
-// Returns whether the cells around a sample that is near one of the places to cover have a sample of air.
+// Returns true if a sample is near a place where bones are to be covered (LatticeNetSettings::Covered), and one of the
+// cells around the sample has a sample of air.
 bool shows_at_air(const SampleLattice& lattice, const glm::ivec3& p, const LatticeNetSettings& settings) {
   const glm::dvec3 place = lattice.world_from_lattice * (glm::dvec3(p) * lattice.step);
   if (std::none_of(settings.covered.begin(), settings.covered.end(),

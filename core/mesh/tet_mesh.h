@@ -38,8 +38,9 @@ std::vector<std::array<int, 4>> neighbours_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::array<int, 4>>& neighbours);
 
-// The same for a mesh whose soft tissue may slide along bones: two tets that touch at rest are neighbours, also if they
-// have nodes of their own there (TetMesh::copy_of). So the surface between bone and sliding tissue is no boundary.
+// Does the same as the function above for a mesh whose soft tissue may slide along bones. Two tets that touch at rest
+// count as neighbours even if they have nodes of their own there (TetMesh::copy_of). So the surface between bone and
+// sliding tissue is no boundary.
 std::vector<std::array<int, 4>> neighbours_of(const TetMesh& mesh);
 Eigen::MatrixX3i boundary_of(const TetMesh& mesh);
 
