@@ -245,7 +245,8 @@ NodePositions FemEnergy::limit_step(const NodePositions& x, NodePositions step, 
   const CpuTimer timer(seconds_.search);
   const auto& T = bounded_;
   NodePositions sum(x.rows(), 3), there = x + step;
-  // asked: the tets that the step may flatten. nodes: the nodes to smooth; count: by how many tets and pairs each node.
+  // asked: the tets that the step may flatten. nodes: the nodes whose step is smoothed; count: for each node, the
+  // number of tets and pairs that smooth it.
   std::vector<int> count(x.rows(), 0), nodes, asked(T.rows());
   std::iota(asked.begin(), asked.end(), 0);
   std::vector<char> flattened(T.rows(), 0), changed;

@@ -16,7 +16,8 @@ constexpr double kJointPinStiffness = 0.1;
 // Material of tets whose nodes are all held by one bone but that share nodes with flesh; shear modulus in kPa.
 constexpr TetMaterial kBoneTet{100, 0.3};
 
-// Least number of nodes to free at a time, as a share of the free nodes.
+// A group of waiting nodes that is smaller than this share of the free nodes becomes free together with the group
+// before it.
 constexpr double kWorth = 0.125;
 
 bool held_by_one(const std::vector<int>& held_by, const Eigen::RowVector4i& tet) {

@@ -117,8 +117,8 @@ struct Filling {
   std::vector<float> tissue;  // volume of all tissue around each sample, mm3
   // Volume of each bone around each sample: (sample << 16 | region, mm3), sorted by key.
   std::vector<std::pair<std::uint64_t, float>> bone;
-  // [axis][i]: number of boxes that count for a sample at coordinate i if everything is tissue. Boxes are counted
-  // whole, so a cube that is 2.6 boxes wide has two or three of them along the axis.
+  // [axis][i]: number of boxes (voxels, or parts of large voxels) that count for a sample at coordinate i if everything
+  // is tissue. Boxes are counted whole, so a cube that is 2.6 boxes wide has two or three of them along the axis.
   std::vector<int> boxes[3];
   float box = 0;  // volume of a box, mm3
 
@@ -137,7 +137,8 @@ void sum_up(std::vector<std::pair<std::uint64_t, float>>& parts) {
   parts.resize(kept);
 }
 
-// Returns the coordinate of the sample, a multiple of `stride`, for which a box with this centre is counted.
+// Returns the coordinate of the sample, a multiple of `stride`, to which a box (a voxel, or a part of a large voxel)
+// with this centre belongs.
 int nearest_sample(double fine, int stride) {
   return static_cast<int>(std::floor(fine / double(stride) + 0.5)) * stride;
 }

@@ -295,7 +295,7 @@ bool are_of_one_body(const WeightLayers& layers, const SkinWeights& weights) {
                      [&](const auto& layer) { return are_of_one_body(layer->weights, weights); });
 }
 
-// A flag that has another value as long as this exists.
+// Sets a flag during its lifetime, and then restores the flag's earlier value.
 class Restored {
  public:
   Restored(bool& flag, bool value) : flag_(flag), before_(std::exchange(flag, value)) {}
