@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr std::int64_t kMostFrame = 1 << 28;  // as for all frames of a project
+constexpr std::int64_t kMostFrame = 1 << 28;  // a larger frame number, of either sign, is refused
 
 void put(ByteWriter& out, const glm::dvec3& v) {
   for (int i = 0; i < 3; ++i) out.put(v[i]);

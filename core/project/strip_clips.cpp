@@ -17,7 +17,8 @@ bool has(const Clips& clips, const SharedClip& clip) {
   return std::find(clips.begin(), clips.end(), clip) != clips.end();
 }
 
-// Returns what became of a clip that `after` does not have; null: it was deleted.
+// Returns the clip of `after` that replaces the clip of `before`: the one with the same name, or the only new one at
+// the same index. Returns null if the clip was deleted.
 SharedClip successor(const SharedClip& clip, const Clips& before, const Clips& after) {
   const auto named =
       std::find_if(after.begin(), after.end(), [&](const SharedClip& other) { return other->name == clip->name; });

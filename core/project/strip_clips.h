@@ -6,8 +6,9 @@
 
 namespace limber {
 
-// Lets strips of `next` play the clips as they are there. A clip of `before` that is gone was edited where a clip has
-// its name, or renamed where another clip is in its place; otherwise it was deleted, and its strips are removed.
+// Makes the strips of `next` play its clips instead of those of `before`. A clip that is missing in `next` counts as
+// edited if a clip there has its name, and as renamed if a new clip has its index. Otherwise it was deleted, and its
+// strips are removed.
 void relink_strips(const Document& before, Document& next);
 
 // Lets the strips of `clip` play the same of `changed`, which is the clip with `ratio` frames in place of each one, as

@@ -12,8 +12,9 @@ namespace limber {
 
 namespace {
 
-constexpr std::size_t kFewestOfTrack = 10;  // bytes of a track with an empty name and no strips
-constexpr std::size_t kFewestOfStrip = 4 + 4 + 12 + 24 + 5 + 1 + 8 + 8 + 1 + 56;  // of a strip with an empty name
+constexpr std::size_t kFewestOfTrack = 10;  // size of a stored track with an empty name and no strips, bytes
+// size of a stored strip with an empty name, bytes
+constexpr std::size_t kFewestOfStrip = 4 + 4 + 12 + 24 + 5 + 1 + 8 + 8 + 1 + 56;
 
 void put(ByteWriter& out, const Strip& strip, std::size_t clip) {
   out.text(strip.name);

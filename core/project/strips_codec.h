@@ -11,7 +11,8 @@
 
 namespace limber {
 
-//   clips  those of the strips, as clips_of() returns them
+// Writes strips.
+//   clips  the clips of the strips, as clips_of() returns them
 void put_strips(ByteWriter& out, const Strips& strips, const std::vector<std::shared_ptr<const Clip>>& clips);
 // Reads what put_strips() has written. Each of the clips must belong to a strip, and have no strips of its own.
 Strips get_strips(ByteReader& in, const std::vector<std::shared_ptr<const Clip>>& clips);

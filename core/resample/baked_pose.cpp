@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kOtherTurn = 10;  // degrees about other axes from which on a doubt is told
+constexpr double kOtherTurn = 10;  // degrees; if the joint turns further about other axes, the user is warned
 
 int bone_of(const BakedJoint& joint, const Armature& armature) {
   const auto bone = armature.find(joint.bone);

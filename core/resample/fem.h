@@ -84,8 +84,8 @@ struct SolveReport {
   // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they
   // are written at their exact positions.
   double bone_drift_mm = 0;
-  // How many nodes of flesh slide along bone, how far the furthest has slid, and by how much one has come nearer to its
-  // bone or left it at most, mm.
+  // Flesh that slides along bone: the number of its nodes, the largest slide of a node, and the largest change of a
+  // node's distance from its bone, mm.
   std::int64_t sliding_nodes = 0;
   double largest_slide_mm = 0, largest_slide_gap_mm = 0;
   SolveParameters parameters;

@@ -55,10 +55,10 @@ constexpr double kContact = 1.4;  // distance below which skin is pushed apart, 
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
 // Cosine of half of 3 degrees. With fine quality, tets are smaller around joints that turn by more than 3 degrees.
 constexpr double kBent = 0.9997;
-constexpr double kExact = 0.1;  // multiple of the usual tolerance with Fem::is_exact
+constexpr double kExact = 0.1;  // with Fem::is_exact, the tolerance of the last solve is multiplied by this
 
-// Distance from a bent joint up to which soft tissue covers bone in the mesh, as a share of that up to which tissue
-// slides: the tips of bones that bending pushes out at the skin.
+// Near a bent joint soft tissue covers bone in the mesh, so that the tips of bones that bending pushes out do not lie
+// at the skin. The covered distance from the joint, as a share of the distance up to which tissue slides.
 constexpr double kCovered = 0.5;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {

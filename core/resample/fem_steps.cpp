@@ -13,7 +13,8 @@ namespace limber {
 
 namespace {
 
-// A mesh whose tissue slides has its own head, so that files of meshes without are as ever.
+// First lines of the files, which tell their kind. A mesh whose tissue slides has a first line of its own, so that the
+// files of all other meshes keep their format.
 constexpr std::string_view kMesh = "limber fem mesh 1\n", kSliding = "limber fem mesh 2\n",
                            kStep = "limber fem step 1\n";
 constexpr std::uint64_t kLargestFile = std::uint64_t{1} << 30;

@@ -44,7 +44,7 @@ struct ResampleSettings {
   const GreyVolume* grey = nullptr;  // grey values to move together with the labels; nullptr: none
   // Voxel faces at which limbs touch without being connected. Null: all tissue that touches is connected.
   std::shared_ptr<const Seams> seams;
-  // Joints whose flesh is shifted as finite elements were found to do; only with blending by dual quaternions.
+  // Baked joints, whose shifts are added to blending by dual quaternions. With any other method they are an error.
   BakedJoints baked;
 };
 
@@ -83,7 +83,7 @@ struct DeformReport {
   };
   std::vector<BoneResidual> bones;              // one entry for each rig bone with posed bone tissue
   std::optional<SettledFlesh::Report> settled;  // set only by mixed blending; none: the pose bends nothing
-  std::vector<BakedJointReport> baked;          // one for each of ResampleSettings::baked
+  std::vector<BakedJointReport> baked;          // report on each baked joint of the settings
   // Number of voxels that each organ gained (positive) or lost (negative) to keep its volume (organ_volumes.h), by
   // label.
   std::map<Label, std::int64_t> kept_organs;
