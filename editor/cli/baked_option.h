@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The option --baked of `limber render`: joints of `limber bake-joint`.
+// The option --baked of `limber render`: files of baked joints, which `limber bake-joint` writes.
 #pragma once
 
 #include <string>

@@ -93,7 +93,7 @@ void update_scene(Views& views, const Document& document, const Selection& selec
     views.looks_of_visibility = visibility;
   }
   scene.grey = views.image;
-  // A document without tissue, such as a bare CT, would be an empty view in every display but that of the image.
+  // A document without tissue, such as a CT without labels, would show nothing in any display except that of the image.
   const bool is_bare = views.image && document.volume && tissues && tissues->tissues.empty();
   scene.display = is_bare                                                   ? render::Display::Image
                   : views.display == render::Display::Image && !views.image ? render::Display::Solid

@@ -83,7 +83,7 @@ void Form::draw(Editor& editor) {
   const Look& look = editor.look;
   const float description =
       height_of_wrapped(look.fonts.regular, request_.description, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
-  // Update the lines about wrong numbers only while the left mouse button is up. They change the dialog's layout, and
+  // Updates the lines about wrong numbers only while the left mouse button is up. They change the dialog's layout, and
   // nothing may move under the pointer during a press.
   if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
     problems_.clear();

@@ -29,7 +29,7 @@ std::string thumbnail_png(Editor& editor) {
   if (!editor.document().volume) return "";
   const render::Scene scene = thumbnail_scene(editor);
   render::View3D picture(views.renderer);
-  // Advance the time given to the renderer by a second per call. The renderer refines the picture of a view that has
+  // Advances the time given to the renderer by a second per call. The renderer refines the picture of a view that has
   // not changed for a while; so it draws full detail without a real wait.
   for (double now = 0; now == 0 || !picture.complete(); now += 1)
     picture.draw(scene, views.body.camera, kThumbnailSize, now, 1);
@@ -48,7 +48,7 @@ void keep_thumbnail(Editor& editor, const Path& path) {
   const auto picture = std::make_shared<render::View3D>(editor.views->renderer);
   const Path file = cached_thumbnail(editor.folders.cache, path);
   render::Scene scene = thumbnail_scene(editor);
-  // Remove these parts of the scene, because they may still belong to the body that was shown before.
+  // Removes these parts of the scene, because they may still belong to the body that was shown before.
   scene.pose.reset();
   scene.posed_from_rest.clear();
   scene.weights.reset();

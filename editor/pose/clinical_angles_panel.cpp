@@ -77,7 +77,7 @@ void draw_slider(Editor& editor, const ShownAngle& angle, const Rect& rect, doub
   auto& edited = editor.edited_number;
   if (pressed.activated) edited = {angle.name, shown};
   // If the panel is folded or another workspace is shown during a drag, the drag ends without a release. In this case,
-  // forget the edited number.
+  // the edited number is forgotten.
   else if (edited.name == angle.name && !pressed.held && !released && !ImGui::IsAnyItemActive()) edited = {};
   if (edited.name == angle.name && pressed.held && editor.input.down(Key::Escape)) {
     edited = {};

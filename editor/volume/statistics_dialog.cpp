@@ -80,7 +80,7 @@ void StatisticsDialog::draw_table(Editor& editor, const Rect& rect) {
   const Look& look = editor.look;
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(26)}};
   fill(head, look.theme.head);
-  // The heads stand above their columns, which leave room for the scroll bar.
+  // As in the rows below, the columns do not extend under the scroll bar, so each head stands above its column.
   const Rect heads{head.low, {head.high.x - ImGui::GetStyle().ScrollbarSize, head.high.y}};
   put_row(editor, heads, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Parts"},
           look.fonts.regular);

@@ -158,7 +158,7 @@ void draw_under_cursor(Editor& editor, Column& column) {
   if (column.begin_section("Under the cursor")) {
     column.space(4);
     const Hover& hover = editor.views->hover;
-    // A point without a label has a position, too, where the grey image has a value.
+    // The position is also shown at a point without a label, if the grey image has a value there.
     const std::optional<double> value = image_value_at_pointer(editor);
     const bool is_known = hover.inside || value;
     const Tissue* tissue =

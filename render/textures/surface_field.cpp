@@ -244,7 +244,7 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
   labels_of_slot_.resize(slots);
   slot_present_.resize(slots, 0);
 
-  // Compute the fields again in the slots that depend on an added or removed label. In `touched`, a brick has 1 if any
+  // Computes the fields again in the slots that depend on an added or removed label. In `touched`, a brick has 1 if any
   // of its voxels has a blurred value above 0.
   std::vector<Slot> fields(slots);
   std::vector<std::uint8_t> touched(brick_count);

@@ -24,7 +24,7 @@ struct Build {
   double wider_pelvis = 0, shorter_limbs = 0, larger_head = 0, size = 1;
 };
 
-// Where the landmarks lie that a build moves, mm. The defaults are those of the BodyParts3D man.
+// Where on the standing body a change of build acts, mm. The defaults are those of the BodyParts3D man.
 struct StandingLandmarks {
   double hip = 820, shoulder = 1322, neck = 1470, arm_from = 165, arm_to = 215, widest = 190;
   glm::dvec3 head{0, -86, 1490};
@@ -32,25 +32,25 @@ struct StandingLandmarks {
 
 FitBody rebuilt(const FitBody& body, const Build& build, const StandingLandmarks& at = {});
 
-// Exchanges left and right, in the volume and in all names.
+// Returns the body with left and right exchanged, in the volume and in all names.
 FitBody mirrored(const FitBody& body);
 
-// Turns, scales and shifts the body in the world without changing its voxels.
+// Returns the body turned, scaled and shifted in the world. Its voxels do not change.
 FitBody moved(const FitBody& body, const glm::dmat3& turn, double scale, const glm::dvec3& shift);
 
-// Keeps the voxels whose world positions satisfy `keep`, in the smallest box around them.
+// Returns the voxels whose world positions satisfy `keep`, in the smallest box around them.
 FitBody cropped(const FitBody& body, const std::function<bool(const glm::dvec3&)>& keep);
 
-// Keeps every n-th voxel along each axis.
+// Returns a coarser body that has only every n-th voxel along each axis.
 FitBody sampled(const FitBody& body, const glm::ivec3& every);
 
-// Gives all tissue one label, without a label table.
+// Returns the body with one label for all tissue, and without a label table.
 FitBody without_labels(const FitBody& body);
 
-// Gives all bone one label, and all other tissue another.
+// Returns the body with one label for all bone and another one for all other tissue.
 FitBody with_one_bone_label(const FitBody& body);
 
-// Gives bones one label per region, the same for left and right, as reference phantoms do.
+// Returns the body with one bone label per region, the same for left and right, as reference phantoms have.
 FitBody with_regional_labels(const FitBody& body);
 
 // Makes capsules of flesh along the rig, with bones inside that leave gaps at the joints.

@@ -25,7 +25,7 @@ namespace limber {
 
 namespace {
 
-// Returns the distances in mm between joints of the same name. The truth's name may have "Right" in front.
+// Returns the distances in mm between joints of the same name. A name in `truth` may have "Right" in front.
 std::vector<std::pair<double, std::string>> errors(const Armature& found, const Armature& truth) {
   std::vector<std::pair<double, std::string>> result;
   for (const Bone& bone : found.bones) {

@@ -82,8 +82,8 @@ TEST_CASE("fitted limits: rest stays allowed beyond the range, and a hinge the w
 TEST_CASE("fitted limits: an elbow bent across the axis that was carried along bends on as it rests") {
   const Armature rig = rig_template("arm");
   Armature fitted = rig;
-  // The elbow is bent by 25 degrees, and its hinge axis is turned about the upper arm, as by a fit to the wrong side of
-  // the limb.
+  // The elbow is bent by 25 degrees, and its hinge axis is turned about the upper arm, as if it had been fitted to the
+  // wrong side of the limb.
   Bone& forearm = fitted.bones[*fitted.find("Forearm")];
   const glm::dvec3 right = forearm.limits.axis, along = glm::normalize(forearm.tail - forearm.head);
   for (const auto& [degrees, kept] : {std::pair(20.0, true), {80.0, false}, {180.0, false}}) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The shapes that a baked joint is compared with are solved here, on the way of their own from rest to each angle.
-// Which tissue is meshed, and what belongs to the joint, depends on the whole range: so each solve is told of the
-// range's end.
+// Compares a baked joint with poses that are solved here one by one, each in its own steps from rest to its angle.
+// Which tissue is meshed, and which tissue belongs to the joint, depends on the range that is baked; therefore each of
+// these solves is given the end of that range.
 #include "core/bake/bake_joint.h"
 
 #include <algorithm>
@@ -62,7 +62,8 @@ struct BakedElbow {
                 corrected = posed(degrees, Blend::DualQuaternion, {joint});
     REQUIRE(solved.report.solve->converged);
     const LabelSets labels(body.tissues);
-    // The displacement at a voxel of the solved volume in another one; nothing where either has bone or air.
+    // Returns the displacement that the posed volume `other` has at the world position of a voxel of the solved volume;
+    // nothing if `other` has bone or air there.
     const auto at = [&](const Posed& other, const glm::ivec3& voxel) -> std::optional<glm::vec3> {
       const Grid& grid = other.volume.grid;
       const glm::dvec3 world = world_from_voxel(solved.volume.grid) * glm::dvec3(voxel);
@@ -178,8 +179,8 @@ TEST_CASE("bake joint: the live preview shows the baked shape, skin included, wi
   const glm::dvec3 shift = glm::round(voxel_from_world(arm.body.file.volume.grid) * posed.volume.grid.origin);
   const BakedFlesh flesh(arm.bound.tissue, arm.body.file.volume.grid, bent);
   const AffineTransform voxel = voxel_from_world(arm.body.file.volume.grid);
-  // The median and the 90th percentile of the distance at rest from what the posed volume shows, over skin that the
-  // pose moves, mm.
+  // Compares the rest positions that the map gives with those of the posed volume, in skin that the baked joint moves.
+  // Returns the median and the 90th percentile of their distances, mm.
   const auto off = [&](const PreviewMap& map) {
     std::vector<double> found;
     std::int64_t i = 0;
@@ -208,7 +209,8 @@ TEST_CASE("bake joint: the live preview shows the baked shape, skin included, wi
     const auto baked = off(*preview.update(motions, Blend::DualQuaternion, {}, bent));
     CHECK(baked.first < (step == 2 ? 0.4 : 0.7) * plain.first);
     CHECK(baked.second < (step == 2 ? 0.3 : 0.7) * plain.second);
-    // A joint that is no longer given leaves nothing behind, and the way to a pose does not matter.
+    // Without its baked joint, the preview is as if there had never been one. With it, the preview does not depend on
+    // the poses that were shown before.
     const auto without = preview.update(motions, Blend::DualQuaternion);
     CHECK(off(*without) == plain);
     preview.update(posed_from_rest(arm.body.rig, arm.bent(20)), Blend::DualQuaternion, {},

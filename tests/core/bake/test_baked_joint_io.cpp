@@ -12,7 +12,7 @@ using namespace limber;
 
 namespace {
 
-// A joint with 5 of 12 nodes and two baked angles beside rest.
+// A joint with shifts at 5 of the 12 nodes of its lattice. It is baked at two angles besides the rest pose.
 BakedJoint small_joint() {
   BakedJoint joint{
       .bone = "Forearm", .axis = {0, 0.6, 0.8}, .degrees = {-10, 0, 45}, .glide = "off", .quality = "draft"};
@@ -74,7 +74,7 @@ TEST_CASE("baked joint file: a changed byte is found") {
     } catch (const Error&) {
       continue;
     }
-    CHECK(is_same);  // a byte of the stream's head may say how hard it was packed
+    CHECK(is_same);  // a byte of the head may only state the compression level, so changing it changes nothing else
   }
 }
 

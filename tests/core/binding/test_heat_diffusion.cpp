@@ -106,7 +106,7 @@ TEST_CASE("heat: nothing flows through air, and an island in the air is named") 
   CHECK(report.warnings[0].find("given to Lower") != std::string::npos);
   CHECK(at(weights, tissue, {11, 5, 15}) == rigid_influence(1));
 
-  // With a name in the table the tissue is named by it, and one voxel alone is not called voxels.
+  // The warning uses the tissue's name if the table has one, and writes "1 voxel" in the singular.
   for (Tissue& one : body.tissues.tissues)
     if (one.label == kMuscle) one.name = "calf muscle";
   wide.at({14, 1, 1}) = kMuscle;

@@ -91,7 +91,8 @@ TEST_CASE("baked flesh: shifts turn with the bone above the joint, and fade to n
   const auto joint = even_joint([](double x) { return x / 40; }, {0, 40, 80});
   const glm::dquat turn = glm::angleAxis(glm::radians(90.0), glm::dvec3(0, 0, 1));
   const BakedFlesh flesh(tissue, volume.grid, {{joint, 60, turn}});
-  // Halfway from 40 to 80 degrees the shift is 1.5 times (1, 2, 3) mm, and a voxel has 2 mm.
+  // At 60 degrees, halfway from 40 to 80, the shift is 1.5 times (1, 2, 3) mm. The bone's turn by 90 degrees about z
+  // makes it (-3, 1.5, 4.5) mm; a voxel has 2 mm.
   CHECK(glm::distance(flesh.shift_at({12, 12, 12}), glm::vec3(-1.5f, 0.75f, 2.25f)) < 1e-5f);
   CHECK(glm::distance(flesh.shift_at({2, 12, 12}), 0.5f * glm::vec3(-1.5f, 0.75f, 2.25f)) < 1e-5f);
   CHECK(flesh.shift_at({0, 12, 12}) == glm::vec3(0));

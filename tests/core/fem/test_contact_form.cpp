@@ -89,7 +89,7 @@ TEST_CASE("contact: a step ends before two parts touch, and not long before") {
   const ContactPair point{{0, 1, 2, 3}, Kind::PointTriangle};
   CHECK(bound(point, x, step, 8) == doctest::Approx(1.5));
   CHECK(bound(point, x, step, 1.4) == 1.4);
-  // With near = 1, a distance of half of 1 must remain: the step may be 2.5 long.
+  // The pair is 3 apart. With near = 1, half of `near` must remain, so the step may be 2.5 long.
   const double far = bound(point, x, step, 8, 1);
   CHECK(far > 2);
   CHECK(far <= 2.5);

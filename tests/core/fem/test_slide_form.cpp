@@ -43,7 +43,8 @@ struct OnBall {
   }
 };
 
-// Springs that hold single axes of nodes: `hold(place)` gives the targets; NaN leaves an axis free.
+// Returns springs that hold nodes. hold(place) gives the target of the node that rests at `place`; a NaN in it leaves
+// that axis free.
 template <class Hold>
 PinForm held(const NodePositions& rest, const Hold& hold) {
   PinForm pins;
@@ -61,8 +62,8 @@ PinForm held(const NodePositions& rest, const Hold& hold) {
   return pins;
 }
 
-// A sleeve of flesh on a rod whose radius is half of its own, as a limb's flesh on its bone, with `across` tets across
-// the limb.
+// A sleeve of flesh around a rod, like a limb's flesh around its bone. The sleeve's radius is twice that of the rod.
+// The mesh has about `across` tets across the sleeve's diameter.
 struct Sleeve {
   static constexpr double kInner = 20, kOuter = 40, kLength = 60;
   double shear = 10, poisson_ratio = 0.45;
@@ -80,7 +81,8 @@ struct Sleeve {
   static bool is_inner(const Eigen::RowVector3d& p) { return radius(p) < kInner * (1 + 1e-6); }
   static bool is_outer(const Eigen::RowVector3d& p) { return radius(p) > kOuter * (1 - 1e-6); }
 
-  // Returns the shape of least energy. The flesh slides on the rod against a fascia of this stiffness, kPa/mm.
+  // Sets x to the shape of least energy, in which the flesh slides on the rod. `fascia` is the stiffness against
+  // sliding, kPa/mm.
   void solve(const PinForm& pins, double fascia) {
     FemEnergy energy(rest, mesh.T, std::vector<TetMaterial>(mesh.T.rows(), {shear, poisson_ratio}), 0);
     const Eigen::RowVector3d corner(1.5 * kInner, 1.5 * kInner, 0), along(0, 0, 1.5 * kLength);
@@ -104,8 +106,8 @@ struct Sleeve {
     REQUIRE(minimise(energy, x, {.tolerance_mm = 1e-8}).converged);
   }
 
-  // Returns the largest difference from the exact motion, as a share of the largest exact motion, and the root of the
-  // mean square of the difference over all nodes, as a share of that of the motion.
+  // Returns two errors of the nodes' motion: the largest difference from the exact motion, divided by the largest exact
+  // motion; and the root mean square of the difference, divided by that of the exact motion.
   template <class Motion>
   std::pair<double, double> error_of(const Motion& exact) const {
     double worst = 0, largest = 0, squares = 0, all = 0;
@@ -118,15 +120,16 @@ struct Sleeve {
     return {worst / largest, std::sqrt(squares / all)};
   }
 
-  // Pulls the sleeve longer by a small share, its ends gliding along the rod, its outside free. The strain along the
-  // rod is uniform, and the radial motion that of a thick-walled tube [Lame 1852] of which the inner wall cannot move:
-  // A r + B / r, no stress outside.
+  // Stretches the sleeve along the rod by a small strain, with its outside free, and returns error_of(). In the exact
+  // solution the strain along the rod is uniform, and points move radially by A r + B / r, as in a thick-walled tube
+  // [Lame 1852], without motion at the inner wall and without stress on the outside.
   std::pair<double, double> pulled() {
     constexpr double kStrain = 1e-4;
     solve(held(rest,
                [](const Eigen::RowVector3d& p) -> Eigen::RowVector3d {
                  const bool end = p[2] < 1e-9 || p[2] > kLength - 1e-9;
-                 // By symmetry nothing leaves the plane y = 0; without that the sleeve could spin.
+                 // By symmetry, the nodes of the plane y = 0 stay in it. Holding them there keeps the sleeve from
+                 // spinning.
                  return {kFree, std::abs(p[1]) < 1e-9 ? 0 : kFree, end ? p[2] + kStrain * (p[2] - kLength / 2) : kFree};
                }),
           0);
@@ -138,8 +141,9 @@ struct Sleeve {
     });
   }
 
-  // Twists the sleeve's outside about the rod by a small angle against the fascia: the motion around is C r + D / r
-  // [Love 1892], and the shear stress at the rod is the fascia's stiffness times the slide there.
+  // Turns the sleeve's outside about the rod by a small angle, against the fascia, and returns error_of(). In the exact
+  // solution, points move around the rod by C r + D / r [Love 1892], and the shear stress at the rod is the fascia's
+  // stiffness times the distance that the flesh slides there.
   std::pair<double, double> twisted() {
     constexpr double kAngle = 1e-4, kFascia = 0.6;
     solve(held(rest,
@@ -194,7 +198,7 @@ TEST_CASE("slide form: a node that goes with its bone has no energy, one that sl
     };
     put({rest[0], rest[1], rest[2]});
     CHECK(ball.form.slide_of(ball.form.nodes[v], ball.x).along < 1e-12);
-    // Half around the ball: the chord is twice the radius.
+    // Moves the node to the opposite point of the ball, so that it has slid by the diameter, measured straight.
     put({-rest[0], -rest[1], -rest[2]});
     const SlideForm::Slide slide = ball.form.slide_of(ball.form.nodes[v], ball.x);
     CHECK(slide.along == doctest::Approx(2 * rest.norm()));
@@ -206,7 +210,7 @@ TEST_CASE("slide form: a node that goes with its bone has no energy, one that sl
 
 TEST_CASE(
     "distance field: the distance from a meshed rod is right near it and beyond the table, and its slope is one") {
-  // A rod of bone of radius 10, meshed with edges of 2.
+  // A rod of bone with a radius of 10 mm, meshed with edges of 2 mm.
   TetMesh mesh = thick_cylinder(1e-3, 10, 40, 5, 31, 20);
   mesh.region.assign(mesh.T.rows(), 1);
   std::vector<int> around;

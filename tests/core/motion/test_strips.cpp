@@ -50,7 +50,7 @@ TEST_CASE("strips: a clip with strips plays them below its keys and constraints,
   const int arm = *rig()->find("LeftArm"), other = *rig()->find("RightArm");
   CHECK(on_rig.at(10).rotation[arm] == raised);
   CHECK(on_rig.base_at(20) == at(source, 20));
-  // A key over strips is a correction, as over a motion.
+  // A key on top of strips corrects the rotation that they play, as it corrects that of a motion.
   const glm::dquat turn = raised * glm::conjugate(at(source, 10).rotation[arm]);
   const glm::dquat wanted = glm::normalize(glm::normalize(turn) * at(source, 20).rotation[arm]);
   CHECK(std::abs(glm::dot(on_rig.at(20).rotation[arm], wanted)) == doctest::Approx(1).epsilon(1e-12));
@@ -76,10 +76,10 @@ TEST_CASE("strips: strips that overlap cross-fade, and the fade's ends are exact
             doctest::Approx(1).epsilon(1e-12));
     CHECK(glm::distance(mixed.root_translation, glm::mix(a.root_translation, b.root_translation, share)) < 1e-9);
   }
-  // A longer fade that the strip asks for counts, and a muted strip does not play.
+  // A strip may have a fade that is longer than its overlap. A muted strip does not play.
   strips.tracks[0].strips[1].blend_in = 20;
   CHECK(at(strips, 40) != at(second, 10));
-  // Under a strip that still fades in, the one that has ended is held.
+  // While the second strip still fades in, the first one's last pose is held although it has ended.
   CHECK(far(at(strips, 39), at(strips, 40)) < 0.5 * far(at(first, 39), rest_pose(*rig())));
   CHECK(at(strips, 50) == at(second, 20));
   strips.tracks[0].strips[1].muted = true;
@@ -133,7 +133,7 @@ TEST_CASE("strips: a rest pose that is added changes nothing, and rotations add 
       for (int frame = 0; frame < 60; frame += 7) CHECK(at(strips, frame) == at(below, frame));
     }
 
-  // The added clip turns a bone by a degree a frame, from ten degrees on.
+  // The clip of the upper strip turns a bone by one degree per frame, starting at ten degrees.
   const auto bent = [](double degrees) { return glm::angleAxis(glm::radians(degrees), glm::dvec3(0, 1, 0)); };
   still.keys.bones["LeftArm"] = {{0, bent(10)}, {50, bent(60)}};
   over.clip = std::make_shared<const Clip>(still);
@@ -162,7 +162,7 @@ TEST_CASE("strips: at half the speed a strip plays the frames between its clip's
     CHECK(std::abs(glm::dot(between.rotation[bone], glm::slerp(a.rotation[bone], b.rotation[bone], 0.5))) ==
           doctest::Approx(1).epsilon(1e-12));
   CHECK(glm::distance(between.root_translation, (a.root_translation + b.root_translation) / 2.0) < 1e-9);
-  // A clip with another rate keeps its duration.
+  // A clip with another frame rate plays for the same time as before, in seconds.
   const SharedClip fast = take("fast", 121, 1, 120);
   strips = one_strip(fast, 0);
   CHECK(end_of(only(strips), 30) == 30);
@@ -179,7 +179,7 @@ TEST_CASE("strips: backwards and mirrored, a strip plays its clip backwards and 
   only(strips).mirrored = true;
   for (int frame = 0; frame <= 20; ++frame) CHECK(at(strips, frame) == flipped(at(clip, frame), *rig()));
 
-  // To mirror a whole clip of strips mirrors what they play together.
+  // Mirroring a clip of several strips mirrors the pose that they play together.
   const SharedClip over = take("wave", 21, 5);
   strips.tracks.push_back({.name = "Over", .strips = {strip_of(over, strips, 3)}});
   strips.tracks[1].strips[0].bones = std::set<std::string>{"LeftArm", "Hips"};
@@ -197,7 +197,8 @@ TEST_CASE("strips: backwards and mirrored, a strip plays its clip backwards and 
 }
 
 TEST_CASE("strips: each cycle begins where the one before ended, and its seam is as close as the clip's ends") {
-  // A closed cycle of 20 steps, which travels by 30 mm a frame and turns by 0.02 a frame as it goes.
+  // A closed cycle of 20 steps. In each frame the body travels by 30 mm and turns by 0.02 radians, so it walks along a
+  // circle.
   const auto pose_at = [](int frame) {
     Pose pose = rest_pose(*rig());
     const double phase = 2 * 3.14159265358979 * frame / 20;
@@ -215,17 +216,17 @@ TEST_CASE("strips: each cycle begins where the one before ended, and its seam is
   Strips strips = one_strip(clip, 0);
   only(strips).repeat = 3.5;
   CHECK(end_of(only(strips), 30) == 70);
-  // The body goes on along its circle: the pose of frame f is what the formula gives there.
+  // The cycles lead the body along its circle: in each frame it has the pose that the formula gives.
   for (int frame = 0; frame <= 70; ++frame) CHECK(far(at(strips, frame), pose_at(frame)) < 0.02);
   const double step = far(at(strips, 18), at(strips, 19));
   for (const int seam : {20, 40, 60}) CHECK(far(at(strips, seam - 1), at(strips, seam)) < 1.01 * step);
-  // On the spot every cycle is the clip.
+  // If the cycles do not continue each other's travel, each one repeats the clip exactly.
   only(strips).goes_on = false;
   CHECK(at(strips, 47) == at(clip, 7));
   CHECK(at(strips, 70) == at(clip, 10));
   only(strips).repeat = 3;
   CHECK(at(strips, 60) == at(clip, 20));
-  // Backwards, the cycles go back along the circle.
+  // Played backwards, the cycles lead the body back along the circle.
   only(strips).goes_on = only(strips).reversed = true;
   const Pose begin = at(strips, 0), end = at(strips, 60);
   CHECK(glm::degrees(2 * std::acos(std::min(1.0, std::abs(glm::dot(begin.rotation[0], end.rotation[0]))))) ==
@@ -257,14 +258,14 @@ TEST_CASE("strips: split, or trimmed at either end, a strip plays at the frames 
     CHECK(end_of(only(early), 30) == cut);
     for (int frame = only(late).start; frame <= end; ++frame) CHECK(far(at(late, frame), at(strips, frame)) < 1e-6);
     for (int frame = 10; frame <= cut; ++frame) CHECK(far(at(early, frame), at(strips, frame)) < 1e-6);
-    // Drawn back to where it was, it is as before.
+    // If the start is then moved back, the strip plays as it did before.
     only(late) = with_start(only(late), 10, 30);
     for (int frame = 10; frame <= end; ++frame) CHECK(far(at(late, frame), at(strips, frame)) < 1e-6);
   }
   Strips strips = one_strip(clip, 10);
   CHECK_THROWS_AS(split(only(strips), 10, 30, "second"), Error);
   CHECK_THROWS_AS(split(only(strips), 51, 30, "second"), Error);
-  // A strip that plays once is not drawn beyond its clip.
+  // The ends of a strip that plays once cannot be moved beyond the ends of its clip.
   CHECK(with_end(only(strips), 500, 30).last == 40);
   CHECK(with_start(only(strips), -500, 30).start == 10);
 }
@@ -277,7 +278,7 @@ TEST_CASE("strips: a strip is moved to where the body is, so that it goes on fro
   next.place = place_where_body_is(strips, {0, 1}, rig(), 30);
   const Pose before = at(first, 39), after = at(strips, 39);
   CHECK(glm::distance(glm::dvec2(before.root_translation), glm::dvec2(after.root_translation)) < 1e-9);
-  // The height, and what is not a turn about the vertical, stay those of the take.
+  // The strip keeps its own height and its own rotation, except for the turn about the vertical.
   CHECK(after.root_translation.z == doctest::Approx(at(second, 0).root_translation.z));
   const glm::dquat turn = before.rotation[0] * glm::conjugate(after.rotation[0]);
   CHECK(std::abs(turn.z) < 1e-9);
@@ -315,14 +316,14 @@ TEST_CASE("strips: another rate keeps what plays at each moment, and another spe
 }
 
 TEST_CASE("strips: a strip that moves stops beside the others, or overlaps them where it may") {
-  Strips strips = one_strip(take("a", 11, 1), 0);                          // 0 to 10
-  insert_strip(strips.tracks[0], strip_of(take("b", 21, 2), strips, 30));  // 30 to 50
+  Strips strips = one_strip(take("a", 11, 1), 0);                          // frames 0 to 10
+  insert_strip(strips.tracks[0], strip_of(take("b", 21, 2), strips, 30));  // frames 30 to 50
   strips.tracks.push_back({.name = "Over", .strips = {strip_of(take("c", 6, 3), strips, 100)}});
   const auto fits = [&](int frames, int tracks, Overlaps overlaps = Overlaps::Avoided) {
     return fitting_move(strips, {"a"}, {frames, tracks}, 30, overlaps);
   };
   CHECK(fits(7, 0) == StripMove{7, 0});
-  CHECK(fits(20, 0) == StripMove{20, 0});  // it touches the other
+  CHECK(fits(20, 0) == StripMove{20, 0});  // strip "a" then touches strip "b"
   CHECK(fits(29, 0) == StripMove{20, 0});
   CHECK(fits(40, 0) == StripMove{50, 0});
   CHECK(fits(29, 0, Overlaps::Allowed) == StripMove{29, 0});
@@ -398,7 +399,7 @@ TEST_CASE("strips: two threads evaluate what one does, and a frame of a long tak
   for (std::thread& thread : threads) thread.join();
   CHECK(alone == together);
   MESSAGE("a frame of three strips takes " << passed.count() / 900 << " ms");
-  CHECK(passed.count() / 900 < 10);  // a loose bound for sanitizers and loaded machines
+  CHECK(passed.count() / 900 < 10);  // ms; a loose bound, so that it holds with sanitizers and on loaded machines
 }
 
 }  // namespace limber::test

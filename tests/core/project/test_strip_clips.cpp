@@ -41,7 +41,7 @@ class Chunks final : public ChunkSink, public ChunkSource {
   std::unordered_map<ChunkHash, std::string, ChunkHash::Hasher> chunks_;
 };
 
-// A strip in which nothing has its usual value.
+// Returns a strip none of whose values is the default.
 Strip odd_strip(const std::shared_ptr<const Clip>& clip, const std::string& name, int start) {
   Strip strip{.name = name, .clip = clip, .start = start, .first = -3, .last = 40, .skip = 1.25, .speed = 0.3};
   strip.repeat = 2.5;
@@ -92,7 +92,7 @@ TEST_CASE("project: strips are written and read back, and play the document's ow
   for (StripTrack& track : expected.tracks)
     for (Strip& strip : track.strips) strip.clip = back.clips[strip.clip == now.clips[0] ? 0 : 1];
   CHECK(strips_of(back) == expected);
-  // Written again by another writer, it has the same root.
+  // If another writer writes the document again, its root chunk has the same hash.
   Chunks others;
   DocumentWriter other;
   CHECK(other.write(back, others, Packing::Quick) == writer.write(now, chunks, Packing::Quick));
@@ -198,7 +198,7 @@ TEST_CASE("project: strips play a clip as it was edited, follow its new name, an
   CHECK(strips_of(next).tracks[0].strips[1].clip == next.clips[1]);
   CHECK(strips_of(next).tracks[1].strips[0].clip == next.clips[1]);
   CHECK(strips_of(next).tracks[0].strips[0].clip == before.clips[0]);
-  // Nothing else of the strips has changed.
+  // The strip's other values have not changed.
   CHECK(strips_of(next).tracks[0].strips[1].start == 5);
 
   const Document edited = next;
@@ -212,7 +212,7 @@ TEST_CASE("project: strips play a clip as it was edited, follow its new name, an
   REQUIRE(strips_of(next, 1).tracks[0].strips.size() == 1);
   CHECK(strips_of(next, 1).tracks[0].strips[0].name == "odd");
   CHECK(strips_of(next, 1).tracks[1].strips.empty());
-  // A document whose clips have not changed keeps its pointers.
+  // In a document whose clips have not changed, nothing is replaced.
   Document same = next;
   relink_strips(next, same);
   CHECK(same == next);
@@ -242,7 +242,7 @@ TEST_CASE("history: clips that strips play count once, and strips with them") {
   Document alone = document;
   alone.clips = {document.clips[2]};
   alone.clip = 0;
-  // The strips keep the clips that the document no longer lists.
+  // The strips still hold the two clips that this document does not list, so it needs about the same memory.
   CHECK(bytes_of(document) - bytes_of(alone) < 200);
 }
 

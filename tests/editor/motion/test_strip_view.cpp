@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The strips' view: each of its operators, and what dragging strips and their ends does to a clip.
+// Proves each operator of the strips' view, and tests what dragging strips and their ends does to a clip.
 #include "editor/motion/strip_view.h"
 
 #include <cmath>
@@ -18,8 +18,9 @@ using namespace editor;
 
 namespace {
 
-// The limb with three clips: its bending one from 0 to 60, one of keys, and the strips of both: the bending one on the
-// lower track from 0 to 60, the keys on the upper one from 20 to 50.
+// Makes the limb with three clips. The first bends the limb from frame 0 to 60, the second has keys only, and the third
+// plays the other two as strips: the first on the lower track from frame 0 to 60, the second on the upper track from 20
+// to 50.
 Document limb_with_strips() {
   Document document = bending_limb();
   Clip keys{.name = "keys", .range_end = 30};
@@ -234,14 +235,14 @@ TEST_CASE("operators: strips are made, moved and baked") {
 
 TEST_CASE("strip view: a dragged strip moves live, one edit is made, and undo and redo have it") {
   StripEditor test;
-  go_to_frame(*test.editor, 55);  // behind the upper strip
+  go_to_frame(*test.editor, 55);  // after the end of the upper strip
   const Strips before = strips_in(*test.editor);
   const auto steps = test.editor->history.position();
   const float frame = test.x(1) - test.x(0);
   const glm::vec2 from = test.point("bending", 0.2);
   test.hold(Key::Ctrl, true);
   test.press(from, from + glm::vec2(10 * frame, 0));
-  // While the button is down nothing is committed, and the body shows what the strips give.
+  // While the button is down, nothing is committed, but the body already shows the pose of the dragged strips.
   CHECK(strips_in(*test.editor) == before);
   CHECK(bend_of(shown_pose(*test.editor)) == doctest::Approx(45).epsilon(0.01));
   test.release();
@@ -255,7 +256,7 @@ TEST_CASE("strip view: a dragged strip moves live, one edit is made, and undo an
   CHECK(bend_of(pose_of(test.editor->document())) == doctest::Approx(55).epsilon(0.01));
   test.redo();
   CHECK(strip_named(*test.editor, "bending").start == 10);
-  // Escape takes a drag back.
+  // Escape cancels the drag.
   test.press(test.point("bending", 0.2), test.point("bending", 0.6));
   test.hold(Key::Escape, true);
   test.hold(Key::Escape, false);
@@ -301,7 +302,7 @@ TEST_CASE("strip view: a strip stops beside another, with Shift it overlaps and 
 TEST_CASE("strip view: the ends of a strip are dragged to trim it, and snap to other strips") {
   StripEditor test;
   const Rect place = strip_rect(*test.editor, {0, 0});
-  // Near frame 50, where the other strip ends.
+  // Drags the strip's end to just before frame 50. It snaps to the end of the other strip, at frame 50.
   test.drag({place.high.x - 2, place.centre().y}, {test.x(50) - 1, place.centre().y});
   CHECK(strip_named(*test.editor, "bending").last == 50);
   CHECK(end_of(strip_named(*test.editor, "bending"), 30) == 50);
@@ -327,7 +328,8 @@ TEST_CASE("strip view: strips are selected by a click and a rectangle, and dragg
   CHECK(chosen_strips(editor) == std::set<std::string>{"bending"});
   test.drag(empty, empty);
   CHECK(chosen_strips(editor).empty());
-  // From the upper track at 20 to the lower one beyond the other strip.
+  // Drags the strip from the upper track, where it starts at frame 20, to the lower track. It stops after the end of
+  // the other strip, at frame 60.
   const float row = track_rect(editor, 0).low.y - track_rect(editor, 1).low.y, frame = test.x(1) - test.x(0);
   test.drag(test.point("keys", 0.5), test.point("keys", 0.5) + glm::vec2(36 * frame, row));
   CHECK(find_strip(strips_in(editor), "keys") == StripPlace{0, 1});
@@ -338,10 +340,11 @@ TEST_CASE("strip view: the shown clip plays the strips, and an edit of a strip's
   StripEditor test;
   Editor& editor = *test.editor;
   go_to_frame(editor, 40);
-  CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(0).epsilon(0.01));  // the upper strip replaces all
+  // the upper strip replaces the whole pose of the lower one
+  CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(0).epsilon(0.01));
   run(editor, "strips.solo_track");
   CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(40).epsilon(0.01));
-  // The pose that jobs and exports take is the one of the editor.
+  // Jobs and exports take the same pose as the editor shows.
   CHECK(*pose_at_frame(editor.document()) == pose_of(editor.document()));
   Document next = editor.document();
   Clip faster = *next.clips[0];
