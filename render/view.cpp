@@ -441,7 +441,7 @@ struct View3D::Impl {
       next_image.clear();
     }
     if (!with_light) return;
-    // Light and outlines read pixels outside the drawn rectangle too. Clear the buffers, so that no hits of earlier
+    // Light and outlines read pixels outside the drawn rectangle too. Clears the buffers, so that no hits of earlier
     // pictures remain there.
     for (size_t layer = 0; layer < source.layers.size(); ++layer) {
       jittered[layer].forget_hits();

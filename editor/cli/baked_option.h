@@ -10,12 +10,12 @@
 
 namespace limber::editor {
 
-// Throws Error for a file that is no baked joint, and for a method other than dual quaternions, also where no pose
-// needs the files.
+// Throws Error if a file is not a baked joint, and if there are files but the method is not dual quaternions. Checks
+// this even if no pose uses the files.
 void check_baked_files(const std::vector<std::string>& files, const std::string& method);
 
-// Reads the files of baked joints. Throws Error for a file that is none, for one that was baked from another body, and
-// for a method other than dual quaternions.
+// Reads the files of baked joints. Throws Error if a file is not a baked joint or was baked from another body, and if
+// the method is not dual quaternions.
 BakedJoints baked_joints_for(const std::vector<std::string>& files, const std::string& method, const Document& document,
                              const TissueVoxels& tissue, const SkinWeights& weights);
 

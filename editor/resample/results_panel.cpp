@@ -221,7 +221,7 @@ void draw_results(Editor& editor, const Rect& rect) {
   const float middle = wide ? body.high.x - look.px(430) : body.high.x;
   const Rect table_head{body.low, {middle, body.low.y + look.px(kTableHead)}};
   const Colour grey = look.theme.text2;
-  // The heads stand above their columns, which leave room for the scroll bar.
+  // As in the rows below, the columns do not extend under the scroll bar, so each head stands above its column.
   const Rect heads{table_head.low, {table_head.high.x - ImGui::GetStyle().ScrollbarSize, table_head.high.y}};
   put_cells(editor, heads, {"Result", "Method", "Time", "Volume", "Overlap", "Inverted", "State"},
             {grey, grey, grey, grey, grey, grey, grey}, look.fonts.regular, look.fonts.regular);

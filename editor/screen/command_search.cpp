@@ -73,7 +73,7 @@ struct FoundRow {
 
 class CommandSearch final : public Dialog {
  public:
-  // Without its guide, as where a page of it is missing, the search finds commands alone.
+  // Makes a search for commands and for pages of this guide; without a guide, for commands only.
   explicit CommandSearch(std::optional<Book> guide) : guide_(std::move(guide)) {}
   void draw(Editor& editor) override;
   bool key(Editor& editor, const Chord& chord) override;
@@ -119,7 +119,8 @@ void CommandSearch::run_chosen(Editor& editor) {
   run(editor, op);
 }
 
-// Pages of the guide stand behind the commands that are named, before those whose descriptions speak of the query.
+// Pages of the guide come after the commands whose label or category matches, and before the commands that match only
+// by their description.
 void CommandSearch::search(Editor& editor) {
   found_.clear();
   for (FoundCommand& command : find_commands(editor, query_)) found_.push_back({std::move(command), {}});
@@ -327,7 +328,7 @@ std::unique_ptr<Dialog> open_command_search(Editor& editor) {
   std::optional<Book> guide;
   try {
     guide = read_guide(editor);
-  } catch (const Error& error) {  // commands are found without it
+  } catch (const Error& error) {  // the guide cannot be read, so only commands are searched
     editor.messages.warn(error.what());
   }
   return std::make_unique<CommandSearch>(std::move(guide));

@@ -15,7 +15,7 @@ struct FoundCommand {
   const Operator* op;
   std::vector<std::size_t> letters;  // byte offsets of the label's letters that match the query
   std::string reason;                // why the command cannot run now; "": it can
-  bool is_named = true;              // false: only its description speaks of the query
+  bool is_named = true;              // false: the query matches only its description
 };
 // Returns the commands that match the query, the best match first. Commands that match by label or category come
 // before commands that match only by description. In both groups, commands that cannot run now come last. If the query

@@ -54,8 +54,10 @@ struct BakedElbow {
                       });
     return std::move(*first);
   }
-  // Distances at rest, ascending, mm, between what lies at each posed voxel of soft tissue by dual quaternions and by a
-  // solve of this angle. Voxels where blending alone and the solve agree are left out.
+  // Compares the posed volume with the solved volume of this angle. For each voxel of soft tissue, takes the distance
+  // in mm between the two rest positions that the volumes show there. Returns the distances in ascending order. Leaves
+  // out voxels where blending without the baked joint already agrees with the solve.
+  //   is_corrected  true: the posed volume uses the baked joint; false: dual quaternions alone
   std::vector<double> distances(double degrees, bool is_corrected) const {
     const Posed solved = posed(degrees, Fem{.contact = true, .quality = FemQuality::Draft, .is_exact = true}, {}),
                 blended = posed(degrees, Blend::DualQuaternion, {}),
