@@ -43,7 +43,7 @@ struct SolvedAngle {
 };
 // The solves on one side of rest, which share a mesh.
 struct SolvedSide {
-  std::vector<SolvedAngle> angles;  // from rest outwards
+  std::vector<SolvedAngle> angles;  // solved angles, from the one nearest to rest outwards
   std::shared_ptr<const TetMesh> mesh;
   DeformingRegion moving;
   double tet_mm = 0;
@@ -153,7 +153,7 @@ glm::vec3 in_half_precision(const glm::dvec3& v) {
 struct SolvedCorners {
   double degrees = 0;
   bool is_baked = false;
-  std::vector<glm::vec3> difference;  // #C
+  std::vector<glm::vec3> difference;  // one vector for each corner
 };
 
 // Fills in the baked angles, the lattice and its shifts.

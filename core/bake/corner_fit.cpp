@@ -72,7 +72,7 @@ void CornerFit::number_nodes() {
   }
 }
 
-// Adds up the matrix of the equations.
+// Fills matrix_ with the terms that the corners contribute to the equations.
 void CornerFit::add_corners() {
   matrix_.assign(27 * nodes_.size(), 0.0);
   for (std::size_t corner = 0; corner < corners_.size(); ++corner) {

@@ -50,8 +50,9 @@ class CornerFit {
   glm::ivec3 step_, first_{0}, size_{0};
   // nodes_: places of the nodes in the box; index_: for each place of the box, its index in nodes_, or -1
   std::vector<std::int32_t> nodes_, index_;
-  std::vector<std::int32_t> columns_;                  // #N by 27: neighbours of each node; -1: none
-  std::vector<double> matrix_;                         // #N by 27
+  std::vector<std::int32_t> columns_;  // #N by 27: neighbours of each node; -1: none
+  // entries of the equations' matrix for each node and its neighbours, #N by 27, as in columns_
+  std::vector<double> matrix_;
   std::vector<std::array<std::int32_t, 3>> in_a_row_;  // three nodes in a row along an axis
   std::vector<double> diagonal_;
 };

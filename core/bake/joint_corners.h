@@ -18,7 +18,7 @@ struct JointCorners {
   std::vector<glm::ivec3> corner;      // #C: the voxel whose lowest corner each is, by brick, x fastest
   std::vector<glm::dvec3> rest;        // #C positions at rest, world, mm
   std::vector<std::int64_t> offsets;   // #C + 1: where the influences of each corner begin
-  std::vector<BoneWeight> influences;  // ascending by bone
+  std::vector<BoneWeight> influences;  // weights of all corners, one corner after another, ascending by bone
   std::vector<std::uint8_t> is_soft;   // #C: whether a voxel of soft tissue is around the corner
   std::vector<std::uint8_t> is_skin;   // #C: whether a voxel of skin is around the corner
   std::int64_t size() const { return std::ssize(corner); }
@@ -37,7 +37,7 @@ JointCorners joint_corners(const LabelVolume& volume, const TissueVoxels& tissue
 // Returns where blending by dual quaternions poses the corners, world, mm.
 std::vector<glm::dvec3> blended_corners(const JointCorners& corners, const std::vector<RigidTransform>& motions);
 
-// The corners as a mesh carries them.
+// The positions to which a solved mesh carries the corners.
 class CarriedCorners {
  public:
   // Keeps references to all arguments, which must outlive this object.

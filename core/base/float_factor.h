@@ -17,8 +17,8 @@ namespace limber {
 // The structure of a supernodal factor. The columns of supernode s are [column[s], column[s + 1]). Its rows, in rising
 // order and beginning with its own columns, are row[first_row[s] .. first_row[s + 1]).
 struct Supernodes {
-  std::vector<int> column;              // #supernodes + 1
-  std::vector<std::int64_t> first_row;  // #supernodes + 1
+  std::vector<int> column;              // first column of each supernode; one more entry gives the end of the last one
+  std::vector<std::int64_t> first_row;  // for each supernode, index of its first entry in `row`; one more gives the end
   std::vector<int> row;
 
   int count() const { return static_cast<int>(column.size()) - 1; }
@@ -66,7 +66,7 @@ class FloatFactor {
   std::vector<Update> updates_;
   std::unique_ptr<float[]> panels_;
   std::int64_t room_ = 0;      // number of numbers that panels_ has memory for
-  std::vector<double> scale_;  // 1 / sqrt(diagonal)
+  std::vector<double> scale_;  // factor by which each row and column is scaled: 1 / sqrt(diagonal entry)
   // Working memory: the position of each row in the supernode that is being computed, a product of two panels, and the
   // vectors of solve().
   std::vector<int> place_;

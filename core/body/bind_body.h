@@ -18,7 +18,7 @@
 namespace limber {
 
 enum class Binding { Heat, Geodesic, Rigid };
-std::vector<std::string> binding_words();                                    // "heat", "geodesic", "rigid"
+std::vector<std::string> binding_words();  // returns the names of the methods: "heat", "geodesic", "rigid"
 Binding require_binding(const std::string& word, const std::string& where);  // throws Error for an unknown word
 
 // The seams of a body: voxel faces at which tissue touches without being connected. Empty: they are found

@@ -368,7 +368,7 @@ class Pieces {
   std::map<std::int32_t, std::vector<int>> before_;  // for each basin, the rig bones of shoulders that it cannot follow
 };
 
-// Returns the rig bone of every basin.
+// Returns the rig bone that every basin follows. A basin is a piece of bone tissue around a point deep inside it.
 std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tissue, const LabelVolume& volume,
                                  const std::vector<std::int32_t>& basin, const Pieces& pieces) {
   const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;

@@ -105,7 +105,7 @@ class CommandProgress final : public Progress {
 
 // The values of the options --threads N and --progress json.
 struct RunOptions {
-  int threads = 0;  // 0: all cores
+  int threads = 0;  // number of threads that the command uses; 0: one for each processor core
   std::string progress;
 };
 void add_run_options(CLI::App& command, RunOptions& options);

@@ -30,7 +30,7 @@ class BakedSampler {
 
   struct Shares {
     int count = 0;                     // 0: no node with a shift is around the place
-    std::array<std::int32_t, 8> node;  // indices in BakedJoint::nodes
+    std::array<std::int32_t, 8> node;  // the nodes, as indices in BakedJoint::nodes
     std::array<float, 8> share;
   };
   // Returns the nodes with shifts around a place.

@@ -29,7 +29,7 @@ struct BakeSource {
   Hash volume{};   // the grid, and the labels of its tissue
   Hash bones{};    // which of the labels are bone
   Hash rig{};      // the bones' names, parents and positions
-  Hash weights{};  // the skin weights
+  Hash weights{};  // the skin weights with which the joint was baked
 
   bool operator==(const BakeSource&) const = default;
 };

@@ -17,7 +17,7 @@ using Voxels = std::array<std::uint64_t, 8>;
 // Factor on the weights that a voxel gives to its cell's corners if the voxel follows one bone with full weight. The
 // large factor keeps bones rigid up to their border.
 constexpr double kHold = 1000;
-constexpr int kGrain = 16;  // bricks per task
+constexpr int kGrain = 16;  // number of bricks that one parallel task handles
 constexpr std::uint64_t kFirstColumn = 0x0101010101010101, kLastColumn = kFirstColumn << 7;
 
 bool is_empty(const Voxels& voxels) {

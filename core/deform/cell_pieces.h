@@ -60,7 +60,7 @@ std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights
 // the upper neighbour, along `axis`, of the cell of `a`.
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);
 
-// Finds the pieces of a cell.
+// Finds the pieces of a cell: the parts of its tissue that move separately.
 class PiecesByCell {
  public:
   // Finds where the pieces of each cell begin. `pieces` must outlive this object.

@@ -20,7 +20,7 @@ namespace {
 // Up to this number of tissue voxels, cells have 4^3 voxels; above it, they have 8^3 voxels. At 2 mm a limb has 0.65
 // million tissue voxels, a body 10 million.
 constexpr std::int64_t kMostFineVoxels = 1'500'000;
-constexpr int kGrain = 256;                  // cells per task
+constexpr int kGrain = 256;                  // number of cells that one parallel task handles
 constexpr double kLeastWeight = 1.0 / 1024;  // a bone's share of a vertex's weight that is smaller than this is dropped
 // If all corners of a cell have at least this weight on one bone, the whole cell counts as moving rigidly with the
 // bone, and the bone's tissue in it needs no stiff part (CellPart).

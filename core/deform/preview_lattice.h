@@ -30,7 +30,7 @@ namespace limber {
 int preview_step(const TissueVoxels& tissue);
 
 struct CellPart {
-  std::int32_t cell;  // index into PreviewLattice::cells
+  std::int32_t cell;  // the cell that contains the part, as an index into PreviewLattice::cells
   // True: tissue that follows one bone; false: tissue on one side of a gap.
   bool is_stiff;
   // One bit for each of the 4^3 subcells, x fastest: 1 if the part poses it.

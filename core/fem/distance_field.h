@@ -18,7 +18,7 @@ namespace limber {
 struct DistanceAt {
   double mm;
   Eigen::Vector3d slope;      // first derivatives; of length 1 where the surface is flat
-  Eigen::Matrix3d curvature;  // second derivatives, 1/mm
+  Eigen::Matrix3d curvature;  // second derivatives of the distance, 1/mm
 };
 
 class DistanceField {
@@ -43,7 +43,7 @@ class DistanceField {
   Eigen::RowVector3d low_;
   double spacing_ = 1;
   std::array<int, 3> size_{};
-  std::vector<float> mm_;  // #samples, x fastest
+  std::vector<float> mm_;  // distance at each sample of the grid, mm; x fastest
 };
 
 }  // namespace limber

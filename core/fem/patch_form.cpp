@@ -12,7 +12,7 @@
 namespace limber {
 
 namespace {
-constexpr std::int64_t kGrain = 512;  // patches per task
+constexpr std::int64_t kGrain = 512;  // number of patches that one parallel task handles
 // Tets whose shear moduli differ by a larger factor are not in one patch, so that fat does not shrink while muscle
 // swells.
 constexpr double kAlike = 1.5;

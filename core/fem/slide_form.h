@@ -25,11 +25,11 @@ struct SlideForm {
     int node, bone;
     double normal, fascia;  // stiffness across and along the surface, kPa mm
     Eigen::RowVector3d rest;
-    double rest_mm;  // d0
+    double rest_mm;  // distance of the node from the surface at rest, mm
   };
   std::vector<Node> nodes;
   std::vector<std::shared_ptr<const DistanceField>> surface;  // by bone, at rest; null: nothing slides on it
-  std::vector<RigidTransform> posed_from_rest;                // by bone
+  std::vector<RigidTransform> posed_from_rest;                // motion of each rig bone from rest to the pose
   NodePositions moved;  // #nodes: motion that is subtracted from each node's position before all else; empty: none
 
   double value(const NodePositions& x) const;

@@ -35,7 +35,8 @@ LIMBER_INLINE void derive(std::span<const TetState> tets, int first, TetDerivati
   const TetState* state[Lanes::kCount];
   for (int l = 0; l < Lanes::kCount; ++l) state[l] = &tets[std::min<std::size_t>(first + l, tets.size() - 1)];
 
-  N F[3][3], s[4][3], volume, shear, force_slope, g, h;  // F[j] is column j of F
+  // per lane: F by columns, the tet's slopes s, and its numbers times its volume
+  N F[3][3], s[4][3], volume, shear, force_slope, g, h;
   int negative = 0;
   for (int l = 0; l < Lanes::kCount; ++l) {
     const TetState& tet = *state[l];

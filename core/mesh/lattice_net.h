@@ -38,7 +38,7 @@ struct LatticeNetSettings {
   // Near these places bones keep away from the surface by a cell at least, so that tissue over them can slide: the
   // samples of bone next to air become soft tissue.
   struct Covered {
-    glm::dvec3 place;  // world, mm
+    glm::dvec3 place;  // position at rest over which tissue slides, world, mm
     double mm;         // distance from it up to which bones are covered
   };
   std::vector<Covered> covered;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Searches the voxels around a voxel.
+// Searches the ball of voxels around a voxel for one that passes a test.
 #pragma once
 
 #include "core/volume/grid.h"

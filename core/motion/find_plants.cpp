@@ -66,8 +66,8 @@ glm::dvec3 mean_of(const std::vector<glm::dvec3>& values, int first, int last) {
 // before or after.
 std::vector<std::array<int, 2>> still_spans(const std::vector<glm::dvec3>& places, const std::array<int, 2>& within,
                                             int window, double near) {
-  // It suffices that the point is still on one side in time. At the first frame of a rest it is still only towards
-  // later frames, at the last frame only towards earlier ones.
+  // A point counts as still in a frame if it does not move in the frames just before or in those just after. In the
+  // first frame of a rest it has moved just before, in the last frame it moves just after.
   const auto is_still = [&](int f) {
     const auto stays_to = [&](int g) {
       return g >= 0 && g < std::ssize(places) && glm::distance(places[f], places[g]) < near;

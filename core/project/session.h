@@ -36,7 +36,7 @@ struct SessionSettings {
   double retry_seconds = 1;         // seconds until a failed write is tried again
   double watch_seconds = 2;         // seconds between checks of the project file
   // Size above which a journal is started anew once it has also grown to several times its first size.
-  std::int64_t large_journal = std::int64_t{256} << 20;  // bytes
+  std::int64_t large_journal = std::int64_t{256} << 20;  // the size, bytes
 };
 
 struct SessionStatus {

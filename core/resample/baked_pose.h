@@ -25,7 +25,7 @@ struct BakedJointReport {
 
   // Returns true if the angle is outside the range of the baked angles by more than kSlack.
   bool is_beyond() const { return degrees < low - kSlack || degrees > high + kSlack; }
-  static constexpr double kSlack = 0.01;  // degrees
+  static constexpr double kSlack = 0.01;  // how far an angle may exceed the range without being beyond it, degrees
 };
 
 // Returns the baked joints with their rotations in the pose.

@@ -34,7 +34,7 @@ struct Arrangement {
   bool results = false;
   bool timeline = false;
   float sidebar_width = 320, bottom_height = 192;
-  // Fractions of the width or height that the left or upper views take, in the layouts Split and Four
+  // Fractions of the width or height that the left or upper views take, in the layouts Split and Four.
   float split_x = 0.66f, split_y = 0.5f, four_x = 0.5f, four_y = 0.5f;
   std::optional<ViewId> maximized;
 

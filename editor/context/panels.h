@@ -74,7 +74,7 @@ void draw_timeline(Editor& editor, const Rect& rect);
 // is still free to the left of it.
 float draw_job_slot(Editor& editor, const Rect& bar, float right);
 
-// Messages
+// Messages to the user
 void draw_toasts(Editor& editor);
 void draw_error_message(Editor& editor);
 

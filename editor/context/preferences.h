@@ -14,7 +14,7 @@
 namespace limber::editor {
 
 struct Preferences {
-  // Interface
+  // Preferences of the interface
   std::string theme = "dark";
   double scale = 1;            // scale of the interface relative to the monitor's scale, [0.75, 3]
   double tooltip_delay = 0.5;  // delay before a tool tip appears, s, [0, 3]
@@ -25,16 +25,16 @@ struct Preferences {
   std::string display = "solid";  // display mode of the 3D view: "solid", "xray" or "tissue"
   bool fine_light = true;         // true: the 3D view gets ray-traced shadows while its picture does not change
 
-  // Undo and saving
+  // Preferences of the undo history and of automatic saving
   int undo_limit_mb = 1024;  // memory limit of the undo history, MB, [64, 65536]
   int autosave_minutes = 0;  // interval of automatic saving for a project that has a file, [0, 240]; 0: never
 
-  // Jobs
+  // Preferences of jobs, such as resampling
   int jobs_at_once = 2;       // number of jobs that may run at the same time, [1, 8]
   int worker_memory_mb = 0;   // memory that a resampling may use, MB; 0: no limit
   double worker_minutes = 0;  // time that a resampling may take, minutes; 0: no limit
 
-  // Folders
+  // Preferences of folders
   std::string scratch_folder;  // folder for temporary files of a resampling; "": the system's folder
 
   // The window's regions at the last use; each project stores its own arrangements.

@@ -34,9 +34,9 @@ const Strips* shown_strips(const Editor& editor);
 double strips_rate(const Editor& editor);  // the shown clip's rate, frames per second
 // names of the selected strips that exist; empty while the view is hidden
 std::set<std::string> chosen_strips(const Editor& editor);
-const Strip* active_strip(const Editor& editor);  // nullptr: none
+const Strip* active_strip(const Editor& editor);  // returns the active strip; nullptr: none is active
 std::optional<std::size_t> active_track(const Editor& editor);
-// Selects one strip alone.
+// Selects this strip and deselects all others.
 void choose_strip(Editor& editor, const std::string& name);
 
 // ---- Edits of the shown clip's strips

@@ -89,7 +89,8 @@ class ArmPainted {
 
     const auto place = brush_place(editor_, view, path.front());
     const double step = painting.spacing * painting.radius /
-                        ViewProjection(editor_, view).millimetres_per_pixel(place->seen);  // pixels per dab
+                        // distance of two dabs, pixels
+                        ViewProjection(editor_, view).millimetres_per_pixel(place->seen);
     const std::size_t before = static_cast<std::size_t>(editor_.history.position());
     frame(ButtonChanged{MouseButton::Left, true});
     const double begin = seconds();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whatever a file of a baked joint holds: it is read into shifts of nodes that lie in their box, and written again
-// gives the same joint, or it is refused with Error. The first byte says whether the rest is a file, or what a file
-// holds packed.
+// Fuzzes the reader of baked joints: a file is read into shifts of nodes that lie in their box, and writing these gives
+// the same joint again; or it is refused with Error. If the first byte is even, the other bytes are the file; if it is
+// odd, they are the file's content before it is compressed.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

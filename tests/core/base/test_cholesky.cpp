@@ -209,7 +209,7 @@ TEST_CASE("cholesky: a matrix that single precision cannot factorize is solved i
 }
 
 TEST_CASE("cholesky: a matrix without zeros, wider than a supernode may be, is solved in single precision") {
-  constexpr int kNodes = 200;  // 600 columns
+  constexpr int kNodes = 200;  // three columns each, 600 in all
   std::vector<int> all(kNodes);
   std::iota(all.begin(), all.end(), 0);
   BlockGraphBuilder builder(kNodes);

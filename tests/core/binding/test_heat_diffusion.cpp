@@ -46,7 +46,7 @@ TEST_CASE("heat: bone is exactly rigid, the middle of the joint is shared, weigh
 }
 
 TEST_CASE("heat: through a slab between two bones the weight rises evenly and alike from both sides") {
-  // Two plates of bone with 9 voxels of muscle between.
+  // Two plates of bone with 9 voxels of muscle between them.
   SmallBody body = two_bone_bar(6, 24, 9);
   body.volume.grid.size = {6, 6, 24};
   body.volume.voxels.assign(body.volume.grid.voxel_count(), kBone);

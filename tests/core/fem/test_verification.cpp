@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Shapes whose stress is known analytically.
+// Compares solved shapes with shapes whose stress is known analytically.
 #include <algorithm>
 #include <cmath>
 

@@ -466,7 +466,7 @@ TEST_CASE("body poses: the rigs that come with the program, hinges and all, take
 TEST_CASE("body poses: a hand whose names say no side curls its fingers into its palm") {
   const Armature hand = read_armature(LIMBER_SOURCE_DIR "/assets/rigs/hand.json");
   const Pose straight = posed(hand, "", {"hand curl=0"}), fist = posed(hand, "", {"hand curl=80"});
-  // It is a right hand: its palm faces along the cross product of these two directions.
+  // The hand is a right one: its palm faces along the cross product of these two directions.
   const auto place = [&](const char* bone) {
     return hand.bones[static_cast<std::size_t>(require_bone(hand, bone))].head;
   };

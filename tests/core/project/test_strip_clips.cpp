@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Strips in documents and projects.
+// Tests how documents and projects store strips, and how strips follow changes of the clips that they play.
 #include "core/project/strip_clips.h"
 
 #include <limits>
@@ -56,7 +56,7 @@ Strip odd_strip(const std::shared_ptr<const Clip>& clip, const std::string& name
   return strip;
 }
 
-// A document with two clips and a clip of their strips.
+// Returns a document with two clips, and with a third clip that plays the two as strips.
 Document with_strips() {
   Document document = small_document();
   Strips strips;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads figures back by other programs.
+// Reads the written figures with other programs.
 #include "editor/figure/write_figure.h"
 
 #include <doctest/doctest.h>

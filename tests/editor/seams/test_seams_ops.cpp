@@ -8,7 +8,7 @@ namespace limber::test {
 
 namespace {
 
-// Makes the small limb an arm whose parts touch nowhere.
+// Gives the small limb the bone names of an arm. No two parts of its body touch at rest.
 void make_arm(Stage& s) {
   Document next = s.document();
   Armature rig = *next.armature;

@@ -237,7 +237,7 @@ TEST_CASE("weights: contours run where the weight is a quarter, a half and three
   for (const int x : lines) {
     const double weight = (18 + (x + 0.5 - 100) * 0.25 - 2) / 31;
     CHECK(std::min({std::abs(weight - 0.25), std::abs(weight - 0.5), std::abs(weight - 0.75)}) <
-          0.012);  // one and a half pixels, as a weight
+          0.012);  // the weight changes by this much over one and a half pixels
   }
   scene.line_scale = 2;
   view.draw(scene, slice, SliceDisplay::Labels, wide);
