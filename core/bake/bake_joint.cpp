@@ -38,7 +38,7 @@ constexpr float kBoneCorner = 0.1f;  // weight in the fit of a corner inside bon
 struct SolvedAngle {
   double degrees = 0;
   bool is_baked = false;                // false: the solve only serves to measure the error here
-  std::vector<RigidTransform> motions;  // of the bones that the weights name
+  std::vector<RigidTransform> motions;  // motions of the bones that the weights name, from rest to the pose
   Eigen::MatrixX3d V;
 };
 // The solves on one side of rest, which share a mesh.

@@ -23,9 +23,9 @@ namespace limber {
 struct BakeSettings {
   double low = 0, high = 90;  // degrees from rest; low <= 0 <= high, and at least 5 degrees from end to end
   int angles = 7;             // baked angles beside rest, from end to end; at least one on either side that has a range
-  bool contact = true;        // skin touches skin instead of passing through
+  bool contact = true;        // true: skin touches skin in the solves instead of passing through
   FemQuality quality = FemQuality::Normal;
-  std::string glide = "joint";  // a word of core/body/glide_poses.h
+  std::string glide = "joint";  // how joints glide in the solves: a word of core/body/glide_poses.h
 };
 
 struct JointBake {

@@ -35,7 +35,7 @@ class CornerFit {
  private:
   struct Shares {
     glm::ivec3 side[8];    // 0 or 1 along each axis: which of the nodes around the corner
-    std::int32_t node[8];  // place in the box
+    std::int32_t node[8];  // places of these nodes in the box
     double share[8];
     int count = 0;
   };

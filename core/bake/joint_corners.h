@@ -66,8 +66,9 @@ class CarriedCorners {
   SkinWeights weights_;  // in tissue that does not deform, each voxel follows one bone
   const DeformingRegion& moving_;
   std::shared_ptr<const TetMesh> mesh_;
-  std::unordered_map<std::int64_t, std::int64_t> index_;  // of each corner in the mesh, by its place in the volume
-  std::vector<std::int64_t> in_mesh_;                     // indices of the corners that the mesh carries
+  // index of each corner in the mesh, by its place in the volume
+  std::unordered_map<std::int64_t, std::int64_t> index_;
+  std::vector<std::int64_t> in_mesh_;  // indices of the corners that the mesh carries
   std::unique_ptr<CarriedPoints> points_;
 };
 

@@ -26,7 +26,7 @@ namespace limber {
 struct SimulationBody {
   LabelVolume volume;                     // with voxel axes to the left, back and top (L, P, S)
   std::vector<TissueMaterial> materials;  // material of every label in the volume
-  double frequency = 0;                   // frequency for which the materials hold, Hz; 0: none
+  double frequency = 0;                   // frequency of the field to simulate, Hz
 };
 
 // Returns the volume with its voxel axes permuted and flipped so that they point to the left, back and top (L, P, S).

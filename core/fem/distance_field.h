@@ -2,7 +2,7 @@
 // The signed distance from a bone's surface, in mm, negative inside the bone, with its first and second derivatives. It
 // is stored as samples on a regular grid at rest; between them it is a cubic B-spline with the samples as coefficients,
 // which is smooth: its second derivatives are continuous. A bone is rigid, so one table serves for every pose, looked
-// up in the bone's own frame. Beyond the grid the distance goes on as a linear function.
+// up in the bone's own frame. Beyond the grid the distance continues linearly.
 #pragma once
 
 #include <functional>
@@ -32,7 +32,7 @@ class DistanceField {
   DistanceField(const TetMesh& mesh, std::uint16_t region, std::span<const int> around, double margin_mm,
                 double spacing_mm, double smooth_mm);
 
-  DistanceAt at(const Eigen::RowVector3d& place) const;  // world at rest, mm
+  DistanceAt at(const Eigen::RowVector3d& place) const;  // returns the distance at a position (world at rest, mm)
 
  private:
   void place_grid(const Eigen::RowVector3d& low, const Eigen::RowVector3d& high, double spacing_mm);

@@ -21,7 +21,7 @@ struct LabelStrokeSettings {
   Label label = 0;      // the label to paint; with `erases`, the label to erase
   bool erases = false;  // true: voxels of `label` lose it
   Erased erased = Erased::Surroundings;
-  double radius = 5;  // mm, positive
+  double radius = 5;  // radius of the brush, mm; positive
   // Unit normal of the plane in which a flat brush paints, world; empty: the brush is a ball. If the plane is parallel
   // to layers of voxels, the brush paints the layer that contains its centre. Otherwise it paints the voxels whose
   // centres are at most half a voxel from the plane.

@@ -12,7 +12,7 @@
 namespace limber {
 
 struct LeastDirection {
-  glm::dvec3 direction{0, 0, 1};  // unit length
+  glm::dvec3 direction{0, 0, 1};  // the best direction, a unit vector
   double length = std::numeric_limits<double>::infinity();
 };
 

@@ -25,7 +25,7 @@ constexpr int kMeasureKinds = 4;
 struct Measurement {
   std::string name;  // unique among the document's measurements
   MeasureKind kind = MeasureKind::Distance;
-  std::vector<glm::dvec3> points;  // world, mm, of the body at rest
+  std::vector<glm::dvec3> points;  // positions on the body at rest, world, mm
 
   bool operator==(const Measurement&) const = default;
 };

@@ -14,7 +14,7 @@ namespace limber {
 enum class UserFolder { Config, Cache, State };
 Path user_folder(UserFolder kind);
 
-Path home_folder();  // "/" when there is none
+Path home_folder();  // returns the user's home folder; "/" when there is none
 
 // Returns the folders at which the desktop has mounted disks and memory sticks.
 std::vector<Path> mounted_folders();
