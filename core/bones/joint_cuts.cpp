@@ -89,8 +89,7 @@ double along_bone(const Bone& bone, const glm::dvec3& p) {
 // The two rig bones nearest to a voxel. `rank` is the voxel's index among the voxels that have the same nearest bone.
 struct Near {
   std::array<int, 2> bone{-1, -1};
-  // distances of the voxel from the two bones, mm
-  std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
+  std::array<float, 2> distance{std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};  // each in mm
   std::int32_t rank = -1;
   void take(int b, float d) {
     if (d < distance[0]) {

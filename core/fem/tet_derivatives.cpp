@@ -35,7 +35,7 @@ LIMBER_INLINE void derive(std::span<const TetState> tets, int first, TetDerivati
   const TetState* state[Lanes::kCount];
   for (int l = 0; l < Lanes::kCount; ++l) state[l] = &tets[std::min<std::size_t>(first + l, tets.size() - 1)];
 
-  // per lane: F by columns, the tet's slopes s, and its numbers times its volume
+  // One value per tet: F by columns, the gradients s of the nodes, and the other numbers, multiplied by the volume.
   N F[3][3], s[4][3], volume, shear, force_slope, g, h;
   int negative = 0;
   for (int l = 0; l < Lanes::kCount; ++l) {
