@@ -34,7 +34,7 @@ ConstraintRule copy_rotation_constraint() {
   return {ConstraintKind::CopyRotation,
           "copy_rotation",
           "Copy rotation",
-          "Turn the bone from rest as its target bone turns.",
+          "Copy the rotation of the target bone, measured from rest, to the bone.",
           ConstraintTarget::Bone,
           turned_alone,
           solve};

@@ -27,7 +27,7 @@ ConstraintRule limit_rotation_constraint() {
   return {ConstraintKind::LimitRotation,
           "limit_rotation",
           "Limit rotation",
-          "Keep the bone's turn about each of its own axes within a range.",
+          "Keep the bone's rotation about each of its local axes within a range.",
           ConstraintTarget::None,
           turned_alone,
           solve};

@@ -76,9 +76,13 @@ glm::dvec3 planted_point(const ConstraintOnRig& on_rig, const PosedRig& rig) {
 }
 
 ConstraintRule plant_constraint() {
-  return {
-      ConstraintKind::Plant,   "plant", "Plant", "Keep a hand or foot at its place in the world or on another bone.",
-      ConstraintTarget::Place, turned,  solve};
+  return {ConstraintKind::Plant,
+          "plant",
+          "Plant",
+          "Keep a hand or foot at a fixed position in the world or on another bone.",
+          ConstraintTarget::Place,
+          turned,
+          solve};
 }
 
 }  // namespace limber

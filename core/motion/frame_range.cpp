@@ -14,7 +14,7 @@ FrameRange frame_range_of(const std::string& request, const std::string& where) 
   const int fields = std::sscanf(request.c_str(), "%d:%d%n:%d%n", &range.first, &range.last, &read, &range.step, &read);
   if (fields < 2 || std::size_t(read) != request.size() || range.first < 0 || range.last < range.first ||
       range.step < 1)
-    throw Error("these are no frames", where, "write FIRST:LAST or FIRST:LAST:STEP, as in 0:90:10");
+    throw Error("this is not a range of frames", where, "write FIRST:LAST or FIRST:LAST:STEP, as in 0:90:10");
   return range;
 }
 

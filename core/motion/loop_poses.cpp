@@ -19,7 +19,8 @@ constexpr double kStill = 0.1;  // degrees per frame; the speeds of slower bones
 void require_loop(std::size_t count, const LoopSettings& settings) {
   const std::int64_t steps = static_cast<std::int64_t>(count) - 1;
   if (steps < 2)
-    throw Error("the take is too short to be repeated", std::to_string(count) + " frames", "use three frames or more");
+    throw Error("the motion is too short to be repeated", std::to_string(count) + " frames",
+                "use three frames or more");
   if (settings.repeats < 1 || settings.repeats * steps >= kMostFrames)
     throw Error("these repeats have too many frames", std::to_string(settings.repeats) + " repeats",
                 "use 1 to " + std::to_string((kMostFrames - 1) / steps));

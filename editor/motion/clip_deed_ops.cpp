@@ -170,14 +170,15 @@ void ask_speed(Editor& editor) {
 
 void tell_of_loop(Editor& editor, const LoopedPoses& loop, int repeats) {
   char text[160];
-  std::snprintf(text, sizeof text, "The seam blends over a difference of up to %.1f\u00b0%s%.40s", loop.gap_degrees,
+  std::snprintf(text, sizeof text, "Where repeats meet, poses differ by up to %.1f\u00b0%s%.40s", loop.gap_degrees,
                 loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str());
   const std::string detail = text;
   const std::string line = std::to_string(repeats) + (repeats == 1 ? " repeat, " : " repeats, ") +
                            frames_text(static_cast<int>(loop.poses.size()));
   if (loop.haste <= kHasty) return editor.messages.ok(line, detail);
   std::snprintf(text, sizeof text,
-                "; bones turn %.1f times as fast there: loop a whole cycle, or blend over more frames", loop.haste);
+                "; blending them turns bones %.1f times as fast: loop a whole cycle, or blend over more frames",
+                loop.haste);
   editor.messages.warn(line, detail + text);
 }
 
@@ -217,11 +218,11 @@ void ask_loop(Editor& editor) {
       {"Loop clip",
        "Repeats the playing range. Each repeat begins where the one before ended, in the pose of the first frame.",
        "Loop",
-       {number_of("Repeats", "Number of times that the range plays in all.", 4, 1, 1000, "%.0f"),
+       {number_of("Repeats", "How many times the playing range plays in total.", 4, 1, 1000, "%.0f"),
         number_of("Blend", "Frames around each seam in which the end of the range is blended into its beginning.",
                   usual, 0, steps, "%.0f", "frames"),
-        choice_of("Body", "Continue the body's travel and heading from repeat to repeat, or keep the body in place.",
-                  {"Travels on", "On the spot"}),
+        choice_of("Body", "Let each repeat continue from the body's position and heading, or keep the body in place.",
+                  {"Travels", "In place"}),
         choice_of("Result", "Store the repeats in a new clip, or replace the shown clip.", {"New clip", "Same clip"})},
        [](const Editor& e, const std::vector<FormField>& fields) {
          require_frames(e);
@@ -234,7 +235,7 @@ void ask_loop(Editor& editor) {
          return frames_text(last - first + 1) + " become " + frames_text(static_cast<int>(frames)) +
                 ", keys included." +
                 (is_locked && !settings.stays
-                     ? " Root motion keeps the body in place: for travel, set it to Free first."
+                     ? " Root motion keeps the body in place. To let it travel, set Root motion to Free first."
                      : "");
        },
        [](Editor& e, const std::vector<FormField>& fields) {
@@ -250,8 +251,8 @@ std::vector<Operator> clip_deed_operators() {
        "Swap left and right in the whole clip: its motion, its keys with their curves, and the body's path.",
        mirror_shown, needs_clip_and_rig},
       {"motion.loop_clip", "Loop clip...", icon::kLoop, "Motion",
-       "Repeat the playing range, and blend each repeat into the next. The body can travel on or stay on the spot.",
-       ask_loop, needs_three_frames},
+       "Repeat the playing range, and blend each repeat into the next. The body can travel or stay in place.", ask_loop,
+       needs_three_frames},
       {"motion.speed", "Change speed...", "", "Motion",
        "Make the clip longer or shorter by a factor or to a number of frames. Keys are stretched with it.", ask_speed,
        needs_clip},

@@ -56,7 +56,7 @@ bool has_joints_of(const Motion& a, const Motion& b) {
 }
 
 std::vector<Pose> poses_of(const ClipOnRig& clip, int first, int last, Progress& progress) {
-  if (!clip.problem().empty()) throw Error("the takes cannot be joined", clip.clip()->name, clip.problem());
+  if (!clip.problem().empty()) throw Error("the motions cannot be joined", clip.clip()->name, clip.problem());
   std::vector<Pose> poses;
   for (int frame = first; frame <= last; ++frame) {
     if (progress.cancelled()) throw Cancelled();
@@ -116,8 +116,8 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
                                       : "Standing feet slide in the cross-fade by up to " + mm_text(slides);
   result.is_doubtful = slides > kSlides || made.foot_gap > 0;
   if (made.foot_gap > 0)
-    result.detail +=
-        "; a foot moves " + mm_text(made.foot_gap) + " without being lifted: join where the same foot steps";
+    result.detail += "; a foot moves " + mm_text(made.foot_gap) +
+                     " without being lifted: join at a frame where both motions stand on the same foot";
   return result;
 }
 
@@ -195,7 +195,7 @@ void read_next(Editor& editor, const Path& path) {
     next->motion = std::make_shared<const Motion>(read_bvh(path));
     next->name = path.stem().string();
     if (next->motion->frame_count == 0)
-      throw Error("this motion has no frames", path.string(), "select a file with a take");
+      throw Error("this motion has no frames", path.string(), "select a file with a motion");
     next->up = up_axis_of(*next->motion).axis;
     return [next](Editor& e) { ask_join(e, next); };
   });

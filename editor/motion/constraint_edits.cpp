@@ -349,12 +349,13 @@ void switch_weight(Editor& editor, const std::string& name) {
     insert_weight_key(clip.keys, name, later, weight > 0.5 ? 0 : 1);
     for (int between = frame + 1; between < later; ++between) delete_weight_key(clip.keys, name, between);
   });
-  editor.messages.info(weight > 0.5 ? "Keys take over" : "The constraint takes over",
+  editor.messages.info(weight > 0.5 ? "The constraint fades out" : "The constraint fades in",
                        "From frame " + std::to_string(frame) + " to " + std::to_string(later));
 }
 
 void set_weight_steps(Editor& editor, const std::string& name, Interpolation next) {
-  change_free_clip(editor, "Set steps of weight", [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
+  change_free_clip(editor, "Set weight interpolation",
+                   [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
 }
 
 void apply_constraints(Editor& editor) {

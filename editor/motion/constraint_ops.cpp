@@ -42,8 +42,8 @@ std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
   return [where](const Editor& editor) -> std::string {
     if (std::string why = needs_constraint(editor); !why.empty()) return why;
     if (order_neighbour(editor, active_constraint(editor)->name, where)) return "";
-    return std::string("A move ") + (where == InOrder::Earlier ? "up" : "down") +
-           " changes nothing: constraints that turn the same bones keep their order";
+    return std::string("The constraint cannot move ") + (where == InOrder::Earlier ? "up" : "down") +
+           ": this would not change the order in which constraints turn the same bones";
   };
 }
 
@@ -79,17 +79,17 @@ std::vector<Operator> constraint_operators() {
       {"constraint.remove", "Remove constraint", "", "Motion",
        "Remove the active bone's constraint and the keys of its weight.", of_active(remove_constraint),
        needs_constraint},
-      {"constraint.toggle", "Constraint on", "", "Motion", "Switch the active bone's constraint on or off.",
+      {"constraint.toggle", "Toggle constraint", "", "Motion", "Switch the active bone's constraint on or off.",
        of_active(toggle), needs_constraint,
        [](const Editor& e) { return active_constraint(e) && active_constraint(e)->on; }},
       {"constraint.up", "Move constraint up", icon::kUp, "Motion",
-       "Move the active bone's constraint before the previous one that turns the same bones. The constraint applied "
-       "last decides the rotation.",
+       "Move the active bone's constraint before the previous one: this would not change the order in which "
+       "constraints turn the same bones. The constraint applied last decides the rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Earlier); }),
        needs_neighbour(InOrder::Earlier)},
       {"constraint.down", "Move constraint down", icon::kDown, "Motion",
-       "Move the active bone's constraint after the next one that turns the same bones. The constraint applied last "
-       "decides the rotation.",
+       "Move the active bone's constraint after the next one: this would not change the order in which constraints "
+       "turn the same bones. The constraint applied last decides the rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Later); }),
        needs_neighbour(InOrder::Later)},
       {"constraint.key_weight", "Key weight", icon::kKey, "Motion",

@@ -132,7 +132,8 @@ bool draw_head(Editor& editor, Column& column, const Constraint& constraint, boo
   if (pressed.clicked) editor.timeline->constraint = is_open ? "" : constraint.name;
   if (draw_small_icon(editor, {{right - 2 * side, row.low.y}, {right - side, row.high.y}}, "On",
                       constraint.on ? icon::kVisible : icon::kHidden,
-                      constraint.on ? look.theme.text2 : look.theme.text3, constraint.on ? "Switch off" : "Switch on",
+                      constraint.on ? look.theme.text2 : look.theme.text3,
+                      constraint.on ? "Switch constraint off" : "Switch constraint on",
                       "A constraint that is switched off changes nothing.")) {
     change(editor, constraint, constraint.on ? "Switch constraint off" : "Switch constraint on",
            [](Constraint& changed) { changed.on = !changed.on; });
@@ -160,13 +161,13 @@ void draw_weight(Editor& editor, Column& column, const Constraint& constraint) {
   if (!find_constraint(editor.document(), constraint.name)) return;
   const Rect key{{rect.high.x - button, rect.low.y}, rect.high};
   const std::string name = constraint.name;
-  if (draw_small_icon(
-          editor, key, "Key weight", icon::kKey,
-          is_here    ? look.theme.select
-          : is_keyed ? look.theme.accent_text
-                     : look.theme.text3,
-          is_here ? "Delete weight key" : "Key weight",
-          "The weight is interpolated between its keys: at 0 the bone has its keyed pose, at 1 the constraint's."))
+  if (draw_small_icon(editor, key, "Key weight", icon::kKey,
+                      is_here    ? look.theme.select
+                      : is_keyed ? look.theme.accent_text
+                                 : look.theme.text3,
+                      is_here ? "Delete weight key" : "Key weight",
+                      "The weight is interpolated between its keys. At 0 the bone has its keyed pose, at 1 the pose "
+                      "that the constraint sets."))
     attempt(editor, "Key weight", [&](Editor& e) { toggle_weight_key(e, name); });
   if (!is_keyed) return;
   const auto& track = shown_clip(editor)->keys;
@@ -174,7 +175,7 @@ void draw_weight(Editor& editor, Column& column, const Constraint& constraint) {
   int chosen = static_cast<int>(shapes == track.weight_shapes.end() || shapes->second.empty()
                                     ? Interpolation::Linear
                                     : shapes->second.begin()->second.next);
-  if (choose(editor, column, "Between keys", {"Steps", "Straight", "Smooth"}, chosen))
+  if (choose(editor, column, "Interpolation", {"Constant", "Linear", "Smooth"}, chosen))
     set_weight_steps(editor, name, static_cast<Interpolation>(chosen));
 }
 
@@ -209,11 +210,11 @@ void draw_place(Editor& editor, Column& column, const Constraint& constraint) {
     number.low = -kFar;
     number.high = kFar;
   }
-  draw_three(editor, column, "Place, mm", numbers);
+  draw_three(editor, column, "Position, mm", numbers);
 }
 
 void draw_axes(Editor& editor, Column& column, const Constraint& constraint) {
-  const Rect rect = column.property("Own axes");
+  const Rect rect = column.property("Local axes");
   const float width = rect.width() / 3;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bool on = constraint.axes[axis];
@@ -273,7 +274,7 @@ void draw_plant(Editor& editor, Column& column, const Constraint& constraint) {
     return;
   }
   bool keeps = constraint.keeps_rotation;
-  if (checkbox(editor, "Keep direction", column.property("Direction"), "Kept", keeps))
+  if (checkbox(editor, "Keep direction", column.property("Direction"), "Keep", keeps))
     attempt(editor, "Keep direction", [&](Editor& e) { keep_direction(e, name, keeps); });
 }
 
@@ -286,13 +287,13 @@ void draw_inverse_kinematics(Editor& editor, Column& column, const Constraint& c
   chain.unit = constraint.chain == 0 ? "(to the root)" : constraint.chain == 1 ? "bone" : "bones";
   draw_number(editor, column.property("Chain"), chain);
   bool keeps = constraint.keep_limits;
-  if (checkbox(editor, "Joint limits", column.property("Limits"), "Kept", keeps))
+  if (checkbox(editor, "Joint limits", column.property("Limits"), "Keep", keeps))
     change(editor, constraint, "Keep joint limits", [keeps](Constraint& changed) { changed.keep_limits = keeps; });
 }
 
 void draw_copy(Editor& editor, Column& column, const Constraint& constraint) {
   int space = static_cast<int>(constraint.space);
-  if (choose(editor, column, "Rotation", {"In the world", "From the parent"}, space))
+  if (choose(editor, column, "Rotation", {"World space", "Parent space"}, space))
     return change(editor, constraint, "Set space",
                   [space](Constraint& changed) { changed.space = static_cast<RotationSpace>(space); });
   draw_axes(editor, column, constraint);

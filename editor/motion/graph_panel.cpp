@@ -76,7 +76,7 @@ void draw_list(Editor& editor, const Rect& area, const GraphTracks& found) {
     put_text(editor, look.fonts.regular, look.theme.text2,
              Rect{{row.low.x + look.px(12), row.low.y}, {right - look.px(2), row.high.y}}, name_of(track));
   }
-  if (found.left_out > 0) words("and " + std::to_string(found.left_out) + " more: select fewer");
+  if (found.left_out > 0) words("and " + std::to_string(found.left_out) + " more: select fewer bones");
 }
 
 // ---- The plot

@@ -345,21 +345,21 @@ void ask_hold(Editor& editor) {
   const auto [low, high] = playing_range(editor);
   const int frame = std::clamp(shown_frame(editor), low, high);
   const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 2)));
-  editor.open_dialog(
-      make_form({"Hold a hand or foot",
-                 "Keeps a hand or foot in place for some frames, by bending the elbow or knee.",
-                 "Hold",
-                 {choice_of("Limb", "The hand or foot that is held.", names, static_cast<int>(names.size()) - 1),
-                  number_of("From frame", "The first frame in which it is held.", frame, low, high, "%.0f"),
-                  number_of("To frame", "The last frame in which it is held.", until, low, high, "%.0f"),
-                  choice_of("Place",
-                            "Where it is held: at its position in the first of these frames, at the cross-hair, or at "
-                            "the position typed below.",
-                            {"Where it is", "Cross-hair", "Position"}),
-                  text_of("Position", "x, y and z in mm, in LPS axes. Used if Place is Position.", ""), ease_field(),
-                  becomes_field(Becomes::SameClip)},
-                 hold_outcome,
-                 hold_limb}));
+  editor.open_dialog(make_form(
+      {"Hold a hand or foot",
+       "Keeps a hand or foot in place for some frames, by bending the elbow or knee.",
+       "Hold",
+       {choice_of("Limb", "The hand or foot to hold.", names, static_cast<int>(names.size()) - 1),
+        number_of("From frame", "The first frame in which the hand or foot is held.", frame, low, high, "%.0f"),
+        number_of("To frame", "The last frame in which the hand or foot is held.", until, low, high, "%.0f"),
+        choice_of("Hold at",
+                  "Where to hold the hand or foot: at its position in the first of these frames, at the cross-hair, or "
+                  "at the position typed below.",
+                  {"First frame", "Cross-hair", "Position"}),
+        text_of("Position", "x, y and z in mm, in LPS axes. Used if Hold at is set to Position.", ""), ease_field(),
+        becomes_field(Becomes::SameClip)},
+       hold_outcome,
+       hold_limb}));
 }
 
 std::string needs_gap(const Editor& editor) {
@@ -374,10 +374,10 @@ void ask_gap(Editor& editor) {
   const int until = std::min(high - 2, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 4)));
   editor.open_dialog(make_form(
       {"Close gap",
-       "Replaces frames, such as those in which the capture jumped, by a smooth bridge.",
+       "Replaces frames, such as those with an error of the motion capture, by a smooth transition.",
        "Replace",
-       {number_of("From frame", "The first frame that is replaced.", frame, low + 2, high - 2, "%.0f"),
-        number_of("To frame", "The last frame that is replaced.", until, low + 2, high - 2, "%.0f"),
+       {number_of("From frame", "The first frame to replace.", frame, low + 2, high - 2, "%.0f"),
+        number_of("To frame", "The last frame to replace.", until, low + 2, high - 2, "%.0f"),
         becomes_field(Becomes::SameClip)},
        [](const Editor& e, const std::vector<FormField>& fields) {
          require_frames(e);
@@ -404,7 +404,8 @@ std::vector<Operator> motion_clean_operators() {
       {"motion.hold", "Hold a hand or foot...", "", "Motion",
        "Keep a hand or foot in place for some frames of the clip.", ask_hold, needs_limb},
       {"motion.close_gap", "Close gap...", "", "Motion",
-       "Replace frames by a smooth bridge with the speeds of the motion before and after them.", ask_gap, needs_gap},
+       "Replace frames by a smooth transition that keeps the speed of the motion before and after them.", ask_gap,
+       needs_gap},
   };
 }
 

@@ -21,7 +21,7 @@ namespace limber::editor {
 
 namespace {
 
-const FileFilter kMaps{"Maps", {".json"}};
+const FileFilter kMaps{"Retarget maps", {".json"}};
 
 // Opens a dialog that asks for a new name of the shown clip. A number is added when another clip has that name.
 void ask_clip_name(Editor& editor) {
@@ -93,7 +93,7 @@ Operator rest(const char* id, const char* label, const char* description, RestSt
           description,
           [=](Editor& e) {
             if (shown_clip(e)->map.stances.*whose == which) return;
-            edit_clip(e, std::string("At rest: ") + label, PoseThen::FromClip, [&](Clip& clip) {
+            edit_clip(e, std::string("Rest pose: ") + label, PoseThen::FromClip, [&](Clip& clip) {
               clip.map.stances.*whose = which;
               for (auto& [bone, source] : clip.map.sources) source.rest_offset.reset();
             });
@@ -200,7 +200,7 @@ void trim(Editor& editor) {
 }
 
 void untrim(Editor& editor) {
-  edit_clip(editor, "Whole motion", PoseThen::FromClip, [](Clip& clip) {
+  edit_clip(editor, "Undo trim", PoseThen::FromClip, [](Clip& clip) {
     clip.start -= clip.first;
     clip.first = 0;
     clip.last = std::max(0, clip.motion->frame_count - 1);
@@ -242,18 +242,18 @@ void ask_rate(Editor& editor) {
 
 std::vector<Operator> motion_clip_operators() {
   return {
-      {"motion.retarget", "Retarget", icon::kMirror, "Motion", "Show the settings for how the clip moves the rig.",
-       show_retargeting, needs_both},
+      {"motion.retarget", "Retarget", icon::kMirror, "Motion",
+       "Show the retarget settings: how the clip's joints move the rig's bones.", show_retargeting, needs_both},
       {"motion.map", "Map...", "", "Motion", "Map each bone to the joint of the motion that moves it.", open_map,
        needs_both},
       {"motion.map_by_names", "Match by names", "", "Motion", "Match joints and bones by the meaning of their names.",
        map_by_names, needs_both},
       {"motion.load_map", "Load map...", icon::kOpen, "Motion",
-       "Load the joint that moves each bone from a retarget map file, as --map does on the command line.", load_map,
-       needs_both},
+       "Load a retarget map: a file that says which joint of the motion moves each bone.", load_map, needs_both},
       {"motion.save_map", "Save map...", icon::kSave, "Motion",
-       "Save the joint that moves each bone, and the rotation offsets between them, to a retarget map file.", save_map,
-       needs_both},
+       "Save a retarget map: a file that says which joint of the motion moves each bone, with the rotation offsets "
+       "between them.",
+       save_map, needs_both},
       travel("motion.travel_locked", "Locked", "Keep the body at its rest position.", Travel::Locked),
       travel("motion.travel_in_place", "In place",
              "Move the body up and down as in the clip, but not along the ground.", Travel::InPlace),
@@ -298,9 +298,8 @@ std::vector<Operator> motion_clip_operators() {
       {"motion.delete_clip", "Delete clip", icon::kTrash, "Motion", "Delete the shown clip from the project.",
        delete_clip, needs_clip},
       {"motion.trim", "Trim to range", "", "Motion",
-       "Remove frames, keys and markers outside the playing range. Whole motion restores the frames.", trim,
-       needs_clip},
-      {"motion.untrim", "Whole motion", "", "Motion", "Restore the frames of the motion that Trim to range removed.",
+       "Remove frames, keys and markers outside the playing range. Undo trim restores the frames.", trim, needs_clip},
+      {"motion.untrim", "Undo trim", "", "Motion", "Restore the frames of the motion that Trim to range removed.",
        untrim, needs_motion},
       {"motion.resample", "Resample clip...", "", "Motion", "Change the clip's number of frames per second.", ask_rate,
        needs_clip},

@@ -95,10 +95,10 @@ void draw_motion(Editor& editor, Column& column) {
                             {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
         choice_of_operators(editor, column.property("Reference"), "Reference",
                             {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
-        choice_of_operators(editor, column.property("Clip at rest"), "Clip at rest",
+        choice_of_operators(editor, column.property("Clip rest pose"), "Clip rest pose",
                             {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"}, kRests);
         choice_of_operators(
-            editor, column.property("Rig at rest"), "Rig at rest",
+            editor, column.property("Rig rest pose"), "Rig rest pose",
             {"motion.rig_rest_file", "motion.rig_rest_t", "motion.rig_rest_a", "motion.rig_rest_anatomical"}, kRests);
         draw_turned(editor, column);
         const Rect mirror = column.property("Options");

@@ -140,7 +140,7 @@ void range_of_chosen(Editor& editor) {
 }
 
 void whole_range(Editor& editor) {
-  edit_clip(editor, "Whole range", PoseThen::Stays, [](Clip& clip) {
+  edit_clip(editor, "Reset range", PoseThen::Stays, [](Clip& clip) {
     const std::set<int> keys = frames_of(clip.keys);
     clip.range_start = clip.motion ? clip.start : keys.empty() ? Clip{}.range_start : *keys.begin();
     clip.range_end = clip.motion ? clip.end() : keys.empty() ? Clip{}.range_end : *keys.rbegin();
@@ -265,13 +265,13 @@ std::vector<Operator> motion_operators() {
       at_end("motion.loop", "Loop", icon::kLoop, "Play from the start again at the end of the range.", AtEnd::Loop),
       at_end("motion.ping_pong", "Ping-pong", kPingPongIcon, "Reverse the direction at each end of the range.",
              AtEnd::PingPong),
-      {"motion.faster", "Faster", "", "Motion", "Play at the next higher speed.",
+      {"motion.faster", "Play faster", "", "Motion", "Play at the next higher speed.",
        [](Editor& e) { change_speed(e, 1); }},
-      {"motion.slower", "Slower", "", "Motion", "Play at the next lower speed.",
+      {"motion.slower", "Play slower", "", "Motion", "Play at the next lower speed.",
        [](Editor& e) { change_speed(e, -1); }},
       {"motion.play_at_file_rate", "Original speed", "", "Motion", "Play at the rate at which the motion was recorded.",
        [](Editor& e) { change_speed(e, 0); }},
-      {"motion.show_seconds", "Seconds", "", "Motion", "Show seconds instead of frames in the timeline's ruler.",
+      {"motion.show_seconds", "Show seconds", "", "Motion", "Show seconds instead of frames in the timeline's ruler.",
        [](Editor& e) { e.timeline->seconds = !e.timeline->seconds; }, nullptr,
        [](const Editor& e) { return e.timeline->seconds; }},
       {"motion.insert_key", "Insert key", icon::kKey, "Motion",
@@ -316,12 +316,13 @@ std::vector<Operator> motion_operators() {
        [](Editor& e) { begin_changing_keys(e, KeyChange::Duplicate); }, needs_chosen_keys},
       {"motion.delete_keys", "Delete keys", icon::kTrash, "Motion", "Delete the selected keys.", delete_chosen_keys,
        needs_chosen_keys},
-      {"motion.key_menu", "Key menu", "", "Motion", "Open a menu of the commands for keys at the pointer.",
+      {"motion.key_menu", "Key menu", "", "Motion", "Open a menu at the pointer with the commands for keys.",
        [](Editor& e) { e.open_popup = "Keys"; }, needs_rig},
       {"motion.preview_range", "Range from keys", "", "Motion",
-       "Set the playing range from the first to the last selected key, or to the frames that the timeline shows.",
+       "Set the playing range from the first to the last selected key, or to the frames that the timeline shows if no "
+       "key is selected.",
        range_of_chosen, needs_clip},
-      {"motion.clear_range", "Whole range", "", "Motion", "Set the playing range to the whole clip.", whole_range,
+      {"motion.clear_range", "Reset range", "", "Motion", "Set the playing range to the whole clip.", whole_range,
        needs_clip},
   };
 }

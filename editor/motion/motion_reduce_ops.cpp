@@ -48,11 +48,11 @@ std::string summary_of(const Reduced& result) {
     words += text;
   }
   if (result.plants > 0) {
-    std::snprintf(text, sizeof text, "; standing feet and resting hands at most %.2g mm from their places",
+    std::snprintf(text, sizeof text, "; standing feet and resting hands at most %.2g mm from their recorded positions",
                   result.keys.most_off);
     words += text;
     if (result.is_short()) {
-      std::snprintf(text, sizeof text, ", more than the %.2g mm that were asked for", result.plant_mm);
+      std::snprintf(text, sizeof text, ", more than the %.2g mm that you allow", result.plant_mm);
       words += text;
     }
   }
@@ -124,13 +124,13 @@ void ask_reducing(Editor& editor) {
       {"Reduce to keys",
        "Replaces the playing range by a few keys with Bezier curves, for editing in the graph editor.",
        "Reduce",
-       {number_of("Largest error", "Largest difference of a bone's rotation from the recording, in any frame.", 0.5,
+       {number_of("Rotation error", "Largest difference of a bone's rotation from the recording, in any frame.", 0.5,
                   0.01, 45, "%.2f", "\u00b0"),
-        number_of("Shift error", "Largest distance of the body from its recorded position, in any frame.", 2, 0.01,
+        number_of("Position error", "Largest distance of the body from its recorded position, in any frame.", 2, 0.01,
                   1000, "%.2f", "mm"),
         number_of("Planted feet",
-                  "Largest distance of standing feet and resting hands from their places; their limbs get more keys "
-                  "for it. 0 = no limit: feet may slide.",
+                  "Largest distance of standing feet and resting hands from their recorded positions. A smaller "
+                  "distance needs more keys. 0 = no limit: feet may slide.",
                   has_limbs ? 1 : 0, 0, has_limbs ? 1000 : 0, "%.2f", "mm"),
         choice_of("Result", "Store the keys in a new clip, or replace the shown clip.", {"New clip", "Same clip"})},
        [](const Editor& e, const std::vector<FormField>&) { return outcome_of(e); },

@@ -193,7 +193,7 @@ void bake_strips(Editor& editor) {
   const auto source = graph_clip(editor);
   const auto [first, last] = playing_range(editor);
   if (std::int64_t{last} - first >= kMostFrames)
-    throw Error("too many frames play", "frames " + std::to_string(first) + " to " + std::to_string(last),
+    throw Error("the strips play too many frames", "frames " + std::to_string(first) + " to " + std::to_string(last),
                 "set a shorter range");
   start_task(editor, "Bake strips to clip", [source, rig = editor.document().armature](Progress& progress) -> Finish {
     auto baked = std::make_shared<Clip>(baked_clip(source, rig, progress));
@@ -343,7 +343,8 @@ void ask_track_name(Editor& editor) {
                                 [before](Editor& e, const std::vector<FormField>& fields) {
                                   const std::string& name = fields[0].text;
                                   const auto track = active_track(e);
-                                  if (!track) throw Error("there is no track any more", before, "open this again");
+                                  if (!track)
+                                    throw Error("the track was deleted meanwhile", before, "open the dialog again");
                                   if (name == before) return;
                                   change_track(e, "Rename track", [&](StripTrack& one) {
                                     one.name = unique_track_name(*shown_clip(e)->strips, name);
@@ -363,14 +364,17 @@ std::vector<Operator> track_operators() {
        needs_clip_of_strips},
       {"strips.rename_track", "Rename strip track...", icon::kRename, "Motion", "Rename the active track.",
        ask_track_name, needs_track},
-      {"strips.track_up", "Move strip track up", "", "Motion", "Let the active track play over the one above it.",
+      {"strips.track_up", "Move strip track up", "", "Motion",
+       "Move the active track up by one, so that it plays over the track that was above it.",
        [](Editor& e) { move_track(e, 1); }, needs_track},
-      {"strips.track_down", "Move strip track down", "", "Motion", "Let the active track play below the one under it.",
+      {"strips.track_down", "Move strip track down", "", "Motion",
+       "Move the active track down by one, so that the track that was below it plays over it.",
        [](Editor& e) { move_track(e, -1); }, needs_track},
       {"strips.mute_track", "Mute strip track", "", "Motion", "Switch the active track's strips off, or on again.",
        [](Editor& e) { change_track(e, "Mute track", [](StripTrack& track) { track.muted = !track.muted; }); },
        needs_track, [](const Editor& e) { return is_track(e, &StripTrack::muted); }},
-      {"strips.solo_track", "Solo strip track", "", "Motion", "Let only the tracks play that have this switched on.",
+      {"strips.solo_track", "Solo strip track", "", "Motion",
+       "Play only the active track and other tracks with solo switched on.",
        [](Editor& e) { change_track(e, "Solo track", [](StripTrack& track) { track.solo = !track.solo; }); },
        needs_track, [](const Editor& e) { return is_track(e, &StripTrack::solo); }},
       {"strips.delete_track", "Delete strip track", icon::kTrash, "Motion", "Delete the active track with its strips.",
@@ -383,18 +387,18 @@ std::vector<Operator> track_operators() {
 std::vector<Operator> strip_operators() {
   std::vector<Operator> all{
       {"motion.next_face", "Next timeline view", "", "Motion",
-       "Show the clip's keys, its curves or its strips: the one after what is shown.",
+       "Switch the timeline to its next view: keys, curves or strips.",
        [](Editor& e) { show_face(e, static_cast<TimelineFace>((static_cast<int>(shown_face(e)) + 1) % 3)); },
        needs_clip},
       {"motion.show_rows", "Timeline rows", "", "Motion", "Show the markers, the clip and the keys in the timeline.",
        [](Editor& e) { show_face(e, TimelineFace::Rows); }, needs_clip,
        [](const Editor& e) { return shown_face(e) == TimelineFace::Rows; }},
       {"strips.show", "Strips", "", "Motion",
-       "Show the clip's strips in place of the timeline's rows, or the rows again.",
+       "Show the clip's strips instead of the timeline's rows. Run again to show the rows.",
        [](Editor& e) { show_face(e, strips_are_shown(e) ? TimelineFace::Rows : TimelineFace::Strips); }, needs_clip,
        strips_are_shown},
       {"strips.make", "Make strips of the clip", "", "Motion",
-       "Add a clip that plays the shown clip as a strip, over which others may be laid.", make_strips,
+       "Add a clip that plays the shown clip as a strip. You can then add strips of other clips.", make_strips,
        [](const Editor& e) {
          if (const std::string why = needs_clip(e); !why.empty()) return why;
          return shown_clip(e)->strips ? std::string("This clip is made of strips already") : std::string();
@@ -402,41 +406,41 @@ std::vector<Operator> strip_operators() {
       {"strips.add", "Add strip...", icon::kAdd, "Motion", "Add a strip of another clip at the play head.", ask_strip,
        needs_clip_of_strips},
       {"strips.select", "Select and drag strips", "", "Motion",
-       "Select strips, drag them or their ends. Away from strips, draw a rectangle that selects.", press_strips,
+       "Select strips, or drag them or their ends. Drag in an empty area to select strips with a box.", press_strips,
        needs_shown_strips},
       {"strips.select_all", "Select all strips", "", "Motion", "Select every strip of the clip.", choose_all,
        needs_shown_strips},
       {"strips.select_none", "Deselect strips", "", "Motion", "Deselect all strips.",
        [](Editor& e) { strip_view(e).chosen.clear(), strip_view(e).active.clear(); }, needs_chosen},
-      {"strips.pan", "Pan the strips", "", "Motion", "Move the shown frames and tracks.", pan_strips,
-       needs_shown_strips},
+      {"strips.pan", "Pan the strips", "", "Motion", "Drag to scroll the strips.", pan_strips, needs_shown_strips},
       {"strips.move", "Move strips", icon::kMove, "Motion",
        "Move the selected strips in time with the pointer, or by a typed number of frames.", begin_moving_strips,
        needs_chosen},
       {"strips.duplicate", "Duplicate strips", icon::kDuplicate, "Motion",
        "Copy the selected strips and move the copies with the pointer.", begin_duplicating_strips, needs_chosen},
       {"strips.split", "Split strips", icon::kCut, "Motion",
-       "Split the selected strips at the play head, or all that play there.", split_at_head, needs_shown_strips},
+       "Split the selected strips at the play head, or all strips there if none is selected.", split_at_head,
+       needs_shown_strips},
       {"strips.mute", "Mute strips", "", "Motion", "Switch the selected strips off, or on again.", mute_chosen,
        needs_chosen},
       {"strips.delete", "Delete strips", icon::kTrash, "Motion", "Delete the selected strips. Their clips stay.",
        delete_chosen, needs_chosen},
       {"strips.bones_selected", "Strip on selected bones", "", "Motion",
-       "Let the active strip change only the selected bones, and all that hang on them.",
+       "Let the active strip move only the selected bones and their descendants.",
        [](Editor& e) { set_bones(e, false); }, needs_bones},
-      {"strips.bones_all", "Strip on all bones", "", "Motion", "Let the active strip change every bone.",
+      {"strips.bones_all", "Strip on all bones", "", "Motion", "Let the active strip move every bone.",
        [](Editor& e) { set_bones(e, true); }, needs_active},
       {"strips.begin_here", "Begin strip where the body is", "", "Motion",
-       "Move and turn the active strip along the ground to where the body is as it begins.", begin_where_body_is,
-       needs_active_and_rig},
-      {"strips.clear_place", "Begin strip at its own place", "", "Motion",
-       "Let the active strip begin at the place and with the heading of its clip.",
+       "Move and turn the active strip along the ground so that it begins where the body is at that frame.",
+       begin_where_body_is, needs_active_and_rig},
+      {"strips.clear_place", "Begin strip at clip's position", "", "Motion",
+       "Begin the active strip at the position and heading that its clip has.",
        [](Editor& e) {
-         change_active_strip(e, "Begin strip at its own place", [](Strip& strip) { strip.place = {}; });
+         change_active_strip(e, "Begin strip at clip's position", [](Strip& strip) { strip.place = {}; });
        },
        needs_active},
-      {"strips.bake", "Bake strips to clip", "", "Motion", "Add a clip that plays what the strips play together.",
-       bake_strips, needs_strips_and_rig},
+      {"strips.bake", "Bake strips to clip", "", "Motion",
+       "Add a clip that contains the combined motion of all strips.", bake_strips, needs_strips_and_rig},
   };
   for (Operator& op : track_operators()) all.push_back(std::move(op));
   return all;

@@ -110,21 +110,20 @@ void draw_time(Editor& editor, Column& column, const Strip& strip) {
   if (!active_strip(editor)) return;
   const auto [first, last] = halves(editor, column.property("Frames"));
   draw_number(editor, first,
-              {"First frame", "The clip's frame at which a cycle of the strip begins.", double(strip.first), -kFar,
-               kFar, "%.0f", "", false, [](Strip& s, double value) { s.first = std::min(whole(value), s.last); }});
+              {"First frame", "First frame of the clip that the strip plays.", double(strip.first), -kFar, kFar, "%.0f",
+               "", false, [](Strip& s, double value) { s.first = std::min(whole(value), s.last); }});
   if (!active_strip(editor)) return;
-  draw_number(
-      editor, last,
-      {"Last frame", "The clip's frame at which a cycle of the strip ends.", double(active_strip(editor)->last), -kFar,
-       kFar, "%.0f", "", false, [](Strip& s, double value) { s.last = std::max(whole(value), s.first); }});
+  draw_number(editor, last,
+              {"Last frame", "Last frame of the clip that the strip plays.", double(active_strip(editor)->last), -kFar,
+               kFar, "%.0f", "", false, [](Strip& s, double value) { s.last = std::max(whole(value), s.first); }});
   if (const Strip* now = active_strip(editor))
     draw_row(editor, column,
              {"Speed", "2 plays twice as fast, 0.5 half as fast.", now->speed, kSlowest, kFastest, "%.2f", "\u00d7",
               false, [](Strip& s, double value) { s.speed = value; }});
   if (const Strip* now = active_strip(editor))
     draw_row(editor, column,
-             {"Repeat", "How many cycles of its frames the strip plays.", now->repeat, 0.01, 1000, "%.2f", "\u00d7",
-              false, [](Strip& s, double value) { s.repeat = value; }});
+             {"Repeat", "How many times the strip plays its frames.", now->repeat, 0.01, 1000, "%.2f", "\u00d7", false,
+              [](Strip& s, double value) { s.repeat = value; }});
 }
 
 void draw_blend(Editor& editor, Column& column, const Strip& strip) {
@@ -137,18 +136,22 @@ void draw_blend(Editor& editor, Column& column, const Strip& strip) {
   }
   if (const Strip* now = active_strip(editor))
     draw_row(editor, column,
-             {"Influence", "How much the strip changes the pose below it.", now->influence, 0, 1, "%.2f", "", true,
-              [](Strip& s, double value) { s.influence = value; }});
+             {"Influence",
+              "How strongly the strip changes the pose that the tracks below it set: 0 = not at all, 1 = fully.",
+              now->influence, 0, 1, "%.2f", "", true, [](Strip& s, double value) { s.influence = value; }});
   if (!active_strip(editor)) return;
   const auto [in, out] = halves(editor, column.property("Fade in, out"));
   draw_number(editor, in,
-              {"Fade in", "Frames over which its influence grows. Over a strip of its track it fades in by itself.",
+              {"Fade in",
+               "Number of frames in which the strip's influence grows from 0. Where strips of one track overlap, the "
+               "later one always fades in.",
                double(active_strip(editor)->blend_in), 0, kLongestBlend, "%.0f", "", false,
                [](Strip& s, double value) { s.blend_in = whole(value); }});
   if (!active_strip(editor)) return;
   draw_number(editor, out,
-              {"Fade out", "Frames over which its influence goes at its end.", double(active_strip(editor)->blend_out),
-               0, kLongestBlend, "%.0f", "", false, [](Strip& s, double value) { s.blend_out = whole(value); }});
+              {"Fade out", "Number of frames at the strip's end in which its influence falls to 0.",
+               double(active_strip(editor)->blend_out), 0, kLongestBlend, "%.0f", "", false,
+               [](Strip& s, double value) { s.blend_out = whole(value); }});
 }
 
 void draw_flags(Editor& editor, Column& column) {
@@ -159,14 +162,14 @@ void draw_flags(Editor& editor, Column& column) {
     return Rect{{all.low.x + edge, all.low.y + gap}, {all.high.x - edge, all.high.y - gap}};
   };
   const auto [backwards, mirrored] = halves(editor, row());
-  draw_flag(editor, backwards, "Backwards", "The strip plays from its last frame to its first.", &Strip::reversed);
-  draw_flag(editor, mirrored, "Mirrored", "Left and right are swapped.", &Strip::mirrored);
+  draw_flag(editor, backwards, "Backwards", "Play the strip from its last frame to its first.", &Strip::reversed);
+  draw_flag(editor, mirrored, "Mirrored", "Swap left and right in the strip's motion.", &Strip::mirrored);
   const auto [holds, muted] = halves(editor, row());
-  draw_flag(editor, holds, "Holds", "Its last pose stays when it has ended, below the strips that follow.",
+  draw_flag(editor, holds, "Hold end", "Keep the strip's last pose after its end, until a later strip replaces it.",
             &Strip::holds);
-  draw_flag(editor, muted, "Muted", "The strip does not play.", &Strip::muted);
-  draw_flag(editor, row(), "Cycles go on",
-            "Each cycle begins at the place and with the heading at which the one before it ended.", &Strip::goes_on);
+  draw_flag(editor, muted, "Muted", "Switch the strip off.", &Strip::muted);
+  draw_flag(editor, row(), "Repeats travel",
+            "Begin each repeat at the position and heading where the repeat before it ended.", &Strip::goes_on);
 }
 
 // Draws two buttons that run operators, in one row.
@@ -185,8 +188,8 @@ void draw_reach(Editor& editor, Column& column, const Strip& strip) {
   const std::string bones = strip.bones ? std::to_string(strip.bones->size()) : "all";
   draw_deeds(editor, column, "Bones: " + bones, "strips.bones_selected", "Selected", "strips.bones_all");
   if (const Strip* now = active_strip(editor))
-    draw_deeds(editor, column, now->place == GroundMove{} ? "Place: own" : "Place: moved", "strips.begin_here",
-               "Body's", "strips.clear_place");
+    draw_deeds(editor, column, now->place == GroundMove{} ? "Moved: no" : "Moved: yes", "strips.begin_here", "To body",
+               "strips.clear_place");
 }
 
 }  // namespace

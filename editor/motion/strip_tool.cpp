@@ -131,7 +131,7 @@ class MovingStrips final : public Modal {
     char text[48];
     std::snprintf(text, sizeof text, "Move %+d frames", made_.frames);
     return {{{}, number_.typed() ? "Move " + number_.text() + " frames" : text},
-            {{"Shift"}, "Over others: cross-fade"},
+            {{"Shift"}, "Overlap to cross-fade"},
             {{"Ctrl"}, "Do not snap"},
             {{"X"}, "Time only"},
             {{"0-9"}, "Type a number"},

@@ -42,7 +42,7 @@ void draw_face_switch(Editor& editor, const Rect& place) {
            icon::kOpened);
   if (pressed.hovered)
     tooltip(editor, place, "Timeline view",
-            "Show the clip's keys, its curves, or its strips. Ctrl+Tab goes to the next.");
+            "Show the clip's keys, its curves, or its strips. Ctrl+Tab switches to the next of these views.");
   if (pressed.clicked) ImGui::OpenPopup("faces");
   if (!ImGui::BeginPopup("faces", ImGuiWindowFlags_NoMove)) return;
   const Region region = editor.place.region;

@@ -143,8 +143,8 @@ TEST_CASE(
     CHECK_MESSAGE(run.err.find(why) != std::string::npos, run.err);
   };
   refused({"--frames", "0:3", "-o", arm.folder / "no.nrrd"}, "put {frame} into its name");
-  refused({"--frames", "3:0", "-o", out}, "these are no frames");
-  refused({"--frames", "0:3x", "-o", out}, "these are no frames");
+  refused({"--frames", "3:0", "-o", out}, "this is not a range of frames");
+  refused({"--frames", "0:3x", "-o", out}, "this is not a range of frames");
   refused({"--frames", "0:100000", "-o", out}, "the motion ends before that frame");
   refused({"--frames", "0:3", "--frame", "1", "-o", out}, "--frame and --frames exclude each other");
   refused({"--frames", "0:3", "--fit-joints", "-o", out}, "joints are fitted to one pose");

@@ -105,7 +105,7 @@ struct TakeEditor : SmallEditor {
   void hold(const glm::dvec3& place) {
     char text[96];
     std::snprintf(text, sizeof text, "%.3f, %.3f, %.3f", place.x, place.y, place.z);
-    play("click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Position\"\n wait-idle");
+    play("click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Hold at/Position\"\n wait-idle");
     typed("From frame", std::to_string(kFirstHeld));
     typed("To frame", std::to_string(kLastHeld));
     play(std::string("click \"Position/text\"\n key Ctrl+A\n type \"") + text +

@@ -117,7 +117,7 @@ TEST_CASE("whole clips: repeated, the new clip plays what was computed") {
   DeedEditor test;
   const Document old = test.editor->document();
   const std::vector<Pose> before = test.played();
-  test.deed("Loop clip...", "click \"Body/On the spot\"\n wait-idle\n key Return");
+  test.deed("Loop clip...", "click \"Body/In place\"\n wait-idle\n key Return");
   const LoopedPoses spot = looped(test.rig, before, {.repeats = 4, .blend = 18, .stays = true});
   CHECK(test.fact("clip") == "steps loop");
   CHECK(farthest(test.played(), spot.poses) < 2e-6);

@@ -74,7 +74,7 @@ std::vector<Proof> proofs_of_constraints() {
       {"constraint.add_inverse_kinematics", choose("Add inverse kinematics"),
        has_one(ConstraintKind::InverseKinematics, "LeftHand", "LeftThigh"), Shows::Nothing, "",
        ready({}, kHand, kThigh)},
-      {"constraint.toggle", choose("Constraint on"),
+      {"constraint.toggle", choose("Toggle constraint"),
        [](Stage& s, const Seen&) { return !list_of(s)[0].on && s.is("edit", "Switch constraint off"); }, Shows::InBody,
        "", ready(one)},
       {"constraint.up", choose("Move constraint up"), in_order("B", "Move constraint up"), Shows::InBody, "",
@@ -375,7 +375,7 @@ TEST_CASE("constraint panel: no order is offered where one constraint must wait 
     for (const InOrder where : {InOrder::Earlier, InOrder::Later})
       for (const Constraint& one : list) CHECK_FALSE(order_neighbour(*test.editor, one.name, where));
     CHECK(disabled_reason(*test.editor, *find_operator(*test.editor, "constraint.up")) ==
-          "A move up changes nothing: constraints that turn the same bones keep their order");
+          "The constraint cannot move up: this would not change the order in which constraints turn the same bones");
   }
 }
 

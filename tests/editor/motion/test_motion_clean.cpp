@@ -127,7 +127,7 @@ TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with 
                    hand = place_of(right, PlantPoint::Tip, test.rig, before[60]);
   test.editor->views->cross_hair = hand + 0.3 * (shoulder - hand) + glm::dvec3(0, -60, 0);
   test.play(
-      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Cross-hair\"\n click \"Result/New "
+      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Hold at/Cross-hair\"\n click \"Result/New "
       "clip\"\n double-click \"To frame/value\"\n key Ctrl+A\n type 75\n key Tab\n wait-idle\n click Hold\n wait-job\n "
       "wait-idle");
   REQUIRE(test.editor->document().clips.size() == 2);
@@ -160,7 +160,7 @@ TEST_CASE("cleaning clips: a hand that rested and does not reach its place any m
   WalkerEditor test(poses);
   test.play(
       "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click Limb/list\n click \"Limb/left foot\"\n click "
-      "\"Result/New clip\"\n click \"Place/Position\"\n wait-idle\n click \"Position/text\"\n key Ctrl+A\n type "
+      "\"Result/New clip\"\n click \"Hold at/Position\"\n wait-idle\n click \"Position/text\"\n key Ctrl+A\n type "
       "\"400, -150, 10\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
   REQUIRE(test.editor->document().clips.size() == 2);
   REQUIRE(!test.editor->messages.toasts.empty());
@@ -201,7 +201,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
 
   // The field of the position starts empty: the user must type one.
   test.play(
-      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Position\"\n click Limb/list\n click "
+      "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Hold at/Position\"\n click Limb/list\n click "
       "\"Limb/left foot\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
   CHECK(test.editor->dialog);
   test.play("key Escape\n wait-idle");
@@ -211,7 +211,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   for (const char* far : {"1e200, 0, 0", "0, 2000000, 0", "0, 0, nan"}) {
     CAPTURE(far);
     test.play(
-        "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Place/Position\"\n wait-idle\n click "
+        "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Hold at/Position\"\n wait-idle\n click "
         "\"Position/text\"\n key Ctrl+A\n type \"" +
         std::string(far) + "\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
     CHECK(test.editor->dialog);

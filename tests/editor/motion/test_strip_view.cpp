@@ -197,7 +197,7 @@ std::vector<Proof> proofs_of_strips() {
       {"strips.begin_here", menu("Strip/Begin strip where the body is"),
        strip_is("keys", [](const Strip& strip) { return strip.place != GroundMove{}; }), Shows::Nothing, "",
        in_strips({"keys"})},
-      {"strips.clear_place", menu("Strip/Begin strip at its own place"),
+      {"strips.clear_place", menu("Strip/Begin strip at clip's position"),
        strip_is("keys", [](const Strip& strip) { return strip.place == GroundMove{}; }), Shows::Nothing, "",
        [](Stage& s) {
          in_strips({"keys"})(s);
