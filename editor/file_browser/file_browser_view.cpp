@@ -145,7 +145,7 @@ void FileBrowser::draw_list(Editor& editor, const Rect& rect) {
   column_head(editor, "Name", {{head.low.x + look.px(10), head.low.y}, {size_left, head.high.y}}, SortBy::Name,
               Align::Left);
   column_head(editor, "Size", {{size_left, head.low.y}, {date_left, head.high.y}}, SortBy::Size, Align::Right);
-  column_head(editor, "Changed", {{date_left, head.low.y}, {right, head.high.y}}, SortBy::Time, Align::Right);
+  column_head(editor, "Modified", {{date_left, head.low.y}, {right, head.high.y}}, SortBy::Time, Align::Right);
 
   Rect list{{rect.low.x, head.high.y}, rect.high};
   if (offers_dicom()) list.low.y = draw_dicom_offer(editor, {list.low, {list.high.x, list.low.y + look.px(40)}});
@@ -249,9 +249,9 @@ float FileBrowser::draw_new_folder(Editor& editor, const Rect& rect) {
                    {rect.high.x - look.px(190), rect.high.y - look.px(5)}};
   const bool focus = std::exchange(focus_new_folder_, false);
   text_field(editor, "New folder's name", field, *new_folder_, "Name of the new folder", focus);
-  if (button(editor, "Make folder",
+  if (button(editor, "Create folder",
              {{rect.high.x - look.px(180), field.low.y}, {rect.high.x - look.px(88), field.high.y}},
-             {"", "Make", ButtonStyle::Plain}) ||
+             {"", "Create", ButtonStyle::Plain}) ||
       pressed_return()) {
     make_folder(editor);
     return rect.high.y;
@@ -376,7 +376,7 @@ void FileBrowser::draw_replace(Editor& editor, const Rect& rect) {
   if (button(editor, "Replace", {{right - look.px(88), low}, {right, high}}, {"", "Replace"}))
     return finish(editor, path);
   right -= look.px(96);
-  if (button(editor, "Keep it", {{right - look.px(88), low}, {right, high}}, {"", "Keep it", ButtonStyle::Primary}))
+  if (button(editor, "Keep file", {{right - look.px(88), low}, {right, high}}, {"", "Keep file", ButtonStyle::Primary}))
     replace_.reset();
 }
 

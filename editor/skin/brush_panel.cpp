@@ -176,7 +176,7 @@ void draw_brush_section(Editor& editor, Column& column) {
   if (choice_field(editor, room, {"Unlocked", "All", "Off"}, normalize)) run(editor, kNormalize[normalize]);
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, kNormalize[normalize]), room);
   pop_path(editor);
-  checkbox(editor, "Below the bone", column.property("Only"), "Below the bone", painting.subtree);
+  checkbox(editor, "Bone hierarchy", column.property("Only"), "Bone hierarchy", painting.subtree);
   draw_test_pose(editor, column);
   checkbox(editor, "Accumulate", column.property(""), "Accumulate", painting.accumulate);
   checkbox(editor, "Relative to locks", column.property(""), "Relative to locks", painting.relative_to_locks);

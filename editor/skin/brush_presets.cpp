@@ -109,7 +109,7 @@ Json file_of(const std::vector<BrushPreset>& presets) {
 Json file_from(const std::string& text, const std::string& where) {
   Json json = Json::parse(checked_json(text, where), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != kSchema || !json.value("presets", Json()).is_array())
-    throw Error("this file holds no brush presets", where, "move it away, then save presets anew");
+    throw Error("this file holds no brush presets", where, "move it to another folder, then save the presets again");
   return json;
 }
 

@@ -31,7 +31,7 @@ void ask_name(Editor& editor) {
   };
   const auto act = [](Editor& e, const Fields& fields) { save_brush_preset(e, fields[0].text); };
   editor.open_dialog(make_form({"Save brush preset",
-                                "Keeps the settings of the weight brush under a name, for all projects.",
+                                "Saves the settings of the weight brush under a name, for use in all projects.",
                                 "Save",
                                 {text_of("Name", "The name of the preset.", name)},
                                 outcome,

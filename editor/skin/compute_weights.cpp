@@ -196,11 +196,11 @@ void ask_computation(Editor& editor) {
        "Compute",
        {choice_of("Method", "Heat: the smoothest weights. Geodesic: faster. Rigid: each voxel follows only one bone.",
                   {"Heat", "Geodesic", "Rigid"}),
-        choice_of("Bones", "The bones whose weights are computed.", {"All", "Chosen", "Unlocked"}),
+        choice_of("Bones", "The bones whose weights are computed.", {"All", "Selected", "Unlocked"}),
         choice_of("Where",
                   "Where weights change: everywhere, in the tissues selected in the list, or where a selected bone has "
                   "the largest weight.",
-                  {"Everywhere", "Chosen tissue", "Chosen bones"}),
+                  {"Everywhere", "Selected tissue", "Selected bones"}),
         stiffness("Skin"), stiffness("Fat"), stiffness("Muscle"), stiffness("Other tissue")},
        outcome,
        [asked](Editor& e, const std::vector<FormField>& fields) { start_binding(e, asked(e, fields)); }}));

@@ -22,7 +22,7 @@ void drop_weights(Editor& editor) {
   Document next = editor.document();
   next.weights.reset();
   next.layers.reset();
-  editor.history.commit("Drop weights", std::move(next));
+  editor.history.commit("Remove weights", std::move(next));
 }
 
 }  // namespace
@@ -39,8 +39,8 @@ std::vector<Operator> skin_operators() {
        "Compute weights with a method you select, for all or some bones and tissues, with a stiffness for each kind of "
        "tissue.",
        ask_computation, needs_rig},
-      {"skin.drop_weights", "Drop weights", icon::kTrash, "Weights", "Remove all weights and layers from the project.",
-       drop_weights,
+      {"skin.drop_weights", "Remove weights", icon::kTrash, "Weights",
+       "Remove all weights and layers from the project.", drop_weights,
        [](const Editor& e) { return e.document().weights ? std::string() : std::string("There are no weights"); }},
   };
 }

@@ -90,7 +90,7 @@ class GradientTool final : public Modal {
     const Painting& painting = *editor.skin->painting;
     edit_weights(
         editor,
-        {choice_of("Way",
+        {choice_of("Shape",
                    "Linear: the weight fades along the line. Radial: it fades in all directions from the line's start.",
                    {"Linear", "Radial"}, radial_ ? 1 : 0),
          number_of("Begin", "The bone's weight at the start of the line.", painting.value, 0, 1, "%.2f"),

@@ -30,8 +30,8 @@ EditedLayers on_own_layer(const LayerToEdit& edited, const std::string& name, co
 
 std::string gain_of(const JointRepair& figures) {
   char text[128];
-  std::snprintf(text, sizeof text, "Skin, fat and muscle change by %.2f %% instead of %.2f %%", mean_sum(figures.after),
-                mean_sum(figures.before));
+  std::snprintf(text, sizeof text, "Volumes of skin, fat and muscle change by %.2f %% instead of %.2f %%",
+                mean_sum(figures.after), mean_sum(figures.before));
   return text;
 }
 

@@ -34,7 +34,7 @@ void draw_gain(Editor& editor, Column& column, const RepairedJoint& repaired) {
   const Look& look = editor.look;
   const JointRepair& figures = repaired.figures;
   const Colour colour = figures.is_better ? look.theme.ok : look.theme.text2;
-  put_row(editor, column, "Last repaired", figures.is_better ? repaired.bone : repaired.bone + ": nothing gained",
+  put_row(editor, column, "Last repaired", figures.is_better ? repaired.bone : repaired.bone + ": no change",
           look.theme.text);
   char text[64];
   std::snprintf(text, sizeof text, "%.2f to %.2f %%", mean_sum(figures.before), mean_sum(figures.after));

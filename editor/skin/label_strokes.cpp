@@ -73,7 +73,7 @@ void end_label_stroke(Editor& editor) {
   const LabelChange change = running->stroke->empty() ? LabelChange{} : running->stroke->change();
   if (change.empty()) {
     drop_label_stroke(editor);
-    return editor.messages.info(running->label, "No voxel changed: check what the brush may paint over");
+    return editor.messages.info(running->label, "No voxel changed: check the Paint over setting of the brush");
   }
   editor.skin->painting->labels->running.reset();
   show_painted(*editor.views, *running->stroke);

@@ -62,19 +62,21 @@ std::vector<Operator> label_brush_operators() {
        "Paint the selected tissue's labels, in slices and on the body. Hold Ctrl to erase them. Select any other brush "
        "to paint weights again. Switches to the Skin workspace.",
        toggle_brush, needs_volume, [](const Editor& e) { return e.workspace == Workspace::Skin && brush_of(e).on; }},
-      over("labels.over_all", "Over all", "Paint over every tissue and over air.", PaintOver::All),
-      over("labels.over_air", "Over air", "Paint only where there is air.", PaintOver::Air),
-      over("labels.over_tissue", "Over tissue", "Paint only over other tissue, never over air.", PaintOver::Tissue),
-      over("labels.over_underneath", "Over one tissue",
+      over("labels.over_all", "Paint over all", "Paint over every tissue and over air.", PaintOver::All),
+      over("labels.over_air", "Paint over air", "Paint only where there is air.", PaintOver::Air),
+      over("labels.over_tissue", "Paint over tissue", "Paint only over other tissue, never over air.",
+           PaintOver::Tissue),
+      over("labels.over_underneath", "Paint over one tissue",
            "Paint only over the tissue, or the air, on which the stroke begins.", PaintOver::Underneath),
       erasing("labels.erase_to_surroundings", "Erase to surroundings",
               "Erased voxels become the tissue or air around them.", Erased::Surroundings),
       erasing("labels.erase_to_air", "Erase to air", "Erased voxels become air.", Erased::Air),
       {"labels.flat", "One slice", "", "Labels",
-       "In slices, paint only the voxels of the slice. Off: the brush is a ball.",
+       "In slices, paint only voxels of the shown slice. If switched off, the brush is a ball and paints neighbouring "
+       "slices too.",
        [](Editor& e) { brush_of(e).flat = !brush_of(e).flat; }, nullptr,
        [](const Editor& e) { return brush_of(e).flat; }},
-      {"labels.in_range", "In a range of values", "", "Labels",
+      {"labels.in_range", "Only in a value range", "", "Labels",
        "Change only voxels whose value in the shown image lies in a range, such as bone in a CT.", toggle_range,
        [](const Editor& e) {
          return e.views->image ? std::string() : std::string("Open an image first: File > Import > Image");

@@ -17,7 +17,7 @@ namespace {
 // Draws the colour of the painted tissue, and a list in which the user selects another tissue.
 void draw_painted_tissue(Editor& editor, Column& column) {
   const Look& look = editor.look;
-  const Rect rect = column.property("Paints");
+  const Rect rect = column.property("Tissue");
   const auto tissues = editor.document().tissues;
   if (!tissues || tissues->tissues.empty())
     return put_text(editor, look.fonts.regular, look.theme.text3, rect, "Add a tissue first");
@@ -32,7 +32,7 @@ void draw_painted_tissue(Editor& editor, Column& column) {
   const glm::vec3 colour = chosen < 0 ? glm::vec3(0) : tissues->tissues[static_cast<std::size_t>(chosen)].colour;
   if (chosen >= 0)
     fill({{rect.low.x, y}, {rect.low.x + side, y + side}}, rgb(colour.r, colour.g, colour.b), look.px(3));
-  const PathScope scope(editor, "Paints");
+  const PathScope scope(editor, "Tissue");
   int picked = chosen < 0 ? static_cast<int>(names.size()) - 1 : chosen;
   if (choice_field(editor, {{rect.low.x + side + look.px(6), rect.low.y}, rect.high}, names, picked) &&
       picked < std::ssize(tissues->tissues))
@@ -97,11 +97,11 @@ void draw_label_brush_section(Editor& editor, Column& column) {
   bool committed = false;
   number_field(editor, "Radius", column.property("Radius"), editor.skin->painting->radius, Painting::kLeastRadius,
                Painting::kMostRadius, "%.1f", "mm", true, committed);
-  draw_choice(editor, column, "Over",
+  draw_choice(editor, column, "Paint over",
               {"labels.over_all", "labels.over_air", "labels.over_tissue", "labels.over_underneath"},
               {"All", "Air", "Tissue", "One tissue"});
-  draw_choice(editor, column, "Erase", {"labels.erase_to_surroundings", "labels.erase_to_air"},
-              {"To surroundings", "To air"});
+  draw_choice(editor, column, "Erase to", {"labels.erase_to_surroundings", "labels.erase_to_air"},
+              {"Surroundings", "Air"});
   const Rect flat = column.property("");
   checkbox(editor, "One slice", flat, "One slice", brush.flat);
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "labels.flat"), flat);

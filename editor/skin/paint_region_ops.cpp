@@ -22,7 +22,7 @@ std::string needs_rest(const Editor& editor) {
 }
 std::string needs_region(const Editor& editor) { return painted_region(editor) ? "" : "No region is set"; }
 std::string needs_unmatched(const Editor& editor) {
-  return editor.skin->painting->unmatched.empty() ? "Mirror weights found a match for every voxel, or has not run"
+  return editor.skin->painting->unmatched.empty() ? "Mirror weights found a match for every voxel, or was not run yet"
                                                   : needs_paint(editor);
 }
 
@@ -54,7 +54,7 @@ void invert_region(Editor& editor) {
 }
 
 void region_of_unmatched(Editor& editor) {
-  change_region(editor, "Region without a match", RegionChange::Replace,
+  change_region(editor, "Region of unmatched voxels", RegionChange::Replace,
                 [places = editor.skin->painting->unmatched](const WeightsToEdit& what) {
                   TissueRegion region(static_cast<std::size_t>(what.tissue->size()), 0);
                   for (const std::int64_t place : places)
@@ -68,21 +68,22 @@ void region_of_unmatched(Editor& editor) {
 std::vector<Operator> region_operators() {
   return {
       {"skin.region_box", "Region by a box", icon::kRegion, "Weights",
-       "Limit brushes and edits to a box that you draw over the 3D view or a slice. It goes through the whole body.",
+       "Limit brushes and edits to a box that you draw over the 3D view or a slice. The box reaches through the whole "
+       "body.",
        [](Editor& e) { begin(e, begin_region_box); }, needs_rest},
       {"skin.region_lasso", "Region by a lasso", icon::kRegion, "Weights",
-       "Limit brushes and edits to an outline that you draw over the 3D view or a slice. It goes through the whole "
-       "body.",
+       "Limit brushes and edits to an outline that you draw over the 3D view or a slice. The region reaches through "
+       "the whole body.",
        [](Editor& e) { begin(e, begin_region_lasso); }, needs_rest},
       {"skin.region_bone", "Region of bone", icon::kRegion, "Weights",
        "Limit brushes and edits to where the selected bones have most of the weight.", region_of_bones, needs_paint},
       {"skin.region_invert", "Invert region", "", "Weights",
        "Limit brushes and edits to what lies outside the current region.", invert_region, needs_region},
-      {"skin.region_unmatched", "Region without a match", icon::kWarning, "Weights",
+      {"skin.region_unmatched", "Region of unmatched voxels", icon::kWarning, "Weights",
        "Limit brushes and edits to the voxels for which Mirror weights found no match on the other side.",
        region_of_unmatched, needs_unmatched},
       {"skin.region_clear", "Clear region", icon::kClose, "Weights",
-       "Let brushes and edits reach the whole body again.", clear_region, needs_region},
+       "Remove the region, so that brushes and edits change the whole body again.", clear_region, needs_region},
   };
 }
 

@@ -26,8 +26,9 @@ std::string needs_bend(const Editor& editor) {
 
 std::vector<Operator> test_pose_operators() {
   return {
-      {"skin.posed", "Posed", icon::kPose, "Test pose",
-       "Switch between the rest pose and the test pose: the project's pose, or one bent joint. Brushes work in both.",
+      {"skin.posed", "Test pose", icon::kPose, "Test pose",
+       "Switch between the rest pose and the test pose, which is the project's pose or one bent joint. You can paint "
+       "in both.",
        toggle_test_pose, needs_weights, [](const Editor& e) { return e.trial->posed; }},
       {"skin.bend_by_wheel", "Bend by wheel", "", "Test pose",
        "Bend the active bone in the test pose by a step of the mouse wheel.",

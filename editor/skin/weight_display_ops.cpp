@@ -125,12 +125,12 @@ std::vector<Operator> skin_display_operators() {
        [](Editor& e) { e.skin->contours = !e.skin->contours; }, needs_skin_weights,
        [](const Editor& e) { return e.skin->contours; }},
       {"skin.display_pie", "Weight display", icon::kVisible, "Weights",
-       "Open a menu of the weight displays at the pointer.", [](Editor& e) { e.open_popup = "Weight display"; },
-       needs_skin_weights},
+       "Open a menu at the pointer to select how weights are shown.",
+       [](Editor& e) { e.open_popup = "Weight display"; }, needs_skin_weights},
       {"skin.pick_bone", "Pick bone", icon::kPick, "Weights",
        "Select the bone with the largest weight under the pointer.", [](Editor& e) { pick_bone(e, false); },
        needs_weights_below},
-      {"skin.add_bone", "Pick bone too", "", "Weights",
+      {"skin.add_bone", "Pick more bones", "", "Weights",
        "Add to the selection the bone with the largest weight under the pointer.",
        [](Editor& e) { pick_bone(e, true); }, needs_weights_below},
       {"skin.find_bone", "Search bones", icon::kSearch, "Weights", "Search the list of bones by name.", search_bones,
@@ -162,8 +162,9 @@ std::vector<Operator> skin_display_operators() {
        [](Editor& e) { set_locks(e, "Unlock all bones", {}); }, needs_locks},
       {"skin.invert_locks", "Invert locks", "", "Weights",
        "Lock the bones that are not locked, and unlock those that are.", invert_locks, needs_skin_bone},
-      {"skin.lock_pie", "Locks", icon::kLock, "Weights", "Open a menu of the commands that lock bones, at the pointer.",
-       [](Editor& e) { e.open_popup = "Locks"; }, needs_skin_bone},
+      {"skin.lock_pie", "Locks", icon::kLock, "Weights",
+       "Open a menu at the pointer with the commands that lock bones.", [](Editor& e) { e.open_popup = "Locks"; },
+       needs_skin_bone},
   };
 }
 

@@ -65,7 +65,8 @@ bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& oper
   const Document& now = editor.document();
   const bool others = now.layers != what.layer.layers || now.weights != what.layer.came_out;
   if (others || now.volume != what.document.volume || now.armature != what.document.armature) {
-    editor.messages.warn(operation.label, "The weights were changed meanwhile, so nothing was applied: run it again");
+    editor.messages.warn(operation.label,
+                         "The weights were changed meanwhile, so nothing was applied: run the command again");
     return false;
   }
   const std::string lock = edit.blocked > 0 && edit.blocked_by >= 0 ? lock_message(*now.armature, edit.blocked_by) : "";
@@ -80,7 +81,7 @@ bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& oper
   commit_weights(editor, operation.label, what.layer, *result.made);
   const bool was_off = what.settings.normalize == Normalize::WhenComposed;
   const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels") +
-                              (was_off ? ", normalized, although Normalize is off: that applies only to strokes" : "");
+                              (was_off ? ", normalized: switching Normalize off affects only brush strokes" : "");
   if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
   else if (!lock.empty())
     editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " unchanged: " + lock);

@@ -82,7 +82,7 @@ void flood(Editor& editor) {
   const bool by_strength = kind < 2;
   edit_weights(
       editor,
-      {choice_of("Brush", "What happens to the weight of the selected bones.",
+      {choice_of("Brush", "How the value changes the weight of the selected bones.",
                  {"Add", "Subtract", "Set", "Multiply", "Smooth"}, kind),
        number_of("Value", "The weight to add, subtract or set, or the factor to multiply by. Smooth does not use it.",
                  by_strength ? painting.strength : painting.value, 0, 1, "%.2f"),
@@ -99,21 +99,22 @@ void flood(Editor& editor) {
 
 void fill_part(Editor& editor) {
   const glm::ivec3 voxel = editor.views->hover.voxel;
-  edit_weights(
-      editor,
-      {choice_of("Part", "Tissue: fill the connected part of the tissue under the pointer. All: fill across tissues.",
-                 {"Tissue", "All"}),
-       number_of("Value", "The weight that the selected bones get in the filled part.", 1, 0, 1, "%.2f")},
-      [voxel](const Editor& e, const Fields& fields) {
-        WeightOperation operation = flooding("Fill part with " + painted_name(e), Flood::Set, fields[1].value);
-        operation.reach = EditReach::AllTissues;
-        operation.edits_bone_tissue = true;
-        operation.where = [voxel,
-                           part = fields[0].chosen == 0 ? Part::Label : Part::Tissue](const WeightsToEdit& what) {
-          return connected_part(*what.document.volume, *what.tissue, voxel, part);
-        };
-        return operation;
-      });
+  edit_weights(editor,
+               {choice_of("Part",
+                          "Tissue: fill the connected part of the tissue under the pointer. All: also fill other "
+                          "tissues that are connected to it.",
+                          {"Tissue", "All"}),
+                number_of("Value", "The weight that the selected bones get in the filled part.", 1, 0, 1, "%.2f")},
+               [voxel](const Editor& e, const Fields& fields) {
+                 WeightOperation operation = flooding("Fill part with " + painted_name(e), Flood::Set, fields[1].value);
+                 operation.reach = EditReach::AllTissues;
+                 operation.edits_bone_tissue = true;
+                 operation.where = [voxel, part = fields[0].chosen == 0 ? Part::Label
+                                                                        : Part::Tissue](const WeightsToEdit& what) {
+                   return connected_part(*what.document.volume, *what.tissue, voxel, part);
+                 };
+                 return operation;
+               });
 }
 
 // Returns the selected tissues. If no tissue is selected, returns the tissue under the pointer.
@@ -176,7 +177,7 @@ void mirror(Editor& editor) {
   edit_weights(
       editor,
       {choice_of("From", "The side whose weights are copied to the other side.", {"Left", "Right"}, side >= 0 ? 0 : 1),
-       number_of("Within",
+       number_of("Distance",
                  "A voxel gets the weights of the tissue nearest to its mirrored position, within this distance.", 10,
                  0.5, 100, "%.1f", "mm")},
       [left](const Editor&, const Fields& fields) {
@@ -241,7 +242,7 @@ void limit(Editor& editor) {
 
 void prune(Editor& editor) {
   edit_weights(editor,
-               {number_of("Below", "Remove weights below this value. The voxel's other bones get the removed weight.",
+               {number_of("Limit", "Remove weights below this limit. The voxel's other bones get the removed weight.",
                           0.02, 0, 0.5, "%.3f")},
                [](const Editor&, const Fields& fields) {
                  return voxel_edit(
@@ -252,15 +253,17 @@ void prune(Editor& editor) {
 }
 
 void quantize(Editor& editor) {
-  edit_weights(editor,
-               {number_of("Steps", "Number of steps from 0 to 1. Weights are rounded to the nearest step.", 10, 1, 1000,
-                          "%.0f")},
-               [](const Editor&, const Fields& fields) {
-                 const int steps = static_cast<int>(std::lround(fields[0].value));
-                 return voxel_edit("Quantize to " + std::to_string(steps) + " steps",
-                                   [steps](const WeightedBody& body, const SkinWeights& weights,
-                                           const EditScope& scope) { return in_steps(body, weights, steps, scope); });
-               });
+  edit_weights(
+      editor,
+      {number_of("Steps", "Number of equal steps between the weights 0 and 1. Weights are rounded to the nearest step.",
+                 10, 1, 1000, "%.0f")},
+      [](const Editor&, const Fields& fields) {
+        const int steps = static_cast<int>(std::lround(fields[0].value));
+        return voxel_edit("Quantize to " + std::to_string(steps) + " steps",
+                          [steps](const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
+                            return in_steps(body, weights, steps, scope);
+                          });
+      });
 }
 
 void set_levels(Editor& editor) {
@@ -317,7 +320,7 @@ void ask_copy(Editor& editor) {
                                 "Copy",
                                 {choice_of("Bone", "The bone whose weights are copied.", names, from),
                                  choice_of("to", "The bone that gets the copied weights.", names, to),
-                                 choice_of("How", "How the copied weights combine with the existing ones.",
+                                 choice_of("Mode", "How the copied weights combine with the existing ones.",
                                            {"Replace", "Add", "Move", "Swap"}, 2)},
                                 outcome,
                                 weight_act(make)}));

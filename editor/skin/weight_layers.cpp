@@ -69,8 +69,9 @@ std::string why_not_paint_layer(const Editor& editor) {
   const auto layer = active_layer(editor);
   if (!layer) return "";
   const WeightLayer& active = *editor.document().layers->layers[*layer];
-  if (!active.visible) return "The layer " + active.name + " is hidden: show it, or select another";
-  if (active.opacity == 0) return "The layer " + active.name + " has no opacity: raise it, or select another";
+  if (!active.visible) return "The layer " + active.name + " is hidden: show it, or select another layer";
+  if (active.opacity == 0)
+    return "The layer " + active.name + " has an opacity of 0: raise the opacity, or select another layer";
   return "";
 }
 

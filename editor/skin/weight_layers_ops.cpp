@@ -117,16 +117,16 @@ std::vector<Operator> layer_operators() {
        "Merge the active layer into the layer or base below it. The combined weights do not change.", merge_down,
        needs_layer},
       {"skin.layer_mask", "Paint mask", icon::kMask, "Layers",
-       "Paint the active layer's mask instead of weights: where the layer covers the layers below. The Add brush "
-       "covers them, Subtract reveals them.",
+       "Paint the active layer's mask instead of weights. The Add brush makes the layer cover the layers below it, the "
+       "Subtract brush reveals them.",
        [](Editor& e) { e.skin->painting->mask = !e.skin->painting->mask; }, needs_layer,
        [](const Editor& e) { return e.skin->painting->mask && active_layer(e).has_value(); }},
-      {"skin.layer_cover", "Cover everywhere", "", "Layers",
-       "Fill the active layer's mask: it covers the layers below in the whole body. Where it covered nothing, it "
-       "copies their weights.",
-       [](Editor& e) { cover(e, 1, "Cover all by "); }, needs_layer},
+      {"skin.layer_cover", "Fill mask", "", "Layers",
+       "Fill the active layer's mask, so that the layer covers the layers below in the whole body. Where the mask was "
+       "empty, the layer gets a copy of the weights below.",
+       [](Editor& e) { cover(e, 1, "Fill mask of "); }, needs_layer},
       {"skin.layer_uncover", "Clear mask", "", "Layers",
-       "Clear the active layer's mask: it covers nothing. This erases everything painted on it.",
+       "Clear the active layer's mask, so that the layer covers nothing. Everything painted on the layer is erased.",
        [](Editor& e) { cover(e, 0, "Clear mask of "); }, needs_layer},
   };
 }

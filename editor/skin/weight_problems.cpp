@@ -132,8 +132,8 @@ void repair_problem(Editor& editor, int index) {
 }
 
 const char* name_of(WeightProblem::Kind kind) {
-  constexpr const char* kNames[] = {"Not reached by a bone", "Islands", "Bones far apart",
-                                    "Bone tissue that is not rigid", "Abrupt changes"};
+  constexpr const char* kNames[] = {"Not reached by a bone", "Isolated weights", "Distant bones",
+                                    "Bone tissue that is not rigid", "Abrupt weights"};
   return kNames[static_cast<int>(kind)];
 }
 

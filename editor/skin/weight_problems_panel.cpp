@@ -57,7 +57,7 @@ void draw_problem(Editor& editor, Column& column, const FoundProblems& found, in
   put_text(editor, look.fonts.small, look.theme.text2, count, grouped(std::ssize(problem.voxels)), Align::Right);
   put_text(editor, look.fonts.regular, repaired ? look.theme.text2 : look.theme.text,
            Rect{{count.high.x + look.px(6), name.low.y}, name.high}, bones_of(problem, *found.armature));
-  if (pressed.hovered) tooltip(editor, name, words, "Click to go to this problem.");
+  if (pressed.hovered) tooltip(editor, name, words, "Click to select this problem and move the views to it.");
   const Rect press{{rect.high.x - look.px(kButton + 8), rect.low.y + look.px(2)},
                    {rect.high.x - look.px(8), rect.high.y - look.px(2)}};
   if (!repaired && button(editor, "Repair", press, {"", "Repair"})) {

@@ -166,13 +166,13 @@ void ask_merge(Editor& editor) {
 void ask_specks(Editor& editor) {
   const auto act = [](Editor& e, const Fields& fields) {
     const auto voxels = static_cast<std::int64_t>(std::llround(fields[0].value));
-    start_preparation(e, {"Drop specks under " + std::to_string(voxels) + " voxels",
+    start_preparation(e, {"Remove specks below " + std::to_string(voxels) + " voxels",
                           [voxels](const LabelVolume& v, Progress&) { return drop_specks(v, voxels); }});
   };
   editor.open_dialog(make_form(
-      {"Drop specks",
+      {"Remove specks",
        "Replace small pieces that are separate from the rest of their tissue by the label around them.",
-       "Drop",
+       "Remove",
        {number_of("Smaller than", "Pieces with fewer voxels than this are replaced.", 10, 2, 100000, "%.0f", "voxels")},
        nullptr,
        act}));
@@ -207,7 +207,7 @@ std::vector<Operator> prepare_operators() {
        needs_volume},
       {"prepare.merge", "Merge tissues...", icon::kTissues, "Prepare",
        "Turn all voxels of one tissue into another tissue.", ask_merge, needs_tissues},
-      {"prepare.specks", "Drop specks...", icon::kFilter, "Prepare",
+      {"prepare.specks", "Remove specks...", icon::kFilter, "Prepare",
        "Replace small stray pieces of a tissue by the label around them.", ask_specks, needs_volume},
       {"prepare.statistics", "Statistics", icon::kTable, "Prepare",
        "Show each tissue's number of voxels, volume and number of separate parts.",

@@ -155,7 +155,7 @@ std::vector<Proof> proofs_of_work() {
        makes([](const LabelVolume& v) { return merge_labels(v, 17, 65); }), Shows::Nothing,
        "key Ctrl+Z\n click Muscle/17/name"},
       {"prepare.specks",
-       "click \"Edit/Prepare volume/Drop specks...\"\n double-click \"Smaller than/value\"\n type \"500\"\n key "
+       "click \"Edit/Prepare volume/Remove specks...\"\n double-click \"Smaller than/value\"\n type \"500\"\n key "
        "Return\n key Return\n wait-job",
        makes([](const LabelVolume& v) { return drop_specks(v, 500); }), Shows::Nothing, undone},
       {"prepare.crop_to_clip_box", "click \"Edit/Prepare volume/Crop to clip box\"\n wait-job",
@@ -170,7 +170,7 @@ std::vector<Proof> proofs_of_work() {
       {"skin.geodesic", "key F3\n type \"geodesic\"\n key Return\n wait-job", weighted},
       {"skin.rigid", "click Edit/Weights/Rigid\n wait-job", weighted},
       {"skin.compute", "click \"Edit/Weights/Compute weights...\"\n key Return\n wait-job", weighted},
-      {"skin.drop_weights", "click \"Edit/Weights/Drop weights\"",
+      {"skin.drop_weights", "click \"Edit/Weights/Remove weights\"",
        [](Stage& s, const Seen& b) { return b.document.weights && !s.document().weights; }},
       {"skin.heat", "click Steps/Skin/Compute\n wait-job", weighted},
 

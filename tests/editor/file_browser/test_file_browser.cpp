@@ -73,7 +73,7 @@ TEST_CASE("file browser: by mouse, a double click opens, crumbs and places lead 
     expect widget:list/rows/ball.nrrd
     click list/rows/ball.nrrd
     click Size
-    click Changed
+    click Modified
     click path/Home
     expect widget:list/rows/scans
     double-click list/rows/scans
@@ -120,7 +120,7 @@ TEST_CASE(
     expect "text:there.limber already exists"
     key Return
     expect "text:there.limber already exists"
-    click "Keep it"
+    click "Keep file"
     key Escape
     expect dialog no
   )");

@@ -255,10 +255,10 @@ TEST_CASE("painting: the ring and the hints say that Ctrl takes away and Shift s
   const auto blue = [&] { return pixels_of(0x8F, 0xBE, 0xFF); };
   CHECK(red() == 0);
   const int words = blue();
-  test.play("key-down Ctrl\nwait-idle\nexpect \"text:Paint less\" shown");
+  test.play("key-down Ctrl\nwait-idle\nexpect \"text:Paint inverse\" shown");
   CHECK(red() > 20);
   CHECK(blue() == words);
-  test.play("key-up Ctrl\nkey-down Shift\nwait-idle\nexpect \"text:Paint smooth\" shown");
+  test.play("key-up Ctrl\nkey-down Shift\nwait-idle\nexpect \"text:Smooth weights\" shown");
   CHECK(blue() > words + 20);
   CHECK(red() == 0);
   test.play("key-up Shift\nwait-idle");

@@ -68,7 +68,7 @@ std::vector<Proof> proofs_of_layers() {
                             [](const auto& mask) { return !mask; });
        },
        Shows::InBody, "click \"Edit weights/Layers/Show layer\"\n " + at_middle},
-      {"skin.layer_cover", "click \"Edit weights/Layers/Cover everywhere\"",
+      {"skin.layer_cover", "click \"Edit weights/Layers/Fill mask\"",
        [](Stage& s, const Seen&) {
          return std::all_of(
              s.document().layers->layers[0]->mask.begin(), s.document().layers->layers[0]->mask.end(),

@@ -148,7 +148,7 @@ std::vector<Proof> proofs_of_regions() {
                 s.document().weights->size() / 10;
        },
        Shows::InBody, "key Alt+A"},
-      {"skin.region_unmatched", "click \"Edit weights/Region/Region without a match\"\n wait-idle", voxels(2, 2),
+      {"skin.region_unmatched", "click \"Edit weights/Region/Region of unmatched voxels\"\n wait-idle", voxels(2, 2),
        Shows::Nothing, "key Alt+A",
        [](Stage& s) {
          s.editor().skin->painting->unmatched = {5, 7};

@@ -31,8 +31,8 @@ TEST_CASE("prepare: each command is a job and one edit, undone bit for bit") {
     click "Edit/Prepare volume/Crop to tissue"
     wait-job
     expect edit "Crop to tissue"
-    click "Edit/Prepare volume/Drop specks..."
-    click dialog/Drop
+    click "Edit/Prepare volume/Remove specks..."
+    click dialog/Remove
     wait-job
     click "Edit/Prepare volume/Orient..."
     click "Columns (x)/list"
@@ -135,7 +135,7 @@ TEST_CASE("prepare: statistics count each tissue, are copied and exported") {
   test.play("type \"" + (folder / "s").string() +
             "\"\nkey Return\nexpect error none\nexpect \"text:Cortical bone\" shown\nclick \"Export CSV\"");
   test.play("type \"" + (folder / "s.csv").string() +
-            "\"\nkey Return\nexpect \"text:s.csv already exists\"\nclick \"Keep it\"\nkey Escape");
+            "\"\nkey Return\nexpect \"text:s.csv already exists\"\nclick \"Keep file\"\nkey Escape");
   const std::string expected =
       to_csv(label_statistics(*test.editor->document().volume), *test.editor->document().tissues);
   CHECK(test.host->clipboard() == expected);
