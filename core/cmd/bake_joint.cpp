@@ -84,33 +84,40 @@ void bake(const Options& options) {
 }  // namespace
 
 void add_bake_joint(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "bake-joint", "a joint solved once by finite elements, so that poses have their shapes as fast as by blending");
+  auto* command = app.add_subcommand("bake-joint",
+                                     "solves a joint by finite elements once and stores the shapes, which resample "
+                                     "--baked then uses as fast as blending");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone below the joint")->required();
   command
       ->add_option("--range", options->range,
-                   "range of the joint in degrees from rest, as --flex counts them, e.g. -20,100 (default: 0,90)")
+                   "smallest and largest angle of the joint, degrees from rest, positive bends further, e.g. -20,100 "
+                   "(default: 0,90)")
       ->delimiter(',')
       ->expected(2);
   command
-      ->add_option("--angles", options->angles,
-                   "baked angles beside rest; as many more are solved between them to tell the error")
+      ->add_option(
+          "--angles", options->angles,
+          "number of angles to bake in addition to rest; as many angles between them are solved to measure the error")
       ->capture_default_str()
       ->check(CLI::Range(1, 30));
-  command->add_option("--weights", options->weights, "W.nrrd (default: heat diffusion)");
+  command->add_option("--weights", options->weights, "weights, W.nrrd (default: computed by heat diffusion)");
   add_seam_option(*command, options->seams);
-  command->add_option("--quality", options->quality, "how small the tets are: draft, normal, or fine around the joint")
+  command
+      ->add_option("--quality", options->quality,
+                   "resolution of the mesh: draft (8 tets across the thinnest bent limb), normal (12), or fine (24 "
+                   "around the joint)")
       ->capture_default_str()
       ->check(CLI::IsMember({"draft", "normal", "fine"}));
-  command->add_flag("--no-contact", options->no_contact, "skin may pass through skin: solves faster");
+  command->add_flag("--no-contact", options->no_contact,
+                    "let skin pass through skin, which solves faster (default: skin presses against skin)");
   command
       ->add_option("--glide", options->glide,
-                   "how far the joint is shifted where its bones would enter each other, as resample does: joint "
-                   "(5 percent of the shorter bone), voxel, mm, or off (default: joint)")
+                   "largest shift of the joint where its bones would overlap: joint (5 percent of the shorter bone), "
+                   "voxel (no bone further than a voxel), a length in mm, or off (default: joint)")
       ->type_name("off|voxel|joint|MM");
-  writes(command->add_option("-o,--output", options->output, "JOINT.bake"))->required();
+  writes(command->add_option("-o,--output", options->output, "baked joint to write, JOINT.bake"))->required();
   add_run_options(*command, options->run);
   command->callback([options] { bake(*options); });
 }

@@ -24,7 +24,7 @@ struct Options {
 std::vector<int> numbers_of(const std::string& text, int cell_count) {
   std::vector<bool> is_named(std::size_t(cell_count) + 1, false);
   const auto refuse = [&] {
-    throw Error("these are not numbers of cells", "--cells " + text,
+    throw Error("this is not a list of cell numbers", "--cells " + text,
                 "write numbers from 1 to " + std::to_string(cell_count) + ", as in 1,5,7-9");
   };
   for (std::size_t at = 0; at <= text.size();) {

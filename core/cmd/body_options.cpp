@@ -12,12 +12,15 @@ void add_body_options(CLI::App& command, BodyOptions& options) {
   command.add_option("VOLUME", options.volume, "label volume")->required();
   command.add_option("--rig", options.rig, "rig (JSON, Bender .vtk or .arm, BVH)")->required();
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command.add_option("--bones", options.bones, "labels that are bone, as numbered in the file")
+  command
+      .add_option("--bones", options.bones,
+                  "labels that are bone, as numbers in the volume file (default: from the tissue table, or found "
+                  "automatically)")
       ->delimiter(',')
       ->type_name("L,L");
   command
       .add_option("--bone-map", options.bone_map,
-                  "JSON file with the rig bone that each label follows: {\"label or label@left\": \"rig bone\"}")
+                  "JSON file that says which rig bone each bone label follows: {\"label or label@left\": \"rig bone\"}")
       ->type_name("FILE");
 }
 

@@ -111,7 +111,7 @@ void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, 
   for (const Plant& plant : plants)
     if (const PlantError error = error_of(plant, rig, limbs, poses); error.from_place > kOff)
       warn(limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last) +
-           ": the limb misses its position by " + std::to_string(std::lround(error.from_place)) + " mm");
+           ": the limb does not reach its position; distance " + std::to_string(std::lround(error.from_place)) + " mm");
 }
 
 // Mirrors the poses, changes their speed and repeats them, as the options say.
@@ -125,9 +125,12 @@ std::vector<Pose> changed(const Options& options, const Armature& rig, double ra
                             {.repeats = options.repeats,
                              .blend = options.seam >= 0 ? options.seam : static_cast<int>(usual),
                              .stays = options.on_the_spot});
-  print("The seam blends over a difference of up to %.1f degrees%s%s; bones turn up to %.2f times as fast there.\n",
-        loop.gap_degrees, loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str(), loop.haste);
-  if (loop.haste > 1.5) warn("bones turn too fast at the seam: use a motion of a whole cycle, or a longer --seam");
+  print(
+      "Where repeats meet, poses differ by up to %.1f degrees%s%s; blending them turns bones up to %.2f times as "
+      "fast.\n",
+      loop.gap_degrees, loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str(), loop.haste);
+  if (loop.haste > 1.5)
+    warn("bones turn too fast where repeats meet: use a motion of a whole cycle, or a longer --seam");
   return std::move(loop.poses);
 }
 
@@ -172,12 +175,16 @@ void add_clean_motion(CLI::App& app) {
   command->add_option("RIG", options->rig, "the rig that the motion moves")->required();
   auto* motion = command->add_option("--motion", options->motion.motion, "the motion (BVH)")->required();
   add_up_option(*command, options->motion.up, motion);
-  command->add_option("--map", options->motion.map, "retarget map: which joint moves which bone (default: by names)")
+  command
+      ->add_option("--map", options->motion.map,
+                   "retarget map (JSON): which joint of the motion moves which rig bone (default: matched by names)")
       ->type_name("M.json");
   add_rest_options(*command, options->motion.rests, motion, motion->get_group());
-  command->add_option("--smooth", options->smooth, "remove movement above this frequency, Hz; 6 suits walking")
+  command
+      ->add_option("--smooth", options->smooth,
+                   "remove movement above this frequency, Hz, such as 6 for walking (default: no filter)")
       ->check(CLI::PositiveNumber);
-  command->add_flag("--plant-feet", options->plant_feet, "keep each foot in place while it stands");
+  command->add_flag("--plant-feet", options->plant_feet, "keep each foot in place while it stands on the ground");
   command
       ->add_option("--hold", options->holds,
                    "LIMB=X,Y,Z@FIRST-LAST: keeps the tip of left hand, right hand, left foot or right foot at a "
@@ -189,20 +196,30 @@ void add_clean_motion(CLI::App& app) {
       ->check(CLI::Range(0.0, 10.0))
       ->capture_default_str();
   command->add_flag("--mirror", options->mirror, "swap left and right, and mirror the body's path");
-  command->add_option("--speed", options->speed, "play this many times as fast at the same rate")
+  command
+      ->add_option("--speed", options->speed,
+                   "speed factor: 2 plays twice as fast, at the same number of frames per second")
       ->check(CLI::Range(kSlowest, kFastest))
       ->capture_default_str();
-  auto* loop = command
-                   ->add_option("--loop", options->repeats,
-                                "number of times that the motion plays in all; each repeat continues from the body's "
-                                "position and heading")
-                   ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--seam", options->seam, "frames over which each seam is blended (default: 0.3 seconds)")
+  auto* loop =
+      command
+          ->add_option(
+              "--loop", options->repeats,
+              "total number of times that the motion plays; each repeat continues from the body's position and heading")
+          ->check(CLI::Range(1, 1'000'000));
+  command
+      ->add_option("--seam", options->seam,
+                   "with --loop: number of frames in which the end of each repeat is blended into the next (default: "
+                   "0.3 seconds)")
       ->check(CLI::Range(0, 1'000'000))
       ->needs(loop);
-  command->add_flag("--on-the-spot", options->on_the_spot, "repeat in place, without travel and change of heading")
+  command
+      ->add_flag("--on-the-spot", options->on_the_spot,
+                 "with --loop: keep the body in place, instead of letting it travel from repeat to repeat")
       ->needs(loop);
-  writes(command->add_option("-o,--output", options->output, "the cleaned motion, a BVH of the rig"))->required();
+  writes(
+      command->add_option("-o,--output", options->output, "BVH file to write: the cleaned motion, on the rig's bones"))
+      ->required();
   command->callback([options] { clean(*options); });
 }
 

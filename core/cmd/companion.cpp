@@ -8,7 +8,7 @@ namespace limber::cmd {
 Companion companion(const std::string& request, const char* what, const char* example) {
   const size_t equals = request.rfind('=');
   if (equals == std::string::npos || equals == 0 || equals + 1 == request.size())
-    throw Error(std::string("this is no ") + what + " and output", request,
+    throw Error(std::string("this does not name a ") + what + " and its output file", request,
                 std::string("write IN=OUT, as in ") + example);
   return {request.substr(0, equals), request.substr(equals + 1)};
 }

@@ -97,10 +97,10 @@ void add_convert(CLI::App& app) {
                                      "or to the input of a simulation; OUT's extension selects the format");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
-  writes(
-      command->add_option("OUT", options->out,
-                          "its extension says the format: volumes " + writable_endings() + "; " + exporter_endings()),
-      files_of_output)
+  writes(command->add_option("OUT", options->out,
+                             "file to write; its extension selects the format: volumes " + writable_endings() + "; " +
+                                 exporter_endings()),
+         files_of_output)
       ->required();
   add_material_options(*command, options->material);
   add_run_options(*command, options->run);

@@ -136,15 +136,16 @@ void add_experiment(CLI::App& app, const std::string& commit, const StartPicture
                    "files that raters saved from rating.html: their scores and agreement are added to the report")
       ->delimiter(',')
       ->type_name("FILE,FILE");
-  auto* bundle = writes(command->add_option(
-      "--bundle", options->bundle,
-      "new folder with the description, all inputs and the results, so that the study can be reproduced elsewhere"));
+  auto* bundle = writes(command->add_option("--bundle", options->bundle,
+                                            "new folder to write: the description, all inputs and the results, so that "
+                                            "the study can be reproduced elsewhere"));
   command
       ->add_flag("--without-volumes", options->without_volumes,
                  "do not copy volumes into the bundle, store only their hashes")
       ->needs(bundle);
-  command->add_option("--expect", options->expect,
-                      "expected.json of a bundle: fails unless every voxel and every figure is the same");
+  command->add_option(
+      "--expect", options->expect,
+      "compares the results with expected.json of a bundle, and fails unless every voxel and every number is the same");
   add_run_options(*command, options->run);
   command->callback([options, commit, pictures] { run(*options, commit, pictures); });
 }

@@ -54,24 +54,29 @@ void add_export_gltf(CLI::App& app) {
       "export-gltf", "exports the body's surface, skeleton and weights, and motions as animations, to one .glb file");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
-  command->add_option("--weights", options->weights, "W.nrrd, or a folder with Bender's weights")->required();
+  command->add_option("--weights", options->weights, "weights: W.nrrd, or a folder with Bender's weights")->required();
   auto* motion =
       command->add_option("--motion", options->motions, "motion capture (BVH) that becomes an animation (repeatable)")
           ->type_name("F.bvh")
           ->expected(1)
           ->take_all();
   add_up_option(*command, options->up, motion);
-  command->add_option("--map", options->map, "which joint moves which bone (default: by names)")
+  command
+      ->add_option("--map", options->map,
+                   "retarget map (JSON): which joint of the motion moves which rig bone (default: matched by names)")
       ->type_name("M.json")
       ->needs(motion);
   add_rest_options(*command, options->rests, motion, "");
-  command->add_flag("--root-motion", options->root_motion, "let the body travel as the motion does")->needs(motion);
+  command
+      ->add_flag("--root-motion", options->root_motion,
+                 "move the body along the ground as the motion does (default: keep it at its rest position)")
+      ->needs(motion);
   command
       ->add_option("--step", options->settings.step,
                    "distance of the surface's vertices, mm (default: 1/400 of the volume's longest side)")
       ->type_name("MM")
       ->check(CLI::PositiveNumber);
-  writes(command->add_option("-o,--output", options->output, "OUT.glb"))->required();
+  writes(command->add_option("-o,--output", options->output, "glTF file to write, OUT.glb"))->required();
   command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { export_gltf(*options); });

@@ -146,17 +146,18 @@ void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& optio
                   "fem: method that fills the body's surface with tets: lattice (default) or tetgen")
       ->check(CLI::IsMember({"lattice", "tetgen"}));
   command
-      .add_option("--obstacle", options->obstacles,
-                  "fem, repeatable: a rigid object that is pressed against the posed body. SHAPE is a surface (STL, "
-                  "OBJ, PLY, glTF), or in mm box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH or plane:X,Y, round "
-                  "the origin. @X,Y,Z moves it there, @ and 12 numbers is a matrix row by row; @from=X,Y,Z is the "
-                  "direction from which it comes (default: the shortest way), @from=around tightens a cuff; "
-                  "@force=NEWTON or @force=weight moves it until it presses with this force")
+      .add_option(
+          "--obstacle", options->obstacles,
+          "fem, repeatable: a rigid object that is pressed against the posed body. SHAPE is a surface (STL, OBJ, PLY, "
+          "glTF), or in mm box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH or plane:X,Y, round the origin. "
+          "@X,Y,Z moves it to this position, @ and 12 numbers transform it by a 3 x 4 matrix, given row by row; "
+          "@from=X,Y,Z is the direction from which it comes (default: the shortest way), @from=around tightens a cuff; "
+          "@force=NEWTON or @force=weight moves it until it presses with this force")
       ->type_name("SHAPE[@PLACE][@from=..][@force=..]");
   command.add_option("--gravity", options->gravity, "fem: direction of gravity; soft tissue sags under its weight")
       ->type_name("X,Y,Z");
   writes(command.add_option("--pressure", options->pressure,
-                            "fem: the pressure of obstacles on each node of the skin, as a table"))
+                            "fem: table to write: the pressure of obstacles on each node of the skin"))
       ->type_name("OUT.csv");
 }
 
@@ -182,7 +183,7 @@ std::vector<FemObject> objects_of(const FemOptions& options) {
     objects.push_back(std::move(object));
   }
   if (objects.empty() && !options.pressure.empty())
-    throw Error("there is no pressure without an object", "--pressure " + options.pressure, "give an --obstacle");
+    throw Error("there is no pressure without an obstacle", "--pressure " + options.pressure, "give an --obstacle");
   return objects;
 }
 

@@ -42,7 +42,7 @@ void run(const Options& options) {
 
   print("%s from %g to %g degrees: axis moved by %.1f mm, turned by %.1f degrees\n", options.bone.c_str(),
         settings.minimum_degrees, settings.maximum_degrees, fitted.moved_mm, fitted.turned_degrees);
-  print("overlap of bones at the worst angle: %lld voxels before, %lld after\n",
+  print("overlap of bones at the worst angle: %lld voxels before, %lld after the fit\n",
         static_cast<long long>(fitted.overlap_before), static_cast<long long>(fitted.overlap_after));
   if (fitted.overlap_after)
     warn("joint " + options.bone + ": " + std::to_string(fitted.overlap_after) +
@@ -58,7 +58,8 @@ void add_fit_joint(CLI::App& app) {
   command->add_option("--bone", options->bone, "the bone whose head is the joint")->required();
   command
       ->add_option("--range", options->range,
-                   "range of angles, degrees, over which bones must not collide, such as 0,90")
+                   "smallest and largest angle of the joint, degrees from rest, between which bones must not collide, "
+                   "such as 0,90")
       ->delimiter(',')
       ->expected(2);
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)"))->required();

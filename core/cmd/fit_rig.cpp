@@ -70,7 +70,7 @@ void print_fit(const AutoFit& fitted) {
           std::string(to_string(fitted.joints[b].how)).c_str(), 100 * fitted.joints[b].confidence,
           fitted.joints[b].error, 100 * fitted.check.share[b]);
   if (fitted.misfit_mm > 0) print("skin %.1f mm from the fitted body's skin, ", fitted.misfit_mm);
-  print("%.1f %% of all bone length in tissue\n", 100 * fitted.check.whole);
+  print("%.1f %% of the length of all bones lies in tissue\n", 100 * fitted.check.whole);
 }
 
 void run(const Options& options) {
@@ -105,14 +105,18 @@ void add_fit_rig(CLI::App& app) {
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command
       ->add_option("--template", options->rig,
-                   "arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk or .arm, BVH)")
+                   "skeleton to fit: arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk "
+                   "or .arm, BVH)")
       ->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->bones, "labels that are bone, as numbered in the file")
+  command
+      ->add_option("--bones", options->bones,
+                   "labels that are bone, as numbers in the volume file (default: from the tissue table, or found "
+                   "automatically)")
       ->delimiter(',')
       ->type_name("L,L");
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)"))->required();
-  writes(command->add_option("--report", options->report, "how each joint was found, as JSON"));
+  writes(command->add_option("--report", options->report, "JSON file to write: how each joint was found"));
   add_run_options(*command, options->run);
   command->callback([options] { run(*options); });
 }

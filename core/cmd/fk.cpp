@@ -179,7 +179,9 @@ void add_fk(CLI::App& app) {
                     "print the clinical angles of every joint, from the anatomical position; with --json "
                     "{\"angles\": {joint: {motion: degrees}}}, which is a pose file");
   add_pose_options(*command, options->pose);
-  command->add_flag("--all-frames", options->all_frames, "every frame of the motion: {\"frames\": [{\"joints\": ...}]}")
+  command
+      ->add_flag("--all-frames", options->all_frames,
+                 "print every frame of the motion: {\"frames\": [{\"joints\": ...}]}")
       ->needs(json)
       ->excludes("--frame");
   command->callback([options] { run_fk(*options); });

@@ -7,7 +7,7 @@ void add_glide_option(CLI::App& command, std::string& glide) {
   command
       .add_option("--glide", glide,
                   "largest shift of joints whose bones would overlap: joint (5 percent of the shorter bone), voxel (no "
-                  "bone further than a voxel), mm, or off (default: joint; with --pose or --motion: voxel)")
+                  "bone further than a voxel), a length in mm, or off (default: joint; with --pose or --motion: voxel)")
       ->type_name("off|voxel|joint|MM");
 }
 

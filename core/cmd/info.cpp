@@ -79,7 +79,7 @@ Json describe_weights(const Path& path) {
   const WeightsSummary weights = summarize_weights(path);
   const Json bones = Json::parse(checked_json(weights.bones, path.string()), nullptr, false);
   if (!bones.is_array())
-    throw Error("the weights name no bones", path.string(), "make them anew with `limber weights`");
+    throw Error("the weights name no bones", path.string(), "compute them again with `limber weights`");
   return {{"kind", "weights"}, {"bones", bones}, {"voxels", weights.voxels}};
 }
 
@@ -128,7 +128,7 @@ void add_info(CLI::App& app) {
           "FILE", options->file,
           "a volume, a folder with DICOM images, a rig, motion, weights, baked joint, mesh, label table or project")
       ->required();
-  command->add_flag("--json", options->json, "as JSON");
+  command->add_flag("--json", options->json, "print as JSON");
   command->callback([options] {
     print_description(describe(options->file).dump(-1, ' ', false, Json::error_handler_t::replace), options->json);
   });

@@ -134,13 +134,18 @@ void add_job(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command
       ->add_option("JOB", options->file,
-                   "JSON: {\"command\": \"resample\", \"volume\", \"rig\", ... as the command's options}")
+                   "job file (JSON): {\"command\": \"resample\", \"volume\": FILE, \"rig\": FILE, ...}, with the "
+                   "command's options as keys")
       ->required();
   command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));
-  command->add_option("--memory-limit", options->memory_limit, "memory limit, MB")->check(CLI::Range(1, 1 << 30));
+  command
+      ->add_option("--memory-limit", options->memory_limit,
+                   "stop the job if it needs more memory than this, MB (default: no limit)")
+      ->check(CLI::Range(1, 1 << 30));
   command->add_flag("--yield", options->yields, "run at the lowest priority");
-  command->add_option("--parent", options->parent, "process ID of the parent; the job ends with it");
+  command->add_option("--parent", options->parent,
+                      "process ID of the program that started the job; the job stops when that program ends");
   command->callback([options] { run(*options); });
 }
 

@@ -50,7 +50,9 @@ void add_phantom(CLI::App& app) {
   auto* command =
       app.add_subcommand("phantom", "makes a procedural sample: volume.nrrd, tissues.json, rig.json, motion.bvh");
   auto options = std::make_shared<Options>();
-  command->add_option("SUBJECT", options->subject, "arm or body")->required()->check(CLI::IsMember({"arm", "body"}));
+  command->add_option("SUBJECT", options->subject, "sample to make: arm or body")
+      ->required()
+      ->check(CLI::IsMember({"arm", "body"}));
   command->add_option("--spacing", options->spacing, "size of a voxel in mm, 0.5 to 10 (default: arm 2, body 4)");
   writes(command->add_option("-o,--output", options->folder, "folder for the four files; created if missing"),
          files_of_folder)

@@ -40,8 +40,9 @@ std::vector<Pose> poses_of_motion(const PoseOptions& options, const Armature& ar
 
 void add_up_option(CLI::App& command, std::string& up, CLI::Option* motion) {
   command
-      .add_option("--up", up,
-                  "the axis that points up in the motion's file; auto: guessed from the posture of its body")
+      .add_option(
+          "--up", up,
+          "axis that points up in the motion file: y, z, or auto: guessed from the posture of the body in the motion")
       ->type_name("y|z|auto")
       ->check(CLI::IsMember({"y", "z", "auto"}))
       ->needs(motion)
@@ -59,12 +60,12 @@ Motion read_motion(const std::string& file, const std::string& up) {
 }
 
 void add_rest_options(CLI::App& command, RestWords& words, CLI::Option* needed, const std::string& group) {
-  const std::string which = ": T, A, anatomical, or file: as stored (default: the retarget map's)";
-  command.add_option("--motion-rest", words.motion, "pose that the motion's rest pose is taken for" + which)
+  const std::string which = ": T, A, anatomical, or file: the pose as stored (default: from the retarget map)";
+  command.add_option("--motion-rest", words.motion, "treat the motion's rest pose as this pose" + which)
       ->type_name("POSE")
       ->needs(needed)
       ->group(group);
-  command.add_option("--rig-rest", words.rig, "pose that the rig's rest pose is taken for" + which)
+  command.add_option("--rig-rest", words.rig, "treat the rig's rest pose as this pose" + which)
       ->type_name("POSE")
       ->needs(needed)
       ->group(group);
@@ -78,7 +79,9 @@ void take_over(const RestWords& words, RetargetMap& map) {
 CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI::Option* pose) {
   std::string names;
   for (const BodyPose& one : body_poses()) names += (names.empty() ? "" : ", ") + std::string(one.name);
-  auto* name = command.add_option("--pose-name", request.name, "pose of any body, by its joints: " + names)
+  auto* name = command
+                   .add_option("--pose-name", request.name,
+                               "built-in pose for a rig whose joints are known by their bones' names: " + names)
                    ->type_name("NAME")
                    ->excludes(pose)
                    ->group(pose->get_group());
@@ -87,8 +90,8 @@ CLI::Option* add_body_pose_options(CLI::App& command, PoseRequest& request, CLI:
       [](const std::string& given) { return given.empty() ? std::string("write a pose's name") : std::string(); }, "");
   command
       .add_option("--joint", request.joints,
-                  "angle of a joint from the anatomical position; replaces the pose's angle (repeatable): \"left hip "
-                  "flexion=90\", \"knees flexion=60\"")
+                  "angle of a joint in degrees from the anatomical position; replaces the angle of --pose-name "
+                  "(repeatable): \"left hip flexion=90\", \"knees flexion=60\"")
       ->type_name("\"JOINT MOTION=DEG\"")
       ->expected(1)
       ->take_all()
@@ -111,17 +114,21 @@ void add_pose_options(CLI::App& command, PoseOptions& options) {
                      ->excludes(pose)
                      ->excludes(name)
                      ->group(group);
-  command.add_option("--frame", options.frame, "frame of the motion, counted from 0")
+  command.add_option("--frame", options.frame, "frame of the motion to take the pose from, counted from 0")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber)
       ->group(group);
   add_up_option(command, options.up, motion);
-  command.add_option("--map", options.map, "retarget map: which joint moves which bone (default: by names)")
+  command
+      .add_option("--map", options.map,
+                  "retarget map (JSON): which joint of the motion moves which rig bone (default: matched by names)")
       ->type_name("M.json")
       ->needs(motion)
       ->group(group);
   add_rest_options(command, options.rests, motion, group);
-  command.add_flag("--root-motion", options.root_motion, "let the body travel as the motion does")
+  command
+      .add_flag("--root-motion", options.root_motion,
+                "move the body along the ground as the motion does (default: keep it at its rest position)")
       ->needs(motion)
       ->group(group);
 }

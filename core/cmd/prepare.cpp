@@ -212,15 +212,15 @@ void add_prepare(CLI::App& app) {
                          "--merge, --spacing, --drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<Options>();
   command->add_option("IN", options->in, "label volume; with --from-ct a CT")->required();
-  writes(command->add_option("-o,--output", options->out, "label volume to write; its format by extension"))
+  writes(command->add_option("-o,--output", options->out, "label volume to write; its extension selects the format"))
       ->required();
   auto* from_ct = command->add_flag("--from-ct", options->from_ct,
                                     "IN is a CT: makes labels for skin, fat, soft tissue, lung, gas and bone by "
                                     "thresholds; leaves out the table and other thin things around the body");
   command
       ->add_option("--thresholds", options->thresholds,
-                   "from-ct: the Hounsfield units from which voxels belong to the body, are fat, soft tissue, bone "
-                   "(default: -300,-190,-30,200)")
+                   "from-ct: smallest values, in Hounsfield units, of the body, fat, soft tissue and bone (default: "
+                   "-300,-190,-30,200)")
       ->delimiter(',')
       ->expected(4)
       ->type_name("BODY,FAT,SOFT,BONE")
@@ -231,17 +231,19 @@ void add_prepare(CLI::App& app) {
       ->check(CLI::IsMember({"x", "y", "z"}));
   command
       ->add_option("--merge", options->merges,
-                   "A=B: every A becomes B; values in the file, or names; 0 is air (repeatable)")
+                   "merge tissue A into tissue B, written as A=B; A and B are label values of the file, or names; 0 is "
+                   "air (repeatable)")
       ->allow_extra_args(false);
-  command->add_option(
-      "--spacing", options->spacing,
-      "resample to this voxel size, mm: the label with the largest share wins; thin layers stay closed");
+  command->add_option("--spacing", options->spacing,
+                      "resample to cubic voxels of this size, mm: a voxel gets the label with the largest share; thin "
+                      "layers stay closed");
   command
       ->add_option("--drop-specks", options->specks,
                    "replace pieces with fewer voxels than this by the label around them")
       ->check(CLI::NonNegativeNumber);
-  command->add_flag("--crop", options->crop, "remove the air around the tissue");
-  command->add_option("--pad", options->pad, "voxels of air to add on every side")->check(CLI::NonNegativeNumber);
+  command->add_flag("--crop", options->crop, "crop the volume to the tissue, by removing the air around it");
+  command->add_option("--pad", options->pad, "number of voxels of air to add on every side")
+      ->check(CLI::NonNegativeNumber);
   auto* close = command
                     ->add_option("--close-skin", options->close_skin,
                                  "adds a closed skin of one voxel where soft tissue touches the outside air: inward "
@@ -249,8 +251,9 @@ void add_prepare(CLI::App& app) {
                                  "air do not change, and the skin stays open where the volume's border cuts the body")
                     ->check(CLI::IsMember({"inward", "outward"}));
   command
-      ->add_option("--skin-label", options->skin_label,
-                   "the value or name that new skin gets (default: the nearest tissue that is skin)")
+      ->add_option(
+          "--skin-label", options->skin_label,
+          "with --close-skin: label value or name that new skin gets (default: the nearest tissue that is skin)")
       ->needs(close);
   auto* seams = writes(
       command->add_option("--seams", options->seams,

@@ -300,20 +300,25 @@ void add_project(CLI::App& app) {
                       "of create: a label volume; of recover: an earlier copy of the project, or its original volume, "
                       "from which lost parts are taken; of export: volume, tissues, rig, weights, pose, motion, gltf, "
                       "seams, bone-map, or a result's name");
-  command->add_flag("--json", options->json, "inspect as JSON");
-  command->add_option("--tissues", options->tissues, "of create: tissue table");
-  command->add_option("--rig", options->rig, "of create: rig");
-  command->add_option("--weights", options->weights, "of create: W.nrrd, or a folder with Bender's weights");
-  add_body_pose_options(*command, options->body,
-                        command->add_option("--pose", options->pose, "of create: pose (default: at rest)"));
-  add_up_option(*command, options->up, command->add_option("--motion", options->motion, "of create: BVH"));
+  command->add_flag("--json", options->json, "inspect: print as JSON");
+  command->add_option("--tissues", options->tissues, "of create: tissue table (JSON, .ctbl, ITK-SNAP)");
+  command->add_option("--rig", options->rig, "of create: rig file");
+  command->add_option("--weights", options->weights, "of create: weights, W.nrrd, or a folder with Bender's weights");
+  add_body_pose_options(
+      *command, options->body,
+      command->add_option("--pose", options->pose, "of create: pose file (JSON) (default: the rest pose)"));
+  add_up_option(*command, options->up,
+                command->add_option("--motion", options->motion, "of create: motion file (BVH)"));
   command->add_option(
       "--seams", options->seams,
       "of create: file of seams, where tissue touches without being connected, from 'limber prepare --seams'");
   command->add_option("--bone-map", options->bone_map,
-                      "of create: JSON file with the rig bone that each label follows");
+                      "of create: JSON file that says which rig bone each bone label follows");
   writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
-  command->add_option("--frame", options->frame, "of export pose: a frame of the shown clip, with keys and constraints")
+  command
+      ->add_option(
+          "--frame", options->frame,
+          "of export pose: frame of the shown clip to export, with keys and constraints (default: the project's pose)")
       ->check(CLI::Range(-kFarthestFrame, kFarthestFrame));
   command->add_flag("--replace", options->replace, "of create and recover: overwrite an existing file");
   command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")

@@ -75,9 +75,12 @@ void add_repair_joint(CLI::App& app) {
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone whose head is the joint")->required();
-  command->add_option("--weights", options->weights, "weights to start from (default: heat)");
+  command->add_option("--weights", options->weights,
+                      "weights to start from, W.nrrd (default: computed by heat diffusion)");
   command
-      ->add_option("--range", options->range, "range of the joint in degrees from rest, e.g. 0,90 (default: its own)")
+      ->add_option(
+          "--range", options->range,
+          "smallest and largest angle of the joint, degrees from rest, e.g. 0,90 (default: the limits of the joint)")
       ->delimiter(',')
       ->expected(2);
   command->add_option("--method", options->method, method_summaries(Methods::Blends))

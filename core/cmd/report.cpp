@@ -127,14 +127,16 @@ void add_report(CLI::App& app) {
   auto* field = command
                     ->add_option("--field", options->field,
                                  "the displacement at each voxel of AFTER, as `limber resample --field` writes it, in "
-                                 "either direction; adds checks of tissue that was exposed")
+                                 "either direction; adds a check for deep tissue that is now at the surface")
                     ->type_name("F.nrrd");
   auto* rig = command
                   ->add_option("--rig", options->rig,
-                               "with --field: adds checks of bones, limbs and bands (tissue pulled out between parts "
-                               "of the body); give the pose as for resample")
+                               "with --field: the rig; adds checks of bones, limbs and bands (tissue stretched between "
+                               "parts of the body); also give the pose, as for resample")
                   ->needs(field);
-  command->add_option("--bone-map", options->bone_map, "rig bone of each label, as for resample")
+  command
+      ->add_option("--bone-map", options->bone_map,
+                   "JSON file that says which rig bone each bone label follows, as for resample")
       ->type_name("FILE")
       ->needs(rig);
   add_pose_options(*command, options->pose);

@@ -409,7 +409,8 @@ void run(const Options& options) {
 }  // namespace
 
 void add_resample(CLI::App& app) {
-  auto* command = app.add_subcommand("resample", "poses a label volume");
+  auto* command = app.add_subcommand(
+      "resample", "poses a label volume: moves its tissue into a pose of the rig and writes a new label volume");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "weights, W.nrrd (default: computed by heat diffusion)");
@@ -439,15 +440,15 @@ void add_resample(CLI::App& app) {
       files_of_mesh(options))
       ->type_name("NAME");
   writes(command->add_option("--steps", options->steps,
-                             "fem: for a program that shows the progress: the mesh as NAME.mesh, the newest step of "
-                             "the solve as NAME.step"),
+                             "fem: writes the mesh as NAME.mesh and the newest step of the solve as NAME.step, for a "
+                             "program that shows the progress"),
          files_written_to(options, {".mesh", ".step"}))
       ->type_name("NAME");
   add_glide_option(*command, options->glide);
   command
       ->add_option("--baked", options->baked,
-                   "a joint of limber bake-joint, whose flesh takes the shape of finite elements; for --method dqs; "
-                   "may be repeated")
+                   "joint baked by limber bake-joint, which gives the flesh the shape that finite elements have; for "
+                   "--method dqs (repeatable)")
       ->type_name("JOINT.bake");
   command->add_flag(
       "--fit-joints", options->fit_joints,
@@ -459,9 +460,10 @@ void add_resample(CLI::App& app) {
   command->add_flag(
       "--strict", options->strict,
       "exit with code 5 when a quality gate fails: measures the result as for --report, and still writes all outputs");
-  command->add_option("--spacing", options->spacing, "voxel size of the output, mm (default: as the input)")
+  command->add_option("--spacing", options->spacing, "voxel size of the output, mm (default: same as the input)")
       ->check(CLI::Range(1e-9, 1e6));
-  command->add_flag("--nearest", options->nearest, "take the label of the nearest voxel at rest");
+  command->add_flag("--nearest", options->nearest,
+                    "give each voxel the label of the nearest voxel at rest, without interpolation");
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact,
                                        "restores the rest volume of each soft tissue, by changing as few voxels at "
                                        "tissue borders as possible, the least certain first");
@@ -470,9 +472,11 @@ void add_resample(CLI::App& app) {
                    "largest change that mass-exact may make, percent of a tissue; more is refused (default: 3)")
       ->needs(mass_exact)
       ->check(CLI::Range(0.0, 20.0));
-  writes(command->add_option("--with", options->grey, "also poses a grey volume (CT, MR)"), files_of_pair(options))
+  writes(command->add_option("--with", options->grey, "also poses a grey volume (CT, MR): reads GREY, writes OUT"),
+         files_of_pair(options))
       ->type_name("GREY=OUT");
-  writes(command->add_option("--landmarks", options->landmarks, "also poses points (name,x,y,z; mm, LPS)"),
+  writes(command->add_option("--landmarks", options->landmarks,
+                             "also poses points: reads and writes CSV files with lines name,x,y,z (mm, LPS)"),
          files_of_pair(options))
       ->type_name("IN.csv=OUT.csv");
   auto* field = writes(command->add_option("--field", options->field,

@@ -11,7 +11,8 @@ Shard read_shard(const std::string& text) {
   int number = 0, of = 0, end = 0;
   if (std::sscanf(text.c_str(), "%d/%d%n", &number, &of, &end) != 2 || end != static_cast<int>(text.size()) || of < 1 ||
       number < 1 || number > of)
-    throw Error("this is no shard", "--shard " + text, "write i/n with i from 1 to n, as in --shard 1/4");
+    throw Error("this is not a shard (a part of the cells)", "--shard " + text,
+                "write i/n with i from 1 to n, as in --shard 1/4");
   return {number - 1, of};
 }
 

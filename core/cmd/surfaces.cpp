@@ -87,13 +87,13 @@ void add_surfaces(CLI::App& app) {
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--only", options->choice.tissues, "tissues by name or label (default: all)")
+  command->add_option("--only", options->choice.tissues, "write only these tissues, by name or label (default: all)")
       ->delimiter(',')
       ->type_name("A,B");
   command
       ->add_option("--relax", options->choice.settings.relaxations,
-                   "steps of smoothing (default: 5; more is smoother, but thin parts lose volume; 0 keeps the voxels' "
-                   "faces and volumes)")
+                   "number of smoothing steps (default: 5); more is smoother, but thin parts lose volume; 0 keeps the "
+                   "voxels' faces and volumes")
       ->check(CLI::Range(0, 1000));
   writes(command->add_option("-o,--output", options->output,
                              "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (one file per tissue: OUT-NAME.stl)"),

@@ -11,7 +11,8 @@ CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options) {
       .add_option("--properties", options.properties,
                   "CSV table of dielectric properties, used before the built-in one")
       ->type_name("P.csv");
-  return command.add_option("--frequency", options.frequency, "frequency of the field, Hz, such as 900e6")
+  return command
+      .add_option("--frequency", options.frequency, "frequency of the electromagnetic field, Hz, such as 900e6")
       ->type_name("HZ");
 }
 

@@ -116,7 +116,7 @@ void add_tissues(CLI::App& app) {
   command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
   add_material_options(*command, options->material)->required();
   command->add_flag("--json", options->json, "print as JSON");
-  writes(command->add_option("-o,--output", options->output, "the list as comma-separated values"))
+  writes(command->add_option("-o,--output", options->output, "CSV file to write: the list as comma-separated values"))
       ->type_name("OUT.csv");
   command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
       ->check(CLI::IsMember({"json"}));

@@ -114,10 +114,10 @@ void add_weights(CLI::App& app) {
   add_body_options(*command, options->body);
   command
       ->add_option("--method", options->method,
-                   "method: heat (smoothest), geodesic (faster) or rigid (one bone per voxel)")
+                   "how weights are computed: heat (smoothest), geodesic (faster) or rigid (one bone per voxel)")
       ->check(CLI::IsMember(binding_words()));
   add_seam_option(*command, options->seams);
-  writes(command->add_option("-o,--output", options->output, "W.nrrd"))->required();
+  writes(command->add_option("-o,--output", options->output, "weights to write, W.nrrd"))->required();
   writes(command->add_option("--bender-dir", options->bender_folder,
                              "also write weight_NN.mha, one file per bone, into this folder"),
          files_of_bender_folder);

@@ -30,13 +30,14 @@ void add_editor(CLI::App& app) {
   };
   auto options = std::make_shared<Options>();
   CLI::App* command =
-      app.add_subcommand("editor", "Opens the editor, as limber without a command does, or plays a script in it");
+      app.add_subcommand("editor", "Opens the editor, like limber without a command, or plays a script in it");
   command->add_option("FILE", options->files, "volumes or a project to open");
-  command->add_option("--size", options->size, "WIDTHxHEIGHT of the window, pixels")->capture_default_str();
+  command->add_option("--size", options->size, "size of the window, WIDTHxHEIGHT in pixels")->capture_default_str();
   command->add_option("--scale", options->start.scale,
-                      "size of texts and buttons, 0.75 to 3 (default: the user's preference)");
-  command->add_option("--theme", options->start.theme, "dark or light")->check(CLI::IsMember({"dark", "light"}));
-  command->add_option("--play", options->script, "a script of clicks and keys, played without a display");
+                      "size of texts and buttons, as a factor from 0.75 to 3 (default: the user's preference)");
+  command->add_option("--theme", options->start.theme, "colour theme: dark or light (default: the user's preference)")
+      ->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--play", options->script, "script file of clicks and keys to play; no display is needed");
   command->callback([options] {
     options->start.size = size_of(options->size);
     options->start.script = options->script;

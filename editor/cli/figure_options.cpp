@@ -12,8 +12,8 @@ void add_figure_options(CLI::App& command, FigureFlags& flags) {
   using Paper = FigureOptions::Paper;
   CLI::Option* figure = command
                             .add_option("--figure", flags.size,
-                                        "a figure of this size in mm, with scale bar and legend, instead of a plain "
-                                        "picture; -o may end in .png, .tif or .svg")
+                                        "writes a figure of this size, mm, with scale bar and legend, instead of a "
+                                        "plain picture; -o may end in .png, .tif or .svg")
                             ->type_name("WxH");
   const auto option = [&](CLI::Option* added) { return added->needs(figure); };
   option(command.add_option("--dpi", flags.options.dots_per_inch, "resolution of the figure, pixels per inch"))
@@ -23,8 +23,8 @@ void add_figure_options(CLI::App& command, FigureFlags& flags) {
   option(command.add_option("--paper", flags.options.paper, "background of the figure: white, black or transparent"))
       ->transform(CLI::CheckedTransformer(std::map<std::string, Paper>{
           {"white", Paper::White}, {"black", Paper::Black}, {"transparent", Paper::Transparent}}));
-  option(command.add_flag("--no-legend", flags.no_legend, "no legend of tissues"));
-  option(command.add_flag("--no-scale-bar", flags.no_scale_bar, "no scale bar"));
+  option(command.add_flag("--no-legend", flags.no_legend, "leave out the legend of tissues"));
+  option(command.add_flag("--no-scale-bar", flags.no_scale_bar, "leave out the scale bar"));
 }
 
 std::optional<FigureOptions> figure_of(const FigureFlags& flags) {

@@ -19,8 +19,9 @@ void add_guide(CLI::App& app) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("guide", "writes the user guide as pages for a browser");
   cmd::writes(
-      command->add_option("--html", options->folder,
-                          "folder for the pages and their pictures; index.html is the first page; created if missing"),
+      command->add_option(
+          "--html", options->folder,
+          "folder to write the pages and their pictures into; index.html is the first page; created if missing"),
       [](const std::string& folder) {
         return cmd::OptionFiles{{}, {Path(folder) / "index.html", Path(folder) / "guide.css"}};
       })

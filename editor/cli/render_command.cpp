@@ -416,26 +416,37 @@ void add_render(CLI::App& app) {
   auto* command = app.add_subcommand("render", "draws a picture of a volume or a project; needs no display");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->body.volume, "label volume or project")->required();
-  cmd::writes(command->add_option("-o,--output", options->output, "PNG"), [options](const std::string& name) {
-    return files_of_pictures(*options, name);
-  })->required();
+  cmd::writes(command->add_option("-o,--output", options->output, "picture to write (.png), or a video or figure"),
+              [options](const std::string& name) { return files_of_pictures(*options, name); })
+      ->required();
   command->add_option("--tissues", options->body.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--bones", options->body.bones, "labels that are bone, as numbered in the file")
+  command
+      ->add_option("--bones", options->body.bones,
+                   "labels that are bone, as numbers in the volume file (default: from the tissue table, or found "
+                   "automatically)")
       ->delimiter(',')
       ->type_name("L,L");
-  command->add_option("--size", options->size, "pixels")->type_name("WxH")->capture_default_str();
-  command->add_option("--view", options->view, "side of the body from which the camera looks")
+  command->add_option("--size", options->size, "size of the picture, pixels")->type_name("WxH")->capture_default_str();
+  command
+      ->add_option(
+          "--view", options->view,
+          "side of the body from which the camera looks: front, back, left, right, top or bottom (default: front)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, StandardView>{{"front", StandardView::Front},
                                                                               {"back", StandardView::Back},
                                                                               {"left", StandardView::Left},
                                                                               {"right", StandardView::Right},
                                                                               {"top", StandardView::Top},
                                                                               {"bottom", StandardView::Bottom}}));
-  command->add_option("--turn", options->turn, "turns the view about the vertical axis, degrees");
-  command->add_option("--tilt", options->tilt, "tilts the view to look down, degrees");
-  command->add_option("--zoom", options->zoom, "zoom factor; 1 shows everything")->check(CLI::Range(0.01, 100.0));
+  command->add_option("--turn", options->turn,
+                      "turns the view about the vertical axis by this angle, degrees (default: 0)");
+  command->add_option("--tilt", options->tilt, "tilts the view to look down by this angle, degrees (default: 0)");
+  command->add_option("--zoom", options->zoom, "zoom factor; 1 shows the whole body, 2 is twice as large (default: 1)")
+      ->check(CLI::Range(0.01, 100.0));
   command->add_flag("--orthographic", options->orthographic, "parallel projection, without perspective");
-  command->add_option("--display", options->display, "solid, xray or tissue")
+  command
+      ->add_option("--display", options->display,
+                   "how tissue is shown: solid (opaque surface), xray (soft tissue transparent) or tissue (by the "
+                   "opacity of each tissue)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Display>{
           {"solid", Display::Solid}, {"xray", Display::XRay}, {"tissue", Display::Tissue}}));
   command
@@ -445,30 +456,33 @@ void add_render(CLI::App& app) {
           "second longer per picture without a graphics card. draft: simple light, as in a moving view")
       ->transform(
           CLI::CheckedTransformer(std::map<std::string, Light>{{"fine", Light::Fine}, {"draft", Light::Draft}}));
-  command->add_option("--hide", options->hide, "labels to hide, as numbered in the file")
+  command->add_option("--hide", options->hide, "labels to hide, as numbers in the volume file")
       ->delimiter(',')
       ->type_name("L,L");
   command->add_option("--opacity", options->opacity, "opacity of a label in the tissue display, 0 to 1")
       ->type_name("L=A");
-  command->add_option("--clip-box", options->clip_box, "clip box by two corners, voxels: everything outside is hidden")
+  command->add_option("--clip-box", options->clip_box, "hides everything outside a box, given by two corners in voxels")
       ->delimiter(',')
       ->expected(6)
       ->type_name("X,Y,Z,X,Y,Z");
   command
       ->add_option("--clip-plane", options->clip_plane,
-                   "clip plane by a point and a normal, mm: the side to which the normal points is hidden")
+                   "hides one side of a plane, given by a point in mm and a normal that points to the hidden side")
       ->delimiter(',')
       ->expected(6)
       ->type_name("X,Y,Z,NX,NY,NZ");
   command->add_option("--rig", options->body.rig, "rig to draw and to pose with");
-  command->add_option("--armature", options->armature, "octahedron, stick, cylinder or none")
+  command
+      ->add_option("--armature", options->armature,
+                   "how bones are drawn: octahedron, stick, cylinder or none (default: octahedron)")
       ->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
-  command->add_option("--weights", options->weights, "weights for the pose, W.nrrd (default: by heat diffusion)");
+  command->add_option("--weights", options->weights,
+                      "weights for the pose, W.nrrd (default: computed by heat diffusion)");
   cmd::add_pose_options(*command, options->pose);
   command->add_option("--method", options->method, "how the pose moves tissue: " + method_summaries(Methods::Blends))
       ->check(CLI::IsMember(method_words(Methods::Blends)))
       ->capture_default_str();
-  command->add_option("--baked", options->baked, "a joint of limber bake-joint, for --method dqs; may be repeated")
+  command->add_option("--baked", options->baked, "joint baked by limber bake-joint, for --method dqs (repeatable)")
       ->type_name("JOINT.bake");
   command->add_flag("--preview", options->preview, "draws the editor's coarse preview of the pose, which is fast");
   command->add_option("--slice", options->slice, "draws a slice instead of a 3D picture")
@@ -480,8 +494,8 @@ void add_render(CLI::App& app) {
                    "turntable: draws N pictures while the camera goes once around: NAME-0000.png and so on, or a video "
                    "(-o NAME.mp4 or .webm; needs ffmpeg)")
       ->check(CLI::Range(1, 9999));
-  command->add_flag("--transparent", options->transparent, "no background");
-  command->add_flag("--light", options->light, "the light theme's background");
+  command->add_flag("--transparent", options->transparent, "make the background transparent");
+  command->add_flag("--light", options->light, "use the light theme's background (default: the dark theme's)");
   command->add_flag("--grid", options->grid, "draws the ground grid");
   add_figure_options(*command, options->figure);
   for (const char* other : {"--size", "--turntable", "--transparent", "--light", "--grid"})
