@@ -88,7 +88,7 @@ class Window final : public Host {
     glfwSetErrorCallback([](int, const char* text) { reason = text; });
     if (!glfwInit())
       throw Error("no display can be reached", reason,
-                  "start the editor in a graphical session, or use a command (limber --help)");
+                  "start the editor in a graphical session, or use the command line (limber --help)");
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -44,9 +44,9 @@ std::vector<Operator> preferences_operators() {
        "Load a keymap (the keys that run commands) from a file.",
        [](Editor& e) { browse_keymap(e, FileRequest::Kind::Open); }},
       {"edit.export_keymap", "Export keymap...", icon::kExport, "Edit",
-       "Save the keymap (the keys that run commands) to a file, to use it on another machine.",
+       "Save the keymap (the keys that run commands) to a file, for use on another computer.",
        [](Editor& e) { browse_keymap(e, FileRequest::Kind::Save); }},
-      {"edit.other_theme", "Other theme", icon::kTheme, "Edit", "Switch between the dark and the light theme.",
+      {"edit.other_theme", "Switch theme", icon::kTheme, "Edit", "Switch between the dark and the light theme.",
        other_theme},
   };
 }

@@ -153,7 +153,7 @@ glm::vec2 Player::place_of(const std::string& name) {
       widget = editor_.widgets.find(name);
     }
   }
-  if (!widget) throw Error("no widget has this name", name, "compare it with what is shown");
+  if (!widget) throw Error("no widget has this name", name, "compare the name with the widgets that are shown");
   return widget->rect.centre();
 }
 
@@ -174,7 +174,7 @@ void Player::wait_for_jobs() {
       frame();  // the script's clock does not advance, so the result does not depend on the job's duration
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob))
-        throw Error("the job does not end", "wait-job", "look at what it does");
+        throw Error("the job did not end in time", "wait-job", "find out why it takes so long, or wait longer");
     }
     settle();  // a finished job may start another job
   } while (editor_.busy());
@@ -189,7 +189,7 @@ void Player::wait_until_idle() {
     if (editor_.rest() > 0) wait_for_jobs();
     else step();
   }
-  throw Error("the editor does not become idle", "wait-idle", "look at what it draws");
+  throw Error("the editor does not become idle", "wait-idle", "find out what it keeps drawing");
 }
 
 void Player::expect(const std::vector<std::string>& words) {

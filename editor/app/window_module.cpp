@@ -12,7 +12,8 @@ std::unique_ptr<Host> open_window(const glm::ivec2& size, const std::string& tit
       module ? reinterpret_cast<decltype(&limber_open_window)>(symbol_of(module, "limber_open_window")) : nullptr;
   if (!open)
     throw Error("windows cannot be opened on this system", "limber_window.so",
-                "install libx11-6, or Limber again if the file is missing; a command needs no window (limber --help)");
+                "install libx11-6, or install Limber again if the file is missing; commands work without a window "
+                "(limber --help)");
   return std::unique_ptr<Host>(open(size, title));
 }
 

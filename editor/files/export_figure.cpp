@@ -75,7 +75,8 @@ void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) 
     const bool perspective =
         !shows_slice(e) && e.views->body.camera.projection == render::Projection::Perspective && fields[7].chosen == 0;
     return std::to_string(pixels.x) + " x " + std::to_string(pixels.y) + " pixels." +
-           (perspective ? " The scale bar is exact at the view's focus; without perspective it is exact everywhere."
+           (perspective ? " The scale bar is exact at the depth of the view's centre. In parallel projection it is "
+                          "exact everywhere."
                         : "");
   };
   const auto act = [last](Editor& e, const std::vector<FormField>& fields) {
@@ -99,12 +100,14 @@ void ask_for_figure(Editor& editor, const std::shared_ptr<FigureOptions>& last) 
                   "mm"),
         number_of("Resolution", "Pixels per inch of the printed figure. Journals ask for 300 to 600.",
                   last->dots_per_inch, kLowestResolution, kHighestResolution, "%.0f", "dpi"),
-        text_of("Letter", "Letter in the figure's corner, such as a. May be empty.", last->letter),
+        text_of("Letter", "Letter in the figure's corner, such as \"a\". May be empty.", last->letter),
         text_of("Title", "Title above the picture. May be empty.", last->title),
-        choice_of("Background", "Colour behind everything.", {"White", "Black", "None"}, static_cast<int>(last->paper)),
+        choice_of("Background", "Colour of the figure's background.", {"White", "Black", "None"},
+                  static_cast<int>(last->paper)),
         choice_of("Legend", "Names and colours of the tissues that the picture shows.", {"Show", "Leave out"},
                   last->legend ? 0 : 1),
-        choice_of("Scale bar", "A scale bar with a round length.", {"Show", "Leave out"}, last->scale_bar ? 0 : 1)},
+        choice_of("Scale bar", "Scale bar that shows a round length, such as 50 mm.", {"Show", "Leave out"},
+                  last->scale_bar ? 0 : 1)},
        outcome,
        act,
        {}}));

@@ -115,7 +115,7 @@ void browse_for_result(Editor& editor, const std::string& title, const char* pur
   const auto result = chosen_result(editor);
   browse(editor, {.purpose = purpose,
                   .title = title,
-                  .action = "Write",
+                  .action = "Export",
                   .kind = FileRequest::Kind::Save,
                   .filters = filters,
                   .name = name + filters[0].ends[0],
@@ -162,7 +162,7 @@ std::vector<Operator> export_operators() {
                        "-rig"}),
       export_operator({"file.export_weights",
                        "Weights...",
-                       "Export the weights that tell how tissue follows the bones.",
+                       "Export the skin weights: how strongly each voxel follows each bone.",
                        ExportKind::Weights,
                        {{"Weights", {".nrrd"}}},
                        "-weights"}),
@@ -193,15 +193,15 @@ std::vector<Operator> export_operators() {
        },
        needs_result},
       {"file.export_image", "Posed image...", icon::kExport, "File",
-       "Export the grey image (CT, MR) that was posed with the selected result.",
+       "Export the grey image (CT, MR) that was posed together with the selected result.",
        [](Editor& e) {
          browse_for_result(e, "Export posed image", "posed image", stem_of(e) + "-image", writable_volumes(),
                            export_posed_image);
        },
        needs_posed_image},
       {"report.open", "Report...", icon::kReport, "Result",
-       "Write a page of all results with pictures and quality gates and open it, or write the selected result's report "
-       "as text or JSON.",
+       "Export a web page of all results with pictures and quality gates and open it, or export the selected result's "
+       "report as text or JSON.",
        [](Editor& e) {
          browse_for_result(e, "Report", "report", stem_of(e) + "-results",
                            {{"Page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}},

@@ -100,7 +100,8 @@ std::vector<Operator> file_operators() {
        [](const Editor& e) {
          return e.life.recoverable.empty() ? std::string("There is nothing to recover") : std::string();
        }},
-      {"file.quit", "Quit", icon::kClose, "File", "Close the editor; asks about unsaved changes.", quit},
+      {"file.quit", "Quit", icon::kClose, "File", "Close the editor. Limber asks whether to save unsaved changes.",
+       quit},
   };
 }
 

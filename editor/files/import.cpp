@@ -202,7 +202,8 @@ struct Import {
 };
 
 Import read_tissues(const Path& path, const Document& now) {
-  if (!now.volume) refuse("tissues need a volume", path, "open their volume first");
+  if (!now.volume)
+    refuse("a tissue table needs a volume", path, "open the volume that the tissue table describes first");
   const TissueTable table = read_tissue_table(path);
   const bool any = std::any_of(table.tissues.begin(), table.tissues.end(),
                                [&](const Tissue& t) { return now.tissues->find_file_value(t.file_value); });
@@ -228,7 +229,7 @@ ArmatureFile read_upright(const Path& path) {
   if (up.axis == UpAxis::Z) rest = y_up_from_z_up(rest);
   ArmatureFile file{armature_of(rest), "BVH", motion.warnings};
   if (up.axis == UpAxis::Z)
-    file.warnings.push_back("Its z axis points up (" + reason_of(up) + "), so it was turned upright.");
+    file.warnings.push_back("The file's z axis points up (" + reason_of(up) + "), so it was turned upright.");
   return file;
 }
 
@@ -264,7 +265,7 @@ Import read_motion(const Path& path) {
   if (read.frame_count == 0) refuse("this motion has no frames", path, "import it as a rig, or select another file");
   if (const UpGuess up = up_axis_of(read); up.axis == UpAxis::Z) {
     read = y_up_from_z_up(read);
-    read.warnings.push_back("Its z axis points up (" + reason_of(up) +
+    read.warnings.push_back("The file's z axis points up (" + reason_of(up) +
                             "), so it was turned upright. File > Import > Motion lets you select the axis.");
   }
   auto motion = shared(std::move(read));

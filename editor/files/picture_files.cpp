@@ -166,7 +166,7 @@ std::string why_no_motion_pictures(const Editor& editor) {
   if (!shown_clip(editor)) return "Import a motion first, or insert a key";
   if (!document.weights) return "Compute the weights first";
   if (editor.live->is_lent()) return "The pictures of a motion are being drawn";
-  if (watched_solve(editor)) return "The views show a running solve: show the volume at rest first";
+  if (watched_solve(editor)) return "The views show a running solve: switch off Watch the solve first";
   return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
 }
 
@@ -200,14 +200,16 @@ void ask_motion_pictures(Editor& editor, const Path& path) {
   const auto act = [path](Editor& e, const std::vector<FormField>& fields) {
     export_motion_pictures(e, path, static_cast<MotionCamera>(fields[0].chosen));
   };
-  editor.open_dialog(make_form(
-      {"Motion as pictures",
-       "Draws the body in each frame of the playing range, with the current camera of the 3D view.",
-       "Export",
-       {choice_of("Camera", "Follow the body: keeps the pelvis, or the root bone, at the same position in the picture.",
-                  {"Stands still", "Follow the body"})},
-       outcome,
-       act}));
+  editor.open_dialog(
+      make_form({"Motion as pictures",
+                 "Draws the body in each frame of the playing range, with the current camera of the 3D view.",
+                 "Export",
+                 {choice_of("Camera",
+                            "Fixed: the camera does not move. Follow the body: the pelvis, or the root bone, stays at "
+                            "the same position in the picture.",
+                            {"Fixed", "Follow the body"})},
+                 outcome,
+                 act}));
 }
 
 }  // namespace limber::editor

@@ -341,12 +341,12 @@ void keep_edits(Editor& editor) {
   if (trouble == life.trouble) return;
   life.trouble = trouble;
   editor.touch();
-  if (trouble.empty()) return editor.messages.ok("Your edits are saved for recovery again");
+  if (trouble.empty()) return editor.messages.ok("Edits are again saved for recovery after a crash");
   const auto description = trouble.find(". ");
   if (description != std::string::npos)
     return editor.messages.warn(trouble.substr(0, description), trouble.substr(description + 2));
   const ErrorMessage parts = parts_of(trouble);
-  editor.messages.warn("Edits are not saved for recovery: " + parts.what,
+  editor.messages.warn("Edits are not saved for recovery after a crash: " + parts.what,
                        parts.what_to_do.empty() ? parts.where : parts.what_to_do);
 }
 

@@ -77,7 +77,7 @@ const std::vector<TourStep>& tour_steps() {
        "3D view/view", "view.orbit", turned},
       {"Look inside", "X-ray makes flesh transparent, so that you see the bones.", "view.xray_display", "view.xray",
        sees_through},
-      {"Cut it open", "The clip box hides everything outside it. Drag the squares on its faces.", "3D view/view",
+      {"Cut the body open", "The clip box hides everything outside it. Drag the squares on its faces.", "3D view/view",
        "view.clip_box", clipped},
       {"Hide a tissue", "Click the eye in front of a tissue, or point at it and press H.",
        "sidebar/sections/Tissues/fold", "view.hide", hid_one},

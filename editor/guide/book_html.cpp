@@ -122,7 +122,8 @@ std::string html_of(const Book& book, const Run& run) {
     case Run::Style::Link: break;
   }
   const int page = page_of(book, run.target);
-  if (page < 0) throw Error("a link of the guide points to no page", run.target, "name a page of the guide");
+  if (page < 0)
+    throw Error("a link of the guide points to no page", run.target, "write the name of a page of the guide");
   return "<a href=\"" + file_of(book.pages[page]) + "\">" + text + "</a>";
 }
 

@@ -54,9 +54,9 @@ void draw_head(Editor& editor, const Rect& head, const std::vector<const LogLine
     const auto [sign, colour] = sign_of(look.theme, kSeverities[i]);
     put_icon(look.fonts.regular, shown ? colour : look.theme.text3, place, shown ? sign : icon::kHidden);
     if (pressed.hovered)
-      tooltip(
-          editor, place, kNames[i],
-          shown ? "These messages are shown. Click to hide them." : "These messages are hidden. Click to show them.");
+      tooltip(editor, place, kNames[i],
+              shown ? "Messages of this kind are shown. Click to hide them."
+                    : "Messages of this kind are hidden. Click to show them.");
     if (pressed.clicked) editor.console.hidden[severity] = shown;
     right = place.low.x - look.px(2);
   }

@@ -20,7 +20,7 @@ constexpr const char kUnharmed[] = "Nothing was changed in the project.";
 std::string details_of(const Editor& editor, const ErrorMessage& message) {
   std::string text = message.line;
   for (auto at = text.find(": "); at != std::string::npos; at = text.find(": ", at + 3)) text.replace(at, 2, ":\n");
-  if (!message.during.empty()) text = "While: " + message.during + "\n" + text;
+  if (!message.during.empty()) text = "During: " + message.during + "\n" + text;
   return text + "\n" + system_facts(editor);
 }
 

@@ -125,11 +125,10 @@ void PreferencesDialog::draw_interface(Editor& editor, Column& column) {
   }
   number(editor, column, "Scale", "Size of text and buttons, multiplied with the monitor's scale.", 0.75, 3, "%.2f",
          "\u00d7", [](Preferences& p) -> double& { return p.scale; });
-  number(editor, column, "Tool tips after", "How long the pointer must rest before a tooltip appears.", 0, 3, "%.1f",
-         "s", [](Preferences& p) -> double& { return p.tooltip_delay; });
+  number(editor, column, "Tooltip delay", "How long the pointer must rest on a control before its tooltip appears.", 0,
+         3, "%.1f", "s", [](Preferences& p) -> double& { return p.tooltip_delay; });
   column.space(6);
-  check(editor, column, "Reduce motion",
-        "Switch the view at once instead of turning it, and do not fade anything in or out.",
+  check(editor, column, "Reduce motion", "Switch views and show messages immediately, without animation.",
         editor.preferences.reduce_motion);
   check(editor, column, "Advanced steps",
         "Show all tools of each workflow step in the sidebar, not only its main tool.",
@@ -167,50 +166,52 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
           &Preferences::letters, &Views::letters);
   overlay("Cross-hair", "Show the cross-hair where the slices meet.", &Preferences::cross_hair,
           &Views::show_cross_hair);
-  check(editor, column, "Soft shadows at rest",
-        "Compute soft shadows by rays when nothing in the 3D view moves. Exported pictures and figures also have them.",
+  check(editor, column, "Soft shadows when idle",
+        "Compute soft shadows by ray tracing when nothing in the 3D view moves. Exported pictures and figures also "
+        "have them.",
         preferences.fine_light);
   apply_light(editor);
 }
 
 void PreferencesDialog::draw_undo(Editor& editor, Column& column) {
   whole_number(
-      editor, column, "Memory for undo",
-      "Memory for undo steps. When edits need more memory than this, the oldest edits can no longer be undone.",
+      editor, column, "Memory limit for undo",
+      "Largest memory for undo steps. When edits need more memory than this, the oldest edits can no longer be undone.",
       &Preferences::undo_limit_mb, 64, 65536, "MB");
   const History& history = editor.history;
   note(editor, column,
        std::to_string(history.steps().size()) + " undo states take " + std::to_string(history.bytes() >> 20) +
            " MB now." + (history.note().empty() ? "" : " " + history.note()));
   column.space(6);
-  whole_number(editor, column, "Save every",
+  whole_number(editor, column, "Autosave every",
                "Save the project automatically at this interval, if it already has a file. 0 = never.",
                &Preferences::autosave_minutes, 0, 240, "min");
   note(editor, column, "Every edit is also stored within a second and can be recovered after a crash.");
 }
 
 void PreferencesDialog::draw_jobs(Editor& editor, Column& column) {
-  whole_number(editor, column, "Jobs at once", "Number of jobs that run at the same time. The others wait.",
+  whole_number(editor, column, "Parallel jobs", "Number of jobs that run at the same time. The others wait.",
                &Preferences::jobs_at_once, 1, 8, "");
-  whole_number(editor, column, "Memory of a resampling",
-               "Stop a resampling that takes more memory than this, with a message. 0 = unlimited.",
+  whole_number(editor, column, "Resampling memory limit",
+               "Stop a resampling that needs more memory than this, and show a message. 0 = unlimited.",
                &Preferences::worker_memory_mb, 0, 1 << 18, "MB");
-  number(editor, column, "Time of a resampling",
-         "Stop a resampling that takes longer than this, with a message. 0 = unlimited.", 0, 1440, "%.1f", "min",
+  number(editor, column, "Resampling time limit",
+         "Stop a resampling that takes longer than this, and show a message. 0 = unlimited.", 0, 1440, "%.1f", "min",
          [](Preferences& p) -> double& { return p.worker_minutes; });
   note(editor, column, "A resampling runs in a separate process: if it fails, the project is not affected.");
 }
 
 void PreferencesDialog::draw_folders(Editor& editor, Column& column) {
   Preferences& preferences = editor.preferences;
-  const Rect scratch = labelled(editor, column, "Scratch",
+  const Rect scratch = labelled(editor, column, "Scratch folder",
                                 "Folder for the temporary files of a resampling, which are deleted at its end.");
   const std::string before = preferences.scratch_folder;
   const Rect wide{scratch.low, {scratch.high.x + editor.look.px(110), scratch.high.y}};
-  if (text_field(editor, "Scratch", wide, preferences.scratch_folder, "The system's temporary folder"))
+  if (text_field(editor, "Scratch folder", wide, preferences.scratch_folder, "The system's temporary folder"))
     keep_preferences(editor);
   if (ImGui::IsItemHovered())
-    tooltip(editor, wide, "Scratch", "Folder for the temporary files of a resampling, which are deleted at its end.");
+    tooltip(editor, wide, "Scratch folder",
+            "Folder for the temporary files of a resampling, which are deleted at its end.");
   column.space(6);
   note(editor, column,
        "Preferences are stored in " +

@@ -96,7 +96,7 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"skin.brush_pie", "Brushes"}};
   else if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
     operators = {{"skin.paint", rule_of(editor.skin->painting->kind).name.c_str()},
-                 {"skin.paint_subtract", "Take away"},
+                 {"skin.paint_subtract", "Subtract"},
                  {"skin.paint_smooth", "Smooth"},
                  {"skin.radius", "Radius"},
                  painted_region(editor) ? std::pair{"skin.region_clear", "Clear region"}

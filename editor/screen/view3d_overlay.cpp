@@ -104,7 +104,7 @@ std::string state_of(const Editor& editor) {
                       : editor.views->display == render::Display::Image ? "Image"
                                                                         : "Tissue";
   if (const auto posed = shown_result(editor); posed && !comparing(editor)) state += " \u00b7 " + posed->name;
-  if (const Solve* solve = watched_solve(editor)) state += " \u00b7 settling, " + progress_text(*solve);
+  if (const Solve* solve = watched_solve(editor)) state += " \u00b7 solving, " + progress_text(*solve);
   else if (const PreviewMap* map = editor.views->scene.pose.get())
     state += std::string(" \u00b7 ") + rule_of(preview_blend(editor)).label + " preview, " + std::to_string(map->step) +
              "-voxel lattice";

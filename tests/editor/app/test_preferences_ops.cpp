@@ -119,9 +119,9 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
       click "Reduce motion"
       click dialog/View
       click "Scale bar"
-      click "Soft shadows at rest"
+      click "Soft shadows when idle"
       click "dialog/Undo and saving"
-      double-click "Memory for undo"
+      double-click "Memory limit for undo"
       type "64"
       key Return
       click dialog/Keymap

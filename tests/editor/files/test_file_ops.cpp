@@ -279,7 +279,7 @@ std::vector<Proof> proofs_of_pages() {
        }},
       {"help.keys", "click Help/Keys",
        [](Stage& s, const Seen&) { return s.is("dialog", "yes") && s.is("text:Search commands"); }},
-      {"help.last_error", "click Help/Details", becomes("error", "It broke"), Shows::Nothing, "",
+      {"help.last_error", "click \"Help/Error details\"", becomes("error", "It broke"), Shows::Nothing, "",
        [](Stage& s) { s.editor().messages.toast_failure("it broke: here: mend it", "A job"); }},
       {"help.system_facts", "click \"Help/Copy system facts\"",
        [](Stage& s, const Seen&) { return s.sitting.test.host->clipboard().find("OpenGL") != std::string::npos; }},

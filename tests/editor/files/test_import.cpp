@@ -114,14 +114,14 @@ TEST_CASE("opening: a rig that does not lie in the body comes in with the offer 
   import_file(sitting.editor(), FileKind::Rig, files / "rig.json");
   sitting.play("wait-job\n wait-idle\n expect dialog no");
   CHECK(inside() > 0.9);
-  for (const char* answer : {"Leave it", "Only place and scale", "Fit it"}) {
+  for (const char* answer : {"Keep rig", "Only place and scale", "Fit rig"}) {
     INFO(answer);
     far.bones[0].head.x += 1e-3;
     write_armature(far, files / "far.json");
     import_file(sitting.editor(), FileKind::Rig, files / "far.json");
     sitting.play("wait-job\n wait-idle\n expect dialog yes\n click \"" + std::string(answer) +
                  "\"\n wait-job\n wait-idle\n expect dialog no\n expect error none");
-    CHECK((inside() > 0.6) == (std::string(answer) != "Leave it"));
+    CHECK((inside() > 0.6) == (std::string(answer) != "Keep rig"));
   }
   sitting.play(
       "expect toast \"Skeleton placed, but every joint is uncertain\"\n key Ctrl+Z\n expect edit \"Import far.json\"");

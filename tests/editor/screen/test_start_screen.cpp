@@ -95,7 +95,7 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
       drag "3D view/view" 80 10 MMB
       expect "text:Look inside"
       click view.xray_display
-      expect "text:Cut it open"
+      expect "text:Cut the body open"
       click "Skip step"
       expect "text:Hide a tissue"
       click "End tour"

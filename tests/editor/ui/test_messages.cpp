@@ -18,16 +18,16 @@ TEST_CASE("messages: an error's line falls into title, place and advice, and the
   test.play(R"(
     expect "text:The file ends too early"
     expect "text:Nothing was changed"
-    expect "text:While: Open leg.mha" absent
+    expect "text:During: Open leg.mha" absent
     click Details
-    expect "text:While: Open leg.mha"
+    expect "text:During: Open leg.mha"
     click "Copy message"
     key Return
     expect error none
   )");
   const std::string copied = test.host->clipboard();
-  CHECK(
-      copied.starts_with("While: Open leg.mha\nthe file ends too early:\nleg.mha:\nslice 12:\ncopy it again\nLimber "));
+  CHECK(copied.starts_with(
+      "During: Open leg.mha\nthe file ends too early:\nleg.mha:\nslice 12:\ncopy it again\nLimber "));
 }
 
 TEST_CASE("messages: notes fade, warnings later, errors stay until they are closed") {
