@@ -178,7 +178,7 @@ double length_of(const std::optional<std::vector<glm::dvec2>>& tape, double none
 }
 
 Error is_cut_off() {
-  return {"the tape meets the border of the volume", "measuring",
+  return {"the girth cannot be measured across the border of the volume", "measuring",
           "choose a point further from where the body is cut off"};
 }
 
@@ -188,7 +188,8 @@ std::vector<glm::dvec3> girth_tape(const LabelVolume& volume, const glm::dvec3& 
   const PlaneCut cut(volume, point_in_tissue(volume, point), normal, kFine);
   const auto tape = cut.tape();
   if (!tape) throw is_cut_off();
-  if (tape->size() < 3) throw Error("the body is too thin for a tape here", "measuring", "choose another point");
+  if (tape->size() < 3)
+    throw Error("the body is too thin here to measure its girth", "measuring", "choose another point");
   std::vector<glm::dvec3> corners;
   const std::size_t stride = (tape->size() + kMostTapeCorners - 1) / kMostTapeCorners;
   for (std::size_t i = 0; i < tape->size(); i += stride) corners.push_back(cut.world((*tape)[i]));

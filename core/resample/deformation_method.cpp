@@ -15,7 +15,7 @@ std::vector<DeformationMethod> all_methods() {
   }
   methods.push_back(
       {std::string(kFiniteElements), "FEM", "FEM", "finite elements",
-       "Finite elements: tissue keeps its volume, and skin presses against skin. Takes minutes in the background.",
+       "Finite elements: tissue keeps its volume, and skin presses against skin. Runs in the background for minutes.",
        std::nullopt});
   return methods;
 }

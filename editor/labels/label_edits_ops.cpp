@@ -30,7 +30,8 @@ std::string counted(std::int64_t number, const std::string& one, const std::stri
 std::string voxels_of(const LabelChange& change) { return counted(change.voxel_count(), "voxel", "voxels"); }
 
 FormField erased_choice() {
-  return choice_of("Becomes", "What the voxels become: the tissue around them, or air.", {"Surroundings", "Air"});
+  return choice_of("Replace with", "What replaces the removed voxels: the tissue around them, or air.",
+                   {"Surroundings", "Air"});
 }
 Erased erased_of(const FormField& field) { return field.chosen == 1 ? Erased::Air : Erased::Surroundings; }
 
@@ -51,9 +52,12 @@ void ask(Editor& editor, const std::string& title, const std::string& descriptio
 
 void ask_holes(Editor& editor) {
   ask(editor, "Fill holes of", "Give the tissue the voxels that it encloses.", "Fill",
-      {choice_of("Holes of", "Air: keep holes that contain other tissue, such as marrow in bone.",
-                 {"Air", "Any tissue"}),
-       number_of("Up to", "Largest hole to fill. 0 = holes of any size.", 0, 0, 1e5, "%.3g", "ml")},
+      {choice_of(
+           "Hole content",
+           "What the holes to fill contain. Air keeps holes that contain tissue, such as the marrow inside a bone.",
+           {"Air", "Any tissue"}),
+       number_of("Largest hole", "Volume of the largest hole to fill. 0 = fill holes of any size.", 0, 0, 1e5, "%.3g",
+                 "ml")},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress&) -> FoundLabelEdit {
         FilledHoles found = fill_holes(
             volume, label, {.largest_volume = fields[1].value * kMm3PerMl, .only_air = fields[0].chosen == 0});
@@ -70,8 +74,9 @@ void ask_grow(Editor& editor) {
   const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
                                 editor.document().volume->grid.spacing.z});
   ask(editor, "Grow", "Extend the tissue by a distance in all directions.", "Grow",
-      {number_of("By", "The distance. A distance shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
-       choice_of("Over", "The voxels that the tissue may take: all, only air, or only other tissue.",
+      {number_of("Distance", "How far the tissue's border moves. A distance shorter than a voxel changes nothing.",
+                 step, 0.1, 100, "%.3g", "mm"),
+       choice_of("Grow over", "The voxels that the tissue may grow over: all, only air, or only other tissue.",
                  {"All", "Air", "Tissue"})},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress& progress) -> FoundLabelEdit {
         EditMask mask;
@@ -90,7 +95,8 @@ void ask_shrink(Editor& editor) {
   const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
                                 editor.document().volume->grid.spacing.z});
   ask(editor, "Shrink", "Shrink the tissue by a distance from all sides.", "Shrink",
-      {number_of("By", "The distance. A distance shorter than a voxel changes nothing.", step, 0.1, 100, "%.3g", "mm"),
+      {number_of("Distance", "How far the tissue's border moves. A distance shorter than a voxel changes nothing.",
+                 step, 0.1, 100, "%.3g", "mm"),
        erased_choice()},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress& progress) -> FoundLabelEdit {
         LabelChange change = shrunk_label(volume, label, fields[0].value, erased_of(fields[1]), progress);
@@ -103,9 +109,11 @@ void ask_shrink(Editor& editor) {
 void ask_islands(Editor& editor) {
   ask(editor, "Remove islands of", "Remove pieces of the tissue that are not connected to its largest pieces.",
       "Remove",
-      {number_of("Keep", "Number of largest pieces to keep. 0 = all that are large enough.", 1, 0, 10000, "%.0f",
-                 "pieces"),
-       number_of("At least", "Smaller pieces are removed in any case.", 0, 0, 1e5, "%.3g", "ml"), erased_choice()},
+      {number_of("Pieces kept",
+                 "Number of pieces to keep, the largest ones. 0 = keep all pieces of at least the smallest size.", 1, 0,
+                 10000, "%.0f", "pieces"),
+       number_of("Smallest size", "Pieces smaller than this are always removed.", 0, 0, 1e5, "%.3g", "ml"),
+       erased_choice()},
       [](const LabelVolume& volume, Label label, const Fields& fields, Progress&) -> FoundLabelEdit {
         RemovedIslands found = remove_islands(volume, label,
                                               {.largest = static_cast<int>(std::lround(fields[0].value)),

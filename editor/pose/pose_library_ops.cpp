@@ -24,7 +24,7 @@ std::string needs_chosen(const Editor& editor) {
   if (const std::string why = needs_rig(editor); !why.empty()) return why;
   return chosen_pose(editor)               ? ""
          : editor.document().poses.empty() ? "Add a pose to the library first"
-                                           : "Select a pose of the library first";
+                                           : "Select a pose in the pose library first";
 }
 // Returns why the selected pose cannot be renamed or deleted, such as that the pose is built in; "" when it can.
 std::string needs_own(const Editor& editor) {

@@ -75,7 +75,7 @@ std::string why_no_overlap(const Editor& editor) {
   const auto kept = [&](const std::shared_ptr<const Result>& result) { return result && result->overlap; };
   if (kept(chosen_result(editor)) || (comparing(editor) && kept(result_named(editor.document(), editor.comparison.a))))
     return "";
-  return "This result has no stored overlap: resample its pose again";
+  return "The overlap of this result is not stored: resample its pose again";
 }
 
 bool shows_overlap(const Editor& editor) {

@@ -23,14 +23,14 @@ void draw_fem(Editor& editor, Column& column) {
     settings.quality = std::array{"draft", "normal", "fine"}[static_cast<std::size_t>(chosen)];
   if (ImGui::IsItemHovered())
     tooltip(editor, quality, "Quality",
-            "Tetrahedra across the thinnest limb that bends: 8 (draft), 12 (normal), or 24 around joints (fine). Finer "
-            "takes longer.");
+            "Number of tetrahedra across the thinnest bent limb: 8 (draft), 12 (normal), or 24 around joints (fine). A "
+            "finer mesh takes longer.");
   const Rect contact = column.property("Contact");
   checkbox(editor, "Contact", contact, "Skin touches skin", settings.contact);
   if (ImGui::IsItemHovered())
     tooltip(editor, contact, "Skin touches skin",
             "In folds, skin surfaces press against each other instead of passing through each other.");
-  operator_box(editor, "result.watch", column.property("While solved"), "Watch the solve");
+  operator_box(editor, "result.watch", column.property("During solve"), "Watch the solve");
 }
 
 }  // namespace
@@ -49,13 +49,13 @@ void draw_resample(Editor& editor, Column& column) {
                       op->label, op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
     }
     if (settings.method == kFiniteElements) draw_fem(editor, column);
-    const Rect spacing = column.property("Output");
+    const Rect spacing = column.property("Voxel size");
     bool committed = false;
-    const char* format = settings.spacing > 0 ? "%.2f" : "as the volume";
-    number_field(editor, "Output", spacing, settings.spacing, 0, 20, format, settings.spacing > 0 ? "mm" : "", false,
-                 committed);
+    const char* format = settings.spacing > 0 ? "%.2f" : "as input";
+    number_field(editor, "Voxel size", spacing, settings.spacing, 0, 20, format, settings.spacing > 0 ? "mm" : "",
+                 false, committed);
     if (ImGui::IsItemHovered())
-      tooltip(editor, spacing, "Output", "Voxel size of the posed volume. 0 = same as the volume at rest.");
+      tooltip(editor, spacing, "Voxel size", "Voxel size of the resampled volume. 0 = same as the volume at rest.");
     const Rect apart = column.property("Joints");
     checkbox(editor, "Keep bones apart", apart, "Keep bones apart", settings.bones_apart);
     if (ImGui::IsItemHovered())

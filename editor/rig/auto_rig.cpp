@@ -94,11 +94,11 @@ void offer_fit(Editor& editor, const std::string& file, double inside) {
   ask(editor, {.title = "This rig does not lie in the body",
                .lines = {percent(inside) + " of the length of its bones is in tissue. " + file +
                              " may belong to another body or use other units.",
-                         "Fitting finds the rig's joints in the volume if it recognises the names of the bones."},
+                         "Fit rig finds the rig's joints in the volume if the names of its bones are recognised."},
                .icon = icon::kWarning,
-               .answers = {{"Leave it", {}},
+               .answers = {{"Keep rig", {}},
                            {"Only place and scale", place},
-                           {"Fit it", [](Editor& e) { start_auto_fit(e, "rig"); }, true}}});
+                           {"Fit rig", [](Editor& e) { start_auto_fit(e, "rig"); }, true}}});
 }
 
 void show_fit(Editor& editor, const AutoFit& fitted) {

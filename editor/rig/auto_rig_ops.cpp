@@ -52,7 +52,7 @@ std::vector<Operator> rig_fit_operators() {
                      "Show the fitted axis and where bones still collide when the joint turns about it.", true),
       {"rig.take_joint_fit", "Move the joint's axis", icon::kTick, "Rig", "Move the joint's axis to the fitted axis.",
        take_proposed_joint, needs_proposed_joint},
-      {"rig.leave_joint_fit", "Leave the joint's axis", icon::kClose, "Rig",
+      {"rig.leave_joint_fit", "Keep the joint's axis", icon::kClose, "Rig",
        "Discard the fitted axis and keep the current one.", leave_proposed_joint, needs_proposed_joint},
   };
 }

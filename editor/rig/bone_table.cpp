@@ -57,7 +57,7 @@ std::string why_no_bone_table(const Editor& editor) {
   const auto& tissues = document.tissues->tissues;
   return std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) { return is_bone(tissue.kind); })
              ? ""
-             : "No tissue has the kind bone";
+             : "No tissue is marked as bone";
 }
 
 const BoneTable::Known* bone_table(Editor& editor) {

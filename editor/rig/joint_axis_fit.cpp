@@ -169,8 +169,8 @@ void draw_proposed_joint(Editor& editor, const Rect& view) {
   side("rig.joint_fit_after", "After", left + half + look.px(1), proposed->shows_after);
   y += look.px(kRow + 8);
   operator_button(editor, "rig.leave_joint_fit", {{right - look.px(190), y}, {right - look.px(104), y + look.px(kRow)}},
-                  "Leave it");
-  operator_button(editor, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Move it",
+                  "Keep axis");
+  operator_button(editor, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Move axis",
                   ButtonStyle::Primary);
 }
 

@@ -226,7 +226,7 @@ void ask_motion_range(Editor& editor) {
   };
   editor.open_dialog(make_form(
       {"Range of motion",
-       "Limits the joints at the heads of the selected bones to an adult's usual range of motion.",
+       "Limits the joints at the heads of the selected bones to the usual range of motion of an adult.",
        "Set limits",
        {choice_of("Joint",
                   "The joint whose range is used, as published by the American Academy of Orthopaedic Surgeons.",
@@ -259,7 +259,7 @@ void ask_names(Editor& editor) {
     for (std::size_t bone = 0; bone < next.bones.size(); ++bone)
       if (next.bones[bone].name != before.bones[bone].name && count++ == 0)
         first = before.bones[bone].name + " becomes " + next.bones[bone].name;
-    if (count == 0) throw NotYet{"Fill in what to change."};
+    if (count == 0) throw NotYet{"Enter at least one change."};
     return first + (count == 1 ? "." : ", and " + std::to_string(count - 1) + " more change.");
   };
   const auto act = [](Editor& e, const std::vector<FormField>& fields) {

@@ -37,7 +37,8 @@ void draw_row(Editor& editor, Column& column, int index, const SeamPair& pair) {
   put_text(editor, look.fonts.small, look.theme.text2, Rect{{end - unit, rect.low.y}, {end, rect.high.y}}, "faces",
            Align::Right);
   if (pressed.hovered)
-    tooltip(editor, rect, name, faces + " voxel faces touch but are not joined. Click to move the cross-hair to them.");
+    tooltip(editor, rect, name,
+            faces + " voxel faces touch but are not connected. Click to move the cross-hair to them.");
   if (!pressed.clicked) return;
   focus_list(editor, kList, index);
   go_to(editor, pair);

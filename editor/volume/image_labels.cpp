@@ -40,14 +40,15 @@ std::string size_and_loss(const Editor& editor) {
 std::string outcome(const Editor& editor, const Fields& fields) {
   const CtThresholds t = thresholds_of(fields);
   if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
-    throw Error("the thresholds must be in ascending order", "body, fat, soft tissue, bone", "raise the higher one");
+    throw Error("the thresholds must be in ascending order", "body, fat, soft tissue, bone",
+                "enter them in ascending order");
   return size_and_loss(editor);
 }
 
 std::string outcome_of_body(const Editor& editor, const Fields& fields) {
   const GreyLevels& image = image_of(editor);
   if (fields[0].value <= image.least)
-    throw Error("every voxel would be body", "Body from", "enter more than the image's least value");
+    throw Error("every voxel would be body", "Body threshold", "enter a value above the image's smallest value");
   return size_and_loss(editor);
 }
 
@@ -101,11 +102,14 @@ void ask_for_labels(Editor& editor) {
        "Separates tissues by thresholds (Hounsfield units). Leaves out the table and blankets. Bones that touch become "
        "one label.",
        "Make labels",
-       {field("Bone from", "Voxels from this value up are bone.", usual.bone),
-        field("Soft tissue from", "Voxels from this value up to bone are soft tissue.", usual.soft),
-        field("Fat from", "Voxels from this value up to soft tissue are fat.", usual.fat),
-        field("Body from", "Voxels below this value are air or lung.", usual.body),
-        number_of("Skin", "The thickness of the skin, at least one voxel.", usual.skin_mm, 0, 10, "%.1f", "mm")},
+       {field("Bone threshold", "Voxels of at least this value become bone.", usual.bone),
+        field("Soft tissue threshold",
+              "Voxels of at least this value, but below the bone threshold, become soft tissue.", usual.soft),
+        field("Fat threshold", "Voxels of at least this value, but below the soft tissue threshold, become fat.",
+              usual.fat),
+        field("Body threshold", "Voxels below this value become air or lung.", usual.body),
+        number_of("Skin", "Thickness of the skin. The skin is at least one voxel thick.", usual.skin_mm, 0, 10, "%.1f",
+                  "mm")},
        outcome,
        [](Editor& e, const Fields& fields) {
          start_labels(e, "Labels from CT", "Look through the slices: contrast agent and metal count as bone.",
@@ -118,18 +122,18 @@ void ask_for_labels(Editor& editor) {
 void ask_for_body(Editor& editor) {
   const GreyLevels& image = image_of(editor);
   editor.open_dialog(make_form(
-      {"Body from image",
-       "Separates the body from the background by a threshold, which the image's histogram suggests. Paint bones "
-       "afterwards.",
+      {"Labels from MR",
+       "Makes labels of body and skin in an MR or other image, by a threshold that the image's histogram suggests. "
+       "Paint bones afterwards.",
        "Make labels",
-       {number_of("Body from",
-                  "Voxels from this value up, and everything they enclose in an axial slice, become body: erase air "
-                  "that clasped arms or crossed legs enclose.",
+       {number_of("Body threshold",
+                  "Voxels of at least this value, and all voxels that they enclose in an axial slice, become body. "
+                  "Erase air that clasped arms or crossed legs enclose.",
                   body_threshold(image), image.least, image.most(), "%.4g"),
-        number_of("Skin", "The thickness of the skin, at least one voxel.", 2, 0, 10, "%.1f", "mm")},
+        number_of("Skin", "Thickness of the skin. The skin is at least one voxel thick.", 2, 0, 10, "%.1f", "mm")},
        outcome_of_body,
        [](Editor& e, const Fields& fields) {
-         start_labels(e, "Body from image", "Paint bones with the label brush before a rig is made.",
+         start_labels(e, "Labels from MR", "Paint bones with the label brush before a rig is made.",
                       [threshold = fields[0].value, skin = fields[1].value](const GreyLevels& of, Progress& progress) {
                         return labels_of_body(of, threshold, skin, progress);
                       });

@@ -96,10 +96,10 @@ Operator rendering_operator(const char* id, const char* label, const char* descr
 
 std::vector<Operator> image_operators() {
   std::vector<Operator> all = {
-      {"image.close", "Close image", "", "View", "Stop showing the grey image. Nothing of the project changes.",
+      {"image.close", "Close image", "", "View", "Stop showing the grey image. The project does not change.",
        close_image, needs_image},
       {"image.drag_window", "Change window by dragging", "", "View",
-       "Drag in a slice: to the right widens the window, up raises its level.", drag_window, needs_image},
+       "Drag in a slice: right to widen the window, up to raise its level.", drag_window, needs_image},
       {"image.window_all", "All values", "", "View", "Show the image from its darkest to its brightest values.",
        show_all_values, needs_image},
       {"view.image_display", "Image", "", "View", "Show the grey image in 3D instead of the tissues.",
@@ -112,7 +112,7 @@ std::vector<Operator> image_operators() {
       rendering_operator("image.render_skin", "Skin in 3D", "Show the surface between body and air (CT).",
                          render::GreyRendering::Skin),
       rendering_operator("image.render_window", "Window in 3D",
-                         "Show the values of the window: those that are brighter in slices are more opaque in 3D.",
+                         "Show the image in 3D by its window (level and width): brighter values are more opaque.",
                          render::GreyRendering::Window),
       rendering_operator("image.render_maximum", "Maximum in 3D",
                          "Show the largest value along each line of sight (maximum intensity projection).",
@@ -120,9 +120,9 @@ std::vector<Operator> image_operators() {
       {"image.labels", "Labels from CT...", icon::kTissues, "Edit",
        "Make a label volume from the open CT by thresholds: skin, soft tissue, fat, lung, gas, bone.", ask_for_labels,
        needs_image},
-      {"image.body", "Body from image...", icon::kTissues, "Edit",
-       "Make a label volume from the open MR or other image: body and skin, by a threshold of its histogram.",
-       ask_for_body, needs_image},
+      {"image.body", "Labels from MR...", icon::kTissues, "Edit",
+       "Make a label volume of body and skin from the open MR or other image, by a threshold.", ask_for_body,
+       needs_image},
   };
   for (const ImageWindow& window : ct_windows()) all.push_back(window_operator(window));
   return all;

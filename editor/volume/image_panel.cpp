@@ -32,7 +32,7 @@ void draw_number(Editor& editor, Column& column, const char* label, double low, 
 }
 
 void draw_windows(Editor& editor, Column& column) {
-  std::vector<std::string> names{"Own"};
+  std::vector<std::string> names{"Custom"};
   std::vector<const char*> ids{""};
   int chosen = 0;
   const auto add = [&](const char* id, const std::string& name) {
@@ -74,7 +74,7 @@ void draw_image_section(Editor& editor, Column& column) {
     draw_number(editor, column, "Level", least - range, most + range, unit, false, image.level);
     draw_number(editor, column, "Width", range / 5000, 2 * range, unit, false, image.width);
     double percent = 100.0 * double(image.tissues);
-    draw_number(editor, column, "Tissues over it", 0, 100, "%", true, percent);
+    draw_number(editor, column, "Tissue opacity", 0, 100, "%", true, percent);
     image.tissues = static_cast<float>(percent / 100);
     draw_renderings(editor, column);
     if (const auto result = shown_result(editor); result && !posed_image_of(*editor.views, result->volume)) {

@@ -124,7 +124,7 @@ void StatisticsDialog::draw_foot(Editor& editor, const Rect& rect) {
   const bool pressed = button(editor, "Export CSV", write, export_face);
   if (ImGui::IsItemHovered())
     tooltip(editor, write, "Export CSV",
-            "Write the table to a CSV file, with each tissue's mass, centre, bounding box and surface.");
+            "Save the table as a CSV file, with each tissue's mass, centre, bounding box and surface area.");
   if (pressed) browse_csv(editor, counted_);
 }
 

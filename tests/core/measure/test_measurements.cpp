@@ -128,7 +128,7 @@ TEST_CASE("girth: where the body is cut off, or where there is none, it is one c
     for (int z = 0; z < arm.volume.grid.size.z; ++z)
       if (arm.volume.at({x, arm.volume.grid.size.y / 2, z}))
         for (int y = 0; y < arm.volume.grid.size.y; ++y) arm.volume.at({x, y, z}) = kFlesh;
-  CHECK(what(arm.centre, arm.axis).find("the tape meets the border of the volume") == 0);
+  CHECK(what(arm.centre, arm.axis).find("the girth cannot be measured across the border of the volume") == 0);
 }
 
 TEST_CASE("thickness: the shortest line through a layer, a rod and a slab") {

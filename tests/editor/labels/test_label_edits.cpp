@@ -139,7 +139,7 @@ TEST_CASE("label edits: weights that no longer fit are removed with a warning, u
   test.editor->history.reset(next, "Weighed");
   test.editor->selection.tissue = 143;
   const std::string menu = kMenu;
-  test.play(menu + "Shrink...\"\n wait-idle\n click Becomes/Air\n click dialog/Shrink\n wait-job\n wait-idle");
+  test.play(menu + "Shrink...\"\n wait-idle\n click \"Replace with/Air\"\n click dialog/Shrink\n wait-job\n wait-idle");
   CHECK_FALSE(test.editor->document().weights);
   CHECK(test.editor->messages.toasts.back().detail.find("weights") != std::string::npos);
   run(*test.editor, "edit.undo");

@@ -121,7 +121,7 @@ std::vector<Proof> proofs_of_images() {
        },
        Shows::InBody},
       {"image.body",
-       "click View/Display/\"Image settings\"/\"Body from image...\"\n wait-idle\n click \"Make labels\"\n wait-job\n "
+       "click View/Display/\"Image settings\"/\"Labels from MR...\"\n wait-idle\n click \"Make labels\"\n wait-job\n "
        "wait-idle",
        [](Stage& s, const Seen&) {
          const auto& tissues = s.document().tissues->tissues;
@@ -250,8 +250,8 @@ TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and kee
   for (const char* tool : {"labels.new_tissue", "prepare.regrid", "prepare.pad", "prepare.orient"})
     CHECK_MESSAGE(sitting.test.fact(std::string("widget:Steps/Prepare more/") + tool) == "shown", tool);
   CHECK(sitting.test.fact("widget:Steps/Prepare more/prepare.merge") != "shown");
-  sitting.play("click Steps/Prepare/Labels...\n wait-idle\n expect \"text:Body from image\"");
-  CHECK(sitting.test.fact("text:Bone from") != "shown");
+  sitting.play("click Steps/Prepare/Labels...\n wait-idle\n expect \"text:Labels from MR\"");
+  CHECK(sitting.test.fact("text:Bone threshold") != "shown");
   sitting.play("click \"Make labels\"\n wait-job\n wait-idle\n expect error none");
   const Document& labelled = sitting.editor().document();
   REQUIRE(labelled.tissues->tissues.size() == 2);
