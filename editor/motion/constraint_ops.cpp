@@ -83,13 +83,13 @@ std::vector<Operator> constraint_operators() {
        of_active(toggle), needs_constraint,
        [](const Editor& e) { return active_constraint(e) && active_constraint(e)->on; }},
       {"constraint.up", "Move constraint up", icon::kUp, "Motion",
-       "Move the active bone's constraint before the previous one: this would not change the order in which "
-       "constraints turn the same bones. The constraint applied last decides the rotation.",
+       "Move the active bone's constraint before the previous one that turns the same bones. The constraint applied "
+       "last decides the rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Earlier); }),
        needs_neighbour(InOrder::Earlier)},
       {"constraint.down", "Move constraint down", icon::kDown, "Motion",
-       "Move the active bone's constraint after the next one: this would not change the order in which constraints "
-       "turn the same bones. The constraint applied last decides the rotation.",
+       "Move the active bone's constraint after the next one that turns the same bones. The constraint applied last "
+       "decides the rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Later); }),
        needs_neighbour(InOrder::Later)},
       {"constraint.key_weight", "Key weight", icon::kKey, "Motion",
