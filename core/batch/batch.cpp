@@ -58,10 +58,10 @@ BatchExport read_export(const Description& value) {
   const Path name = "posed" + one.ending;
   const Exporter* exporter = is_ending(one.ending) ? exporter_for(name) : nullptr;
   if (!exporter && !(is_ending(one.ending) && how_written(name)))
-    value.refuse("nothing is written under this ending: \"" + one.ending + "\"",
+    value.refuse("this is not an extension that Limber writes: \"" + one.ending + "\"",
                  "write \".nii.gz\", \".stl\" or another that `limber convert` knows");
   if (exporter && !exporter->takes_voxels)
-    value.refuse("this is written of a mesh: \"" + one.ending + "\"", "write \"mesh\": \"" + one.ending + "\"");
+    value.refuse("this format needs a mesh: \"" + one.ending + "\"", "write \"mesh\": \"" + one.ending + "\"");
   if (exporter && exporter->needs_frequency && one.frequency == 0)
     value.refuse("this needs the frequency of the field: \"" + one.ending + "\"",
                  R"(write {"ending": ")" + one.ending + R"(", "frequency_hz": 9e8})");

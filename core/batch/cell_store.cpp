@@ -70,7 +70,7 @@ std::string content_hash(const Path& file) {
       packed.remove_prefix(step.taken);
       content.append(piece, 0, step.made);
     }
-    if (!inflater.ended()) throw Error("the file is damaged", file.string(), "run the same again");
+    if (!inflater.ended()) throw Error("the file is damaged", file.string(), "run the same command again");
     bytes = std::move(content);
   }
   return sha256_of_bytes(bytes.data(), bytes.size());
@@ -212,7 +212,8 @@ struct CellStore::Parts {
     } catch (const Error& error) {
       if (fs::exists(place)) return {};  // another program has made the folder in the meantime
       if (!into.has_room())
-        throw Error("the results cannot be written", folder.string(), "make room on the disk, then run the same again");
+        throw Error("the results cannot be written", folder.string(),
+                    "free some space on the disk, then run the same command again");
       return error.what();
     }
     return {};

@@ -86,7 +86,7 @@ double Description::as_number(double least, double most) const {
   const double number = value.is_number() ? value.get<double>() : NAN;
   char range[80];
   std::snprintf(range, sizeof range, "write a number from %g to %g", least, most);
-  if (!(number >= least && number <= most)) refuse("this is no number that it can have", range);
+  if (!(number >= least && number <= most)) refuse("this is not an allowed number", range);
   return number;
 }
 
@@ -193,12 +193,13 @@ void add_pose(const Description& value, std::vector<DescribedPose>& poses) {
   }
   const std::string frames = value.text("frames");
   if (!pose.body.name.empty() && !(pose.pose.empty() && pose.motion.empty()))
-    value.refuse("a pose comes by its name or from a file", "leave \"pose_name\" or the file out");
+    value.refuse("a pose is given either by its name or by a file", "leave \"pose_name\" or the file out");
   if (!pose.pose.empty() && !pose.motion.empty())
-    value.refuse("a pose comes from a file or from a motion", "leave \"pose\" or \"motion\" out");
+    value.refuse("a pose is given either by a file or by a motion", "leave \"pose\" or \"motion\" out");
   if (pose.motion.empty() && (pose.frame || !frames.empty() || !pose.map.empty() || !pose.up.empty()))
-    value.refuse("frame, frames, map and up are of a motion", "add \"motion\": FILE");
-  if (pose.frame && !frames.empty()) value.refuse("one frame or several", "leave \"frame\" or \"frames\" out");
+    value.refuse("frame, frames, map and up need a motion", "add \"motion\": FILE");
+  if (pose.frame && !frames.empty())
+    value.refuse("a pose has either one frame or several", "leave \"frame\" or \"frames\" out");
   if (frames.empty()) poses.push_back(std::move(pose));
   else add_frames(value, pose, frames, poses);
 }
@@ -227,7 +228,7 @@ DescribedBody read_described_body(const Description& description, const std::str
   body.rig = description.file("rig");
   body.tissues = description.file("tissues");
   if (body.phantom.empty() == body.volume.empty())
-    description.refuse(whose + " is of one body", "give \"volume\": FILE, or \"phantom\": \"arm\"");
+    description.refuse(whose + " needs exactly one body", "give \"volume\": FILE, or \"phantom\": \"arm\"");
   if (!body.phantom.empty() && (!body.rig.empty() || !body.tissues.empty() || description.has("bones")))
     description.refuse("a phantom has its own rig and tissues", "phantom",
                        "leave \"rig\", \"tissues\" and \"bones\" out");

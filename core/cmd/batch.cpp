@@ -85,7 +85,7 @@ void run(const Options& options) {
                                     [](const BatchOutcome& outcome) { return !outcome.failure().empty(); });
   if (failed)
     throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out,
-                "see the lines above, then run the same again: it computes only what is missing");
+                "see the lines above, then run the same command again: it computes only what is missing");
 }
 }  // namespace
 

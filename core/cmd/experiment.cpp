@@ -85,11 +85,11 @@ void run(const Options& options, const std::string& commit, const StartPictures&
   if (run.shards == 1) {
     write(options, study, outcomes, commit, pictures, progress);
   } else {
-    tell("the cells of shard " + options.shard + " are done: run the same without --shard to collect");
+    tell("the cells of shard " + options.shard + " are done: run the same command without --shard to collect");
   }
   if (failed)
     throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out,
-                "see the lines above, then run the same again: it computes only what is missing");
+                "see the lines above, then run the same command again: it computes only what is missing");
 }
 
 OptionFiles files_of_folder(const std::string& folder) {

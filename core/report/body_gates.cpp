@@ -46,7 +46,7 @@ void judge_whole(const Json& report, const QualityLimits& limits, QualityGate& g
   gate.worst = text(*worst, "name");
   const bool passed = residual <= std::max(limits.bone_residual_mm, kTear * voxel_edge(report));
   decide(gate, passed, formatted("%.3f mm", residual),
-         passed ? "Each of " + counted(double(bones.size()), "named bone") + " moved as one, within " +
+         passed ? "Each of " + counted(double(bones.size()), "named bone") + " moved rigidly, within " +
                       formatted("%.3f mm.", residual)
                 : in_quotes(gate.worst) + " is torn or bent: its voxels lie up to " + formatted("%.1f mm", residual) +
                       " from the bone's best rigid motion.");
@@ -96,7 +96,7 @@ void judge_exposed(const Json& report, const QualityLimits& limits, QualityGate&
                               " exposed to the air now, " + formatted("%.2f %% of the surface", *percent);
   decide(gate, passed, formatted("%.2f %%", *percent),
          *voxels == 0
-             ? "Nothing that lay deep inside is at the air."
+             ? "No tissue that lay deep inside touches the air."
              : exposed + ", most of it " + in_quotes(gate.worst) + "; worst" + at_place(part(exposure, "worst")) + ".");
 }
 
@@ -106,8 +106,8 @@ void judge_trapped(const Json& report, const QualityLimits& limits, QualityGate&
   const Json& pocket = part(report, "air_pocket");
   const bool passed = *trapped <= limits.trapped_voxels;
   decide(gate, passed, counted(*trapped, "voxel"),
-         passed ? "No more air is closed in than at rest, but for " + counted(*trapped, "voxel") + "."
-                : counted(*trapped, "voxel") + " of air are closed in that were not at rest" +
+         passed ? "No more air is enclosed than at rest, except " + counted(*trapped, "voxel") + "."
+                : counted(*trapped, "voxel") + " of air are enclosed that were not enclosed at rest" +
                       (pocket.is_object()
                            ? "; the largest new pocket, " + counted(number(pocket, "voxels").value_or(0), "voxel") +
                                  ", lies" + at_place(pocket)
@@ -153,7 +153,7 @@ void judge_lost(const Json& report, const QualityLimits& limits, QualityGate& ga
   const bool passed = left >= limits.lost_percent;
   gate.worst = text(*worst, "name");
   decide(gate, passed, formatted("%.0f %%", left),
-         passed ? "No label is lost; of " + in_quotes(gate.worst) + " least is left, " + formatted("%.0f %%.", left)
+         passed ? "No label is lost. The least is left of " + in_quotes(gate.worst) + ": " + formatted("%.0f %%.", left)
                 : in_quotes(gate.worst) + " is lost: " +
                       (left <= 0 ? std::string("nothing") : formatted("%.1f %%", left)) + " of its volume is left.");
 }
@@ -185,7 +185,7 @@ void judge_bands(const Json& report, const QualityLimits&, QualityGate& gate) {
   if (!bands.is_array()) return not_checked(gate, "where the posed tissue lay at rest, or the rig, is not known.");
   if (bands.empty())
     return decide(gate, true, "0",
-                  "No tissue is pulled out to more than twice its length away from the joint that moves it.");
+                  "No tissue is stretched to more than twice its length away from the joint that moves it.");
   const Json& worst = bands[0];
   const Json& between = part(worst, "between");
   const auto end = [&](std::size_t i) {
@@ -193,10 +193,10 @@ void judge_bands(const Json& report, const QualityLimits&, QualityGate& gate) {
   };
   gate.worst = end(0);
   decide(gate, false, counted(double(bands.size()), "band"),
-         "A band of " + counted(number(worst, "voxels").value_or(0), "voxel") + " is pulled out to " +
+         "A band of " + counted(number(worst, "voxels").value_or(0), "voxel") + " is stretched to " +
              formatted("%.1f times", number(worst, "stretch").value_or(0)) + " its length" +
              (end(1).empty() ? "" : " between " + end(0) + " and " + end(1)) + at_place(worst) +
-             ", and no joint explains it: part what touches there at rest, or correct the rig's joint.");
+             ", and no joint explains it: separate the parts that touch there at rest, or correct the rig's joint.");
 }
 
 void judge_volume(const Json& report, const QualityLimits& limits, QualityGate& gate) {
@@ -214,31 +214,34 @@ const GateRule<Json> kBodyGates[] = {
      "Whether the rig lies in the body, on the right side and in the right limb, and whether the volume holds labels.",
      [](const QualityLimits&) { return std::string("no doubt"); }, true, judge_inputs},
     {"whole", "Bones whole",
-     "Of each bone that a label names, how far its voxels lie from the bone's best rigid motion, {}.",
+     "Largest distance of a bone's voxels from the rigid motion that fits this bone best, {}. Bones are found by the "
+     "names of labels.",
      [](const QualityLimits& l) { return "at most half a voxel, or " + formatted("%g mm", l.bone_residual_mm); }, true,
      judge_whole},
     {"follows", "Bones follow their rig bone",
-     "Of each bone that a label names, the share that follows another rig bone, {}.",
+     "Largest share of a bone's voxels that follow a wrong rig bone, {}. Bones are found by the names of labels.",
      at_most_percent<&QualityLimits::wrong_bone_percent>, true, judge_follows},
     {"directions", "Limbs point as asked",
      "The angle between the direction of a limb that the pose sets and the direction of its bones, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g degrees", l.direction_degrees); }, true,
      judge_directions},
-    {"exposed", "Inside stays inside", "Voxels at the air that lay deep at rest and are not skin, {}.",
+    {"exposed", "No deep tissue exposed",
+     "Voxels that touch the air, but lay deep in the body at rest and are not skin, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g %% of the surface", l.exposed_percent); }, true,
      judge_exposed},
-    {"trapped", "No air closed in", "Air that tissue encloses and did not at rest, {}.",
+    {"trapped", "No air enclosed", "Air that tissue encloses in the pose but not at rest, {}.",
      [](const QualityLimits& l) { return "at most " + counted(l.trapped_voxels, "voxel"); }, true, judge_trapped},
-    {"organs", "Organs keep their volume", "The volume of the organ that changed most, {}.",
+    {"organs", "Organs keep their volume", "Volume change of the organ that changed most, {}.",
      at_most_percent<&QualityLimits::organ_percent>, true, judge_organs},
-    {"lost", "No label lost", "What is left of the label that lost most of its volume, {}.",
+    {"lost", "No label lost", "Remaining volume of the label that lost the most, {}.",
      [](const QualityLimits& l) { return "at least " + formatted("%g %%", l.lost_percent); }, true, judge_lost},
-    {"torn", "No label torn", "Pieces of a label of 50 voxels or more that were one piece at rest, {}.", none, true,
+    {"torn", "No label torn",
+     "Labels that are in one piece at rest and in several pieces of 50 voxels or more in the pose, {}.", none, true,
      judge_torn},
-    {"bands", "No bands",
-     "Tissue that is pulled out to more than twice its length between parts that are no neighbours, {}.", none, true,
-     judge_bands},
-    {"volume", "Body volume", "The volume of the whole body, changed by {}.",
+    {"bands", "No stretched bands",
+     "Tissue that is stretched to more than twice its length between parts of the body that are not neighbours, {}.",
+     none, true, judge_bands},
+    {"volume", "Body volume", "Volume change of the whole body, {}.",
      [](const QualityLimits& l) {
        return "at most " + formatted("%g %%", l.body_percent) + formatted(", of a limb alone %g %%", l.limb_percent);
      },

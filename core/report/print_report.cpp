@@ -30,7 +30,7 @@ std::string components_of(const TissueChange& tissue) {
 }
 
 void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshReport& mesh) {
-  out << line("%8s  %-28s %36s", "label", "stretch of what bends", "least, most: median (5 % to 95 %)");
+  out << line("%8s  %-28s %36s", "label", "stretch of bent tissue", "least, most: median (5 % to 95 %)");
   for (const TissueChange& tissue : metrics.tissues)
     if (const auto found = mesh.stretch.find(tissue.label); found != mesh.stretch.end()) {
       const auto& [least, most] = found->second;
@@ -64,15 +64,15 @@ void print_error(std::ostream& out, const FemError& error) {
     return;
   }
   out << line(
-      "error of the solve, by one with tets of %.3g mm: %.2f mm rms, 95 %% below %.2f mm, most %.1f mm at "
-      "(%.0f, %.0f, %.0f)",
+      "error of the solve, estimated by a second one with tets of %.3g mm: %.2f mm rms, 95 %% below %.2f mm, most %.1f "
+      "mm at (%.0f, %.0f, %.0f)",
       error.coarse_tet_mm, error.rms_mm, error.most_mm, error.largest_mm, error.place.x, error.place.y, error.place.z);
 }
 
 void print_solve(std::ostream& out, const Report& report, const DeformReport& deform) {
   if (deform.mesh) {
     const MeshReport& mesh = *deform.mesh;
-    out << line("mesh of %lld tets, %lld inverted, least det F %.3f, %.2f %% of soft tets below 0.2",
+    out << line("mesh of %lld tets, %lld inverted, smallest det F %.3f, %.2f %% of soft tets below 0.2",
                 static_cast<long long>(mesh.tets), static_cast<long long>(mesh.inverted), mesh.min_det_f,
                 100 * mesh.share_below_fifth);
     if (report.metrics && !mesh.stretch.empty()) print_stretch(out, *report.metrics, mesh);

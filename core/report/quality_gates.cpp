@@ -93,8 +93,7 @@ void judge_crossings(const Json& report, const QualityLimits&, QualityGate& gate
 
 QualityGate gate_of_limits() {
   QualityGate gate;
-  gate.id = "limits", gate.name = "Joint limits",
-  gate.meaning = "How far the joint that is turned too far is beyond its limits.";
+  gate.id = "limits", gate.name = "Joint limits", gate.meaning = "Largest angle by which a joint exceeds its limits.";
   return gate;
 }
 
@@ -140,20 +139,20 @@ const GateRule<Json> kFineGates[] = {
     {"tissues", "Each tissue within {}", "The volume of the tissue that changed most, of those of",
      [](const QualityLimits& l) { return formatted("%g %%", l.tissue_percent); }, false, judge_tissues},
     {"bones", "Bone parts rigid",
-     "How far a voxel of one of the program's bone parts lies from where its rig bone takes it, {}.",
+     "Largest distance of a bone voxel from the position to which its rig bone moves it, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g mm", l.bone_residual_mm); }, false, judge_bones},
     {"skin", "Skin closed", "The share of the surface that is skin, {} below that at rest.",
      [](const QualityLimits& l) { return "at most " + formatted("%g %% of the surface", l.skin_share_percent); }, false,
      judge_skin},
     {"islands", "No islands or holes",
-     "Pieces of a tissue of 50 voxels or more that were one at rest, voxels inside tissue that have no label, and "
-     "tissue that fell off the grid.",
+     "New separate pieces of a tissue of 50 voxels or more, voxels without a label inside tissue, and tissue outside "
+     "the voxel grid.",
      none, false, judge_islands},
     {"inverted", "No inverted cells", "Tetrahedra that were turned inside out.", none, false, judge_inverted},
     {"crossings", "No self-intersection",
      "Pairs of the skin's triangles that cross, and voxels in which two parts of the body overlap.", none, false,
      judge_crossings},
-    {"limits", "Joint limits", "How far the joint that is turned too far is beyond its limits.",
+    {"limits", "Joint limits", "Largest angle by which a joint exceeds its limits.",
      [](const QualityLimits& l) { return "at most " + formatted("%g degrees", l.joint_excess_degrees); }, false,
      judge_limits},
 };

@@ -50,14 +50,15 @@ QualityGate judge_reached(const Json& report) {
 
 QualityGate judge_gap(const Json& report) {
   QualityGate gate = unmeasured(
-      "gap", "Gap", "The least air between skins that came near each other in a solve; not measured where none did.",
+      "gap", "Gap",
+      "Smallest distance between skin surfaces that came near each other in the solve. Not measured if none did.",
       "more than 0 mm");
   const Json mesh = part(report, "mesh");
   if (!mesh.contains("min_gap_mm") || !mesh["min_gap_mm"].is_number()) return gate;
   const double gap_mm = mesh["min_gap_mm"];
   gate.state = gap_mm > 0 ? GateState::Passed : GateState::Failed;
   gate.figure = formatted("%.3f mm", gap_mm);
-  gate.sentence = "The least air between skins that touch is " + gate.figure + ".";
+  gate.sentence = "The smallest distance between skin surfaces near each other is " + gate.figure + ".";
   return gate;
 }
 

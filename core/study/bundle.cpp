@@ -105,7 +105,7 @@ Json read_expected(const Path& path) {
   Json json = Json::parse(checked_json(read_file(path, kLargestFile), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != kSchema || !json.value("cells", Json()).is_array() ||
       !json.value("inputs", Json()).is_array())
-    throw Error("these are no expected results", path.string(), "name the expected.json of a bundle");
+    throw Error("this is not a file of expected results", path.string(), "name the expected.json of a bundle");
   return json;
 }
 
@@ -127,10 +127,9 @@ std::string readme(const Study& study, const std::string& commit, bool is_whole)
          "\n\n"
          "Install Limber " LIMBER_VERSION +
          (commit.empty() ? "" : " (commit " + commit + ")") +
-         ", then run in this folder:\n\n"
-         "  limber experiment study.json -o again --expect expected.json\n\n"
-         "It computes every cell, writes again/report.html, and says whether each voxel and each digit of each figure\n"
-         "is the same; times and memory are not compared. Other versions of Limber may give other digits.\n" +
+         ", then run in this folder:\n\n  limber experiment study.json -o again --expect expected.json\n\nIt computes "
+         "every cell, writes again/report.html, and reports whether each voxel and each number\nis exactly the same; "
+         "times and memory are not compared. Other versions of Limber may give other numbers.\n" +
          (is_whole
               ? ""
               : "\nThe volumes are not in this folder. Put them into inputs/ under the names that study.json gives\n"
@@ -206,9 +205,9 @@ std::string check_results(const Study& study, const std::vector<CellResult>& cel
   }
   const std::string version = text_at(json, "version") + ", commit " + text_at(json, "commit");
   if (others > 0)
-    throw Error(std::to_string(others) + " of " + std::to_string(found.size()) + " cells have other digits", told,
+    throw Error(std::to_string(others) + " of " + std::to_string(found.size()) + " cells have different numbers", told,
                 text_at(json, "sources") == computing_sources()
-                    ? "the same sources gave both: compare the machines"
+                    ? "both were computed by the same version of Limber: compare the machines"
                     : "other sources made the expected results: take Limber " + version);
   return "the same digits: every voxel and every figure of " + std::to_string(found.size()) +
          " cells is as expected by Limber " + version;

@@ -107,7 +107,7 @@ CellResult read_result(const Study& study, const CellOutcome& outcome) {
     result.warnings = report.value("warnings", std::vector<std::string>{});
   } catch (const Json::exception& error) {
     throw Error("a result of the study is damaged", outcome.folder.string(),
-                std::string("delete the folder and run the same again (") + error.what() + ")");
+                std::string("delete the folder and run the same command again (") + error.what() + ")");
   }
   result.gates = gates_of(result.report, study.gates);
   return result;

@@ -70,7 +70,7 @@ class Page {
     return found == at_.end() ? nullptr : found->second;
   }
   std::string finest() const {
-    return study_.spacings[figures_.spacing] ? spacing_text(study_.spacings[figures_.spacing]) : "its own spacing";
+    return study_.spacings[figures_.spacing] ? spacing_text(study_.spacings[figures_.spacing]) : "the input's spacing";
   }
   int techniques() const { return static_cast<int>(study_.techniques.size()); }
   int poses() const { return static_cast<int>(study_.poses.size()); }
@@ -98,7 +98,7 @@ class Page {
 
   // Times are processor seconds in a study, but wall-clock seconds in the results of an editor session.
   std::string seconds_word() const { return facts_.of_session ? "s" : "CPU s"; }
-  std::string time_word() const { return facts_.of_session ? "time by the clock" : "processor time"; }
+  std::string time_word() const { return facts_.of_session ? "elapsed time" : "processor time"; }
   static std::string counted(std::size_t count, const std::string& what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
   }
@@ -199,8 +199,8 @@ class Page {
               "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
     }
     table(rows + "</tbody>", "Each technique at " + finest() +
-                                 ": the largest change over all poses with the pose that has it, the most voxels that "
-                                 "two parts of the body covered, mean " +
+                                 ": the largest change over all poses with the pose that has it, the largest number of "
+                                 "voxels covered by two parts of the body, mean " +
                                  time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") +
                                  ". Tissues of fewer than " + grouped(study_.gates.least_voxels) +
                                  " voxels at rest are left out.");
@@ -278,7 +278,7 @@ class Page {
       if (meshes)
         note += (note.empty() ? "" : ", ") + grouped(tets / meshes) + " at " + spacing_text(study_.spacings[s]);
     }
-    return note.empty() ? "" : " Finite elements take their time by their tets, on average " + note + ".";
+    return note.empty() ? "" : " The time of finite elements depends on the number of tets, on average " + note + ".";
   }
   std::optional<double> seconds_of_weights(int spacing) const {
     for (const auto& [key, one] : at_)
@@ -332,7 +332,7 @@ class Page {
                     .series = changes([](const CellResult& one) { return std::optional(one.volume_percent); }),
                     .is_signed = true};
     figure(svg_of(chart), "Change of volume by technique, all tissues together, at " + finest() +
-                              ". Zero is what a body does that keeps its volume.");
+                              ". A body that keeps its volume is at zero.");
 
     std::vector<const TissueFigures*> tissues = large_tissues();
     const std::size_t left_out = tissues.size() > kMostPanels ? tissues.size() - kMostPanels : 0;
@@ -419,11 +419,11 @@ class Page {
                  fixed(figures_.bodies.width_mm, 0) + " mm wide" + view_words() + shown,
              "grid");
     else
-      html_ +=
-          "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " +
-          (facts_.of_session ? ""
-                             : "Run the same again with a program that draws; the cells need not be computed again.") +
-          "</p>\n";
+      html_ += "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " +
+               (facts_.of_session ? ""
+                                  : "Run the same command again with a program that can draw pictures; the finished "
+                                    "cells are not computed again.") +
+               "</p>\n";
     figure(grid(figures_.slices, figures_.poses, "Slice") + html_of(figures_.slices.legend),
            "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) +
                " mm wide; the bar is 50 mm." + shown,
@@ -456,14 +456,14 @@ class Page {
       html += "</tr>";
     }
     html +=
-        "</tbody></table><div class=\"ramp\"><span>½ and less: pressed</span><i></i><span>2 and more: "
+        "</tbody></table><div class=\"ramp\"><span>½ or less: compressed</span><i></i><span>2 or more: "
         "stretched</span><span class=\"gap\"><b class=\"twice\"></b> covered by two parts of the body</span><span><b "
         "class=\"bone\"></b> covered by two bones</span></div>";
     figure(html + html_of(figures_.overlaps.legend),
            "Maps at " + escaped(pose) + ", " + finest() + ", cut " + where() +
-               ". Above: volume of each posed voxel's surroundings per volume at rest (determinant of the deformation; "
-               "grey is 1). Below: voxels that two parts of the body covered, over the tissues in dull colours; the "
-               "number is of the whole volume.",
+               ". Above: ratio of the posed volume to the rest volume around each voxel (determinant of the "
+               "deformation; grey is 1). Below: voxels that two parts of the body covered, over the tissues in dull "
+               "colours; the number counts them in the whole volume.",
            "grid");
     if (figures_.close_ups.empty()) return;
 
@@ -485,9 +485,9 @@ class Page {
     }
     figure(html + "</tbody></table>" + html_of(figures_.close_up_legend),
            "Close-ups of the worst region of each technique at " + finest() +
-               ", worst first: the box of about 48 mm with most voxels whose surroundings are pressed to less than "
-               "half or stretched to more than twice their volume "
-               "(their number, of all tissue there). Each picture is 96 mm wide, the bar is 10 mm.",
+               ", worst first: the box of about 48 mm with most voxels whose surroundings are compressed to less than "
+               "half or stretched to more than twice their volume (with their number, out of all tissue voxels in the "
+               "box). Each picture is 96 mm wide, the bar is 10 mm.",
            "grid");
   }
   std::string overlap_words(bool is_overlap, int technique) const {
@@ -517,8 +517,8 @@ class Page {
       return;
     }
     html_ +=
-        "<p>A gate is a figure with a limit. ✓ it keeps to it; ✗ it does not; – there is nothing to judge. A failed "
-        "gate is a finding about the technique in that pose, not a mistake of the run.</p>\n";
+        "<p>A gate is a number with a limit. ✓: the number is within its limit; ✗: it is not; –: there is nothing to "
+        "judge. A failed gate is a finding about the technique in that pose, not an error of the run.</p>\n";
     const std::vector<QualityGate> kinds = gates_of("", study_.gates);
     const std::size_t of_body = body_gates("").size();
     gate_tables("Gates of the body", kinds, 0, of_body);
@@ -564,8 +564,8 @@ class Page {
     section("Tissues", "tissues");
     html_ += "<p>Change of volume in %, at " + finest() + ". Each label of " + grouped(study_.gates.least_voxels) +
              " voxels or more at rest has a gate: ✓ it changes by at most " + number(study_.gates.tissue_percent) +
-             " %, ✗ by more. Labels of a few thousand voxels change by up to 2 % where a rigid turn alone meets the "
-             "voxel grid, smaller ones by more." +
+             " %, ✗ by more. Even a rigid rotation changes the number of voxels of a label: by up to 2 % for a few "
+             "thousand voxels, and by more for fewer." +
              (facts_.of_session ? "" : " Every figure of every cell is in cells.csv and cells.json beside this page.") +
              "</p>\n";
     for (int p = 0; p < poses(); ++p) {
@@ -596,7 +596,7 @@ class Page {
     if (std::none_of(study_.techniques.begin(), study_.techniques.end(),
                      [](const Technique& technique) { return technique.mass_exact; }))
       return "";
-    std::string row = "<tr><th class=\"row\">Voxels that mass-exact moved</th><td></td><td></td>";
+    std::string row = "<tr><th class=\"row\">Voxels changed by mass-exact</th><td></td><td></td>";
     for (int t = 0; t < techniques(); ++t) {
       const CellResult* one = cell(figures_.spacing, pose, t);
       row += one && one->mass_exact_voxels ? "<td>" + grouped(*one->mass_exact_voxels) + "</td>"
@@ -622,16 +622,17 @@ class Page {
         "<p>Specific absorption rate (SAR) of the posed bodies in a plane wave of " + number(sar.frequency_hz / 1e6) +
         " MHz and 1 W/m², polarized along " + escaped(sar.polarization) + " and going towards +" +
         escaped(sar.towards) + ", computed by openEMS with cells of " + number(sar.cell_mm) +
-        " mm. The same way gives a ball of muscle, with cells of " + number(sphere.cell_mm) + " mm, an uptake of " +
-        fixed(1e3 * sphere.absorbed, 2) + " mW, where Mie's exact solution has " + fixed(1e3 * sphere.by_mie, 2) +
-        ": " + signed_number(sphere.difference_percent, 1) + " %" +
+        " mm. For a ball of muscle with cells of " + number(sphere.cell_mm) +
+        " mm, the same method gives an absorbed power of " + fixed(1e3 * sphere.absorbed, 2) +
+        " mW, where Mie's exact solution is " + fixed(1e3 * sphere.by_mie, 2) + ": " +
+        signed_number(sphere.difference_percent, 1) + " %" +
         (std::abs(sphere.difference_percent) > 10 ? "; <b>this is more than 10 %: do not trust what follows</b>" : "") +
         ".</p>\n";
     if (!sar.outdated.empty()) {
       std::string poses;
       for (const std::string& pose : sar.outdated) poses += (poses.empty() ? "" : ", ") + pose;
       html_ += "<p class=\"note\"><b>Left out:</b> SAR of " + escaped(poses) +
-               " was computed from cells that are others now. Run <code>sar_openems.py study</code> again.</p>\n";
+               " was computed from cells that have changed since. Run <code>sar_openems.py study</code> again.</p>\n";
     }
     if (sar.bodies.empty()) return;
     const CellResult& first = *sar.bodies.front().cell;
@@ -665,7 +666,7 @@ class Page {
     const auto figure_of = [](const std::optional<double>& value) { return value ? fixed(*value, 2) : "–"; };
     html_ += "<p>" + counted(rating.raters.size(), "rater") + " scored " + counted(rating.pictures, "picture") +
              " from " + std::to_string(kLeastScore) + " (not at all real) to " + std::to_string(kMostScore) +
-             " (fully real), in an order of their own and without knowing the techniques. Agreement: Krippendorff’s "
+             " (fully real), each in a different order and without knowing the techniques. Agreement: Krippendorff’s "
              "alpha (ordinal) " +
              figure_of(rating.alpha) + ", Cohen’s kappa (quadratic weights, mean over pairs of raters) " +
              figure_of(rating.kappa) + ".</p>\n";
@@ -708,7 +709,7 @@ class Page {
       fact("Weights", escaped(study_.weights));
       fact("Finite elements", "quality " + escaped(study_.quality));
       fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another"
-                                       : "as the rig has them, shifted where bones would enter each other");
+                                       : "as the rig has them, shifted where bones would overlap");
       fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
     }
     html_ += "<dl>" + list + "</dl>\n";
@@ -721,9 +722,9 @@ class Page {
     for (const auto& [path, hash] : inputs)
       rows += "<tr><th class=\"row\">" + escaped(path) + "</th><td class=\"hash\">" + hash + "</td></tr>";
     table(rows + "</tbody>",
-          facts_.of_session ? "What the results were made from, by content."
-                            : "What the cells read. Each cell's folder has the job that made it: <code>limber job "
-                              "cells/…/job.json</code> makes it again.",
+          facts_.of_session ? "Input files of the results, with hashes of their contents."
+                            : "Input files of the cells, with hashes of their contents. Each cell's folder has the job "
+                              "that computed it: <code>limber job cells/…/job.json</code> computes it again.",
           "inputs");
     warnings();
     if (!facts_.of_session) html_ += "<h3>The study</h3><pre>" + escaped(to_json(study_)) + "</pre>\n";
@@ -751,8 +752,8 @@ class Page {
       list += "<li>" + escaped(text) + " <small>(" + escaped(where.front());
       list += (where.size() > 1 ? " and " + std::to_string(where.size() - 1) + " more" : "") + ")</small></li>";
     }
-    html_ += "<h3>" + std::string(facts_.of_session ? "Warnings" : "What the cells warned of") + "</h3><ul>" + list +
-             "</ul>\n";
+    html_ +=
+        "<h3>" + std::string(facts_.of_session ? "Warnings" : "Warnings of the cells") + "</h3><ul>" + list + "</ul>\n";
   }
 
   const Study& study_;

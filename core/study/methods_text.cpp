@@ -168,7 +168,7 @@ class MethodsWriter {
               ", from voxels of bone held at fixed temperatures.";
     else if (study_.weights == "geodesic")
       text += "from the lengths of shortest paths through the tissue to each bone" + cite("geodesic") + ".";
-    else text += "rigidly: each voxel follows one bone alone.";
+    else text += "rigidly: each voxel follows only one bone.";
     return paragraph(text + " Bone tissue always moves rigidly with its bone.");
   }
 

@@ -58,7 +58,7 @@ std::optional<SarFigures> read_sar(const Path& out, const Study& study, const st
   if (!std::filesystem::exists(path)) return {};
   const Json json = Json::parse(checked_json(read_file(path, kLargest), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != "limber-sar/2")
-    throw Error("this is no SAR of a study, or that of an older version", path.string(),
+    throw Error("this is not the SAR file of a study, or it is of an older version", path.string(),
                 "delete it, or write it again with sar_openems.py study");
   try {
     return figures_of(json, study, cells);

@@ -39,7 +39,7 @@ void read_row(const std::vector<std::string>& fields, int line, RaterScores& rat
   if (name.empty() || name.size() > kLongestName)
     refuse(path, line, "the rater has no name", "write the rater's name or number in the second column");
   if (rater.rater.empty()) rater.rater = name;
-  if (rater.rater != name) refuse(path, line, "the file names two raters", "give each rater a file");
+  if (rater.rater != name) refuse(path, line, "the file names two raters", "use one file for each rater");
   if (code.empty() || code.size() > kLongestName)
     refuse(path, line, "the row names no picture", "keep the form's codes");
   if (fields[4].empty()) return;

@@ -70,7 +70,7 @@ void read_volumes(const Description& description, Study& study) {
     if (!spacing || !one.has("volume")) one.refuse("it needs a spacing and a file", "give both: spacing_mm and volume");
     if (!study.phantom.empty()) one.refuse("a phantom has no volume files", "leave out \"volumes\"");
     if (!study.ready.emplace(*spacing, one.file("volume")).second)
-      one.refuse("the spacing is there twice", "leave one of both out");
+      one.refuse("the spacing occurs twice", "leave one of both out");
   }
 }
 
@@ -103,7 +103,7 @@ TechniqueLook look_of(const Technique& technique) {
 }
 
 std::string spacing_text(const std::optional<double>& spacing) {
-  if (!spacing) return "as it is";
+  if (!spacing) return "as given";
   char text[40];
   std::snprintf(text, sizeof text, "%g mm", *spacing);
   return text;
@@ -122,7 +122,8 @@ Study read_study(const Path& path) {
   study.nearest = read_nearest(description, study.techniques);
   if (const auto repeats = description.number("repeats", 1, kMostRepeats)) {
     study.repeats = static_cast<int>(*repeats);
-    if (study.repeats != *repeats) description.refuse("it is no whole number", "repeats", "write how often, such as 5");
+    if (study.repeats != *repeats)
+      description.refuse("this is not a whole number", "repeats", "write the number of repeats, such as 5");
   }
   read_volumes(description, study);
   if (description.has("gates")) study.gates = read_gates(description.object("gates"));

@@ -197,7 +197,7 @@ TEST_CASE(
           std::abs(tissue["voxels_before"].get<int>() - tissue["voxels_wanted"].get<int>()));
   const std::string page = read_file(out / "report.html");
   CHECK(page.find("Dual quaternions, mass-exact") != page.npos);
-  CHECK(page.find("Voxels that mass-exact moved") != page.npos);
+  CHECK(page.find("Voxels changed by mass-exact") != page.npos);
   CHECK(page.find("id=\"sar\"") == page.npos);
 
   json sar{

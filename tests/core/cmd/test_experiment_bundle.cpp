@@ -128,7 +128,7 @@ TEST_CASE("experiment: a bundle that is computed elsewhere gives the same digits
     expected = whole;
   };
   expected["cells"][2]["report"]["total"]["voxels_after"] = 1;
-  refused("1 of 4 cells have other digits");
+  refused("1 of 4 cells have different numbers");
   expected["cells"][1]["voxels_sha256"] = "0";
   refused("/voxels_sha256 is");
   expected["cells"].erase(0);
@@ -136,7 +136,7 @@ TEST_CASE("experiment: a bundle that is computed elsewhere gives the same digits
   expected["inputs"][0]["sha256"] = "0";
   refused("is not the one that the expected results were made from");
   expected = "text";
-  refused("no expected results");
+  refused("not a file of expected results");
   std::ofstream(moved / "expected.json") << whole;
 
   const auto twice = run_limber({"experiment", moved / "study.json", "-o", folder / "again", "--bundle", moved});

@@ -173,7 +173,7 @@ TEST_CASE("resample: the result is what the core computes, is undone, shown, and
   const std::string page = read_file(folder / "both.html");
   for (const char* part :
        {"Limber results", "2 results: 1 pose, 2 techniques", "Fore 30\u00b0", "Dual quaternions, mass-exact",
-        "data:image/png;base64,", "time by the clock", "Joint limits", "covered by two bones"}) {
+        "data:image/png;base64,", "elapsed time", "Joint limits", "covered by two bones"}) {
     INFO(std::string(part));
     CHECK(page.find(part) != std::string::npos);
   }
