@@ -125,7 +125,8 @@ Motion resampled(const Motion& motion, double rate, Progress& progress) {
   const double seconds = std::max(0, motion.frame_count - 1) * motion.frame_time;
   const double count = std::floor(seconds * rate + 1e-6) + 1;
   if (count > static_cast<double>(kMostFrames))
-    throw Error("so many frames cannot be kept", std::to_string(rate) + " frames in a second", "choose a lower rate");
+    throw Error("the clip would have too many frames", std::to_string(rate) + " frames in a second",
+                "choose a lower rate");
   Motion out = motion;
   if (motion.frame_count == 0) return out;
   out.frame_time = 1 / rate;

@@ -47,7 +47,8 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
                                const Armature& armature) {
   try {
     const Json json = Json::parse(checked_json(text, where));
-    if (!json.is_object()) throw Error("this is no map", where, "write {\"source joint\": \"rig bone\", ...}");
+    if (!json.is_object())
+      throw Error("this is not a retarget map", where, "write {\"source joint\": \"rig bone\", ...}");
     std::set<std::string> joints;
     for (const BvhJoint& joint : motion.joints) joints.insert(joint.name);
 
@@ -83,7 +84,8 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
         add(joint, value, {});
       }
     }
-    if (map.sources.empty()) throw Error("the map matches nothing", where, "name at least one joint and its bone");
+    if (map.sources.empty())
+      throw Error("the retarget map matches no bone", where, "name at least one joint and its bone");
     return map;
   } catch (const Json::exception& error) {
     throw Error("this is not valid JSON (" + std::string(error.what()).substr(0, 160) + ")", where, "correct the file");

@@ -343,7 +343,7 @@ void add_joint_angle(JointAngles& angles, const std::string& asked, double degre
         where, "write one of: " + known_motions(joint));
   if (!is_paired(joint) && sides != Sides::NotSaid)
     throw Error("the body has one " + name + " only", where,
-                "leave out the side; write \"" + name + " left bending\" for what goes to a side");
+                "leave out the side; write \"" + name + " left bending\" for a motion to one side");
   if (plural && sides == Sides::NotSaid) sides = Sides::Both;
   for (const BodySide side : sides_of(sides)) merge(angles[{joint, side}], *motions);
 }

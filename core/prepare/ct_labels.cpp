@@ -265,7 +265,7 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
   check(thresholds);
   if (image.least >= thresholds.body) {
     char text[80];
-    std::snprintf(text, sizeof text, "its least value is %g", image.least);
+    std::snprintf(text, sizeof text, "its smallest value is %g", image.least);
     throw Error("this is no CT: it has no air", text, "give a CT in Hounsfield units, where air is -1000");
   }
   progress.update("body", 0);

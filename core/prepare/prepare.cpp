@@ -159,7 +159,7 @@ LabelVolume crop_to_tissue(const LabelVolume& volume) {
 }
 
 LabelVolume pad(const LabelVolume& volume, int voxels) {
-  if (voxels < 0) throw Error("a margin cannot be negative", std::to_string(voxels), "use --crop to take air away");
+  if (voxels < 0) throw Error("a margin cannot be negative", std::to_string(voxels), "use --crop to remove air");
   const glm::dvec3 size = glm::dvec3(volume.grid.size) + 2.0 * voxels;
   if (size.x * size.y * size.z > static_cast<double>(kMostVoxels))
     throw Error("the padded volume would have more than " + std::to_string(kMostVoxels) + " voxels",

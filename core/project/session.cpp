@@ -19,7 +19,7 @@ using std::chrono::duration;
 constexpr std::int64_t kMostGrowth = 4;  // a large journal is replaced when it exceeds this multiple of its first size
 
 constexpr const char* kGone =
-    "The project's file was removed or replaced by another program. Your edits are kept; save to write it anew.";
+    "The project's file was removed or replaced by another program. Your edits are kept; save to write it again.";
 
 std::string random_name() {
   std::random_device random;
@@ -376,7 +376,7 @@ std::string Session::save(const Project& project, Progress& progress) {
         return update_project(project, file, *mark_, Unused::Keep, save_writer_, progress);
       },
       project.document);
-  return gone ? "The project's file had been removed. It was written anew." : "";
+  return gone ? "The project's file had been removed. It was written again." : "";
 }
 
 void Session::save_as(const Project& project, const Path& new_path, Progress& progress) {

@@ -350,9 +350,9 @@ bone_map  {"label or label@left": "rig bone"}: the rig bone that each label foll
       .def_property_readonly(
           "tissues", [](const Body& body) -> const TissueTable& { return body.tissues; },
           py::return_value_policy::reference_internal)
-      .def_readonly("warnings", &Body::warnings, "What is doubtful about the inputs.")
+      .def_readonly("warnings", &Body::warnings, "Warnings about the inputs.")
       .def("weights", &weights_of, py::arg("method") = "heat", py::kw_only(), py::arg("seams") = py::none(),
-           py::arg("progress") = py::none(), R"(Computes how tissue follows the bones.
+           py::arg("progress") = py::none(), R"(Computes the skin weights: how tissue follows the bones.
 
 method    heat (smoothest), geodesic (faster) or rigid (one bone per voxel)
 seams     where tissue touches without being connected: None (found), "none", or a file of limber prepare --seams
@@ -400,7 +400,7 @@ method        lbs, dqs, mix or fem
 glide         largest shift of joints whose bones would overlap: joint, voxel, off, or mm as a string (the command
               line uses voxel for poses from files and motions, because their feet should not move)
 quality       fem: draft, normal or fine; mesher: lattice or tetgen; contact: skin presses against skin
-nearest       takes the label of the nearest voxel at rest, and repairs nothing
+nearest       takes the label of the nearest voxel at rest, without interpolation and repairs
 mass_exact    soft tissues keep their rest volumes
 fit_joints    fits the axes of joints to the bones first
 spacing       voxel size of the result, mm (default: the volume's)
@@ -419,8 +419,9 @@ progress      a function of (stage, fraction), or a tqdm bar)");
           "uint16 [x, y, z], read-only, x fastest in memory; not a copy.")
       .def_readonly("rig", &PosedVolume::rig,
                     "The body's rig, with joints fitted to the pose where that was asked for.")
-      .def_readonly("pose", &PosedVolume::pose, "The pose of this rig that was reached, with shifted joints.")
-      .def_readonly("reached", &PosedVolume::reached, "The share of the way from rest that fem reached; 1: all of it.")
+      .def_readonly("pose", &PosedVolume::pose, "The pose that was reached, for the rig in .rig, with shifted joints.")
+      .def_readonly("reached", &PosedVolume::reached,
+                    "Share of the pose that fem reached, from 0 (rest) to 1 (the whole pose).")
       .def_property_readonly("report", &report_of, "The report as a dict, as the command line writes it; None without.")
       .def_readonly("warnings", &PosedVolume::warnings)
       .def_property_readonly("displacement", &displacement_of, "float32 [x, y, z, 3]: posed minus rest, mm; or None.")
@@ -438,12 +439,12 @@ progress      a function of (stage, fraction), or a tqdm bar)");
             check_writable(path);
             write_volume(p.volume.file->volume, path, p.volume.file->tissues, p.volume.file->type);
           },
-          py::arg("path"), "Writes the posed volume; the path's ending says the format.");
+          py::arg("path"), "Writes the posed volume; the file's extension selects the format.");
 
-  module.def(
-      "export", &export_volume, py::arg("volume"), py::arg("path"), py::kw_only(), py::arg("frequency") = py::none(),
-      py::arg("progress") = py::none(),
-      "Writes a volume for another program, which the path's ending names. frequency: Hz, where materials need it.");
+  module.def("export", &export_volume, py::arg("volume"), py::arg("path"), py::kw_only(),
+             py::arg("frequency") = py::none(), py::arg("progress") = py::none(),
+             "Writes a volume for another program, which the file's extension selects. frequency: Hz, needed for "
+             "materials that depend on it.");
   module.def("make_phantom", &make_phantom, py::arg("name") = "arm", py::kw_only(), py::arg("spacing") = py::none(),
              "Makes a procedural sample body, arm or body, and returns (volume, rig, motion). spacing: mm.");
 }

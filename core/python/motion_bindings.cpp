@@ -77,7 +77,7 @@ void add_motions(py::module_& module) {
            R"(Returns the motion on a rig.
 
 map          a retarget map's file; None: joints and bones are matched by their names
-motion_rest  what the rest poses stand for: T, A, anatomical, or file; the same for rig_rest
+motion_rest  treat the motion's rest pose as this pose: T, A, anatomical, or file; rig_rest: the same for the rig
 root_motion  True: the body travels as the motion does)");
 
   module.def("read_motion", &read_motion_from, py::arg("path"), py::kw_only(), py::arg("up") = "y",

@@ -223,13 +223,14 @@ angle names. Joints are known by the bones' names.)")
             return array_of(posed_from_rest(rig, pose));
           },
           py::arg("pose"), "Returns N x 4 x 4: for each bone, the motion from rest to the pose, LPS mm.")
-      .def("save", &write_armature, py::arg("path"), "Writes the rig: .json keeps all, .vtk and .bvh its bones.")
+      .def("save", &write_armature, py::arg("path"),
+           "Writes the rig: .json keeps everything, .vtk and .bvh only its bones.")
       .def("__eq__", [](const Armature& a, const Armature& b) { return a == b; })
       .def("__repr__", [](const Armature& rig) { return "<Rig of " + std::to_string(rig.bones.size()) + " bones>"; });
 
   module.def("read_rig", &read_rig, py::arg("path"), "Reads a rig: Limber JSON, Bender .vtk or .arm, BVH or glTF.");
   module.def("fit_rig", &fit_rig, py::arg("volume"), py::arg("template") = "auto", py::kw_only(),
-             py::arg("progress") = py::none(), R"(Lays a rig into a volume and returns (rig, errors).
+             py::arg("progress") = py::none(), R"(Fits a rig to a volume and returns (rig, errors).
 
 template  arm, hand, leg, adult, child, quadruped, or auto
 errors    {bone: mm by which the joint at its head may be off})");

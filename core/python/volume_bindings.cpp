@@ -180,9 +180,9 @@ VolumeFile shared_copy(const Volume& volume) {
 Volume volume_of(VolumeFile file) { return {std::make_shared<const VolumeFile>(std::move(file))}; }
 
 void add_volumes(py::module_& module) {
-  py::class_<Tissue>(module, "Tissue", "A tissue: what a label stands for.")
+  py::class_<Tissue>(module, "Tissue", "A tissue: the name, kind and colour of a label.")
       .def(py::init(&tissue_from), py::arg("value"), py::arg("name"), py::arg("kind") = "",
-           "kind: bone, cortical bone, muscle, fat, skin ...; without one, words of the name tell.")
+           "kind: bone, cortical bone, muscle, fat, skin ...; without it, the kind is taken from words in the name.")
       .def_readonly("value", &Tissue::file_value, "The voxels' value in files and arrays.")
       .def_readonly("label", &Tissue::label, "The voxels' value in Volume.labels.")
       .def_readonly("name", &Tissue::name)
@@ -190,7 +190,8 @@ void add_volumes(py::module_& module) {
       .def_property_readonly("is_bone", [](const Tissue& tissue) { return is_bone(tissue.kind); })
       .def_property_readonly("colour", &colour_of, "Red, green, blue: sRGB from 0 to 1.")
       .def_readonly("density", &Tissue::density, "g/cm3")
-      .def_readonly("priority", &Tissue::priority, "Where two tissues meet in a voxel, the higher one stays.")
+      .def_readonly("priority", &Tissue::priority,
+                    "Where two tissues meet in a voxel, the voxel gets the tissue with the higher priority.")
       .def("__repr__", [](const Tissue& tissue) {
         return "<Tissue " + std::to_string(tissue.label) + " " + tissue.name + " (" +
                std::string(to_string(tissue.kind)) + ")>";
@@ -245,7 +246,7 @@ tissues    names and kinds of the labels.)")
           "tissues", [](const Volume& v) -> const TissueTable& { return v.file->tissues; },
           py::return_value_policy::reference_internal)
       .def_property_readonly("warnings", [](const Volume& v) { return v.file->warnings; })
-      .def("save", &save_volume, py::arg("path"), "Writes the volume; the path's ending says the format.")
+      .def("save", &save_volume, py::arg("path"), "Writes the volume; the file's extension selects the format.")
       .def("__repr__", [](const Volume& v) {
         const Grid& grid = v.file->volume.grid;
         char text[160];

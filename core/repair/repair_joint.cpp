@@ -283,7 +283,7 @@ JointRepair repair_joint(const WeightedBody& body, const SkinWeights& weights, i
 std::string describe(const JointRepair& repair, const Armature& armature, int bone) {
   const std::string joint = "The joint of " + armature.bones[bone].name;
   if (!repair.is_better)
-    return joint + " stays as it is: no weights were found that keep skin, fat and muscle closer to their volumes " +
+    return joint + " is not changed: no weights were found that keep skin, fat and muscle closer to their volumes " +
            "without more overlap";
   char text[256];
   std::snprintf(

@@ -36,7 +36,8 @@ std::vector<BentJoint> joints_in_pose(const BakedJoints& baked, const Armature& 
   std::set<int> bones;
   for (const std::shared_ptr<const BakedJoint>& joint : baked) {
     const int bone = bone_of(*joint, armature);
-    if (!bones.insert(bone).second) throw Error("two baked joints are of one bone", joint->bone, "give one of them");
+    if (!bones.insert(bone).second)
+      throw Error("two baked joints belong to the same bone", joint->bone, "give one of them");
     joints.push_back({.baked = joint,
                       .degrees = turn_about_axis(pose.rotation[bone], joint->axis).degrees,
                       .parent_turn = motions[armature.bones[bone].parent].rotation});
@@ -70,11 +71,11 @@ std::vector<std::string> doubts_of_baked(const std::vector<BakedJointReport>& jo
                             joint.degrees, joint.low, joint.high, joint.degrees < joint.low ? joint.low : joint.high));
     if (joint.other_degrees > kOtherTurn)
       doubts.push_back(joint.bone + said(" is also turned by %.3g degrees about another axis than the baked one: its "
-                                         "flesh is only as good as blending there",
+                                         "flesh has only the shape of blending there",
                                          joint.other_degrees));
     if (!glide.empty() && glide != joint.glide && joint.degrees != 0)
-      doubts.push_back("joints glide by \"" + glide + "\", but " + joint.bone + " was baked with \"" + joint.glide +
-                       "\": its stated error does not hold");
+      doubts.push_back("joints are shifted by --glide \"" + glide + "\", but " + joint.bone + " was baked with \"" +
+                       joint.glide + "\": its stated error does not hold");
   }
   return doubts;
 }

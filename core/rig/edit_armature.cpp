@@ -242,11 +242,11 @@ Armature with_names_changed(const Armature& armature, const std::vector<int>& bo
   for (int bone = 0; bone < std::ssize(next.bones); ++bone) {
     const std::string& name = next.bones[bone].name;
     if (name.empty())
-      throw Error("a bone needs a name", armature.bones[bone].name, "leave a part of it, or add a prefix");
+      throw Error("a bone needs a name", armature.bones[bone].name, "keep a part of the name, or add a prefix");
     if (const auto [owner, free] = owners.insert({name, bone}); !free)
       throw Error("two bones would have the name '" + name + "'",
                   armature.bones[owner->second].name + " and " + armature.bones[bone].name,
-                  "tell them apart by a prefix or a suffix");
+                  "add a prefix or a suffix that makes the names different");
   }
   return next;
 }

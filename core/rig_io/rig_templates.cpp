@@ -15,8 +15,8 @@ const std::vector<RigTemplate>& rig_templates() {
       {"hand", "Hand", "wrist to finger tips, 20 bones"},
       {"leg", "Leg", "hip to toes, 4 bones"},
       {"adult", "Adult body", "spine, limbs, fingers and jaw, 60 bones"},
-      {"child", "Child body", "the same, in a child's proportions"},
-      {"quadruped", "Quadruped", "a dog's build; drawn onto the skin of an animal, to be looked over by hand"},
+      {"child", "Child body", "spine, limbs, fingers and jaw in a child's proportions, 60 bones"},
+      {"quadruped", "Quadruped", "built like a dog; fitted to an animal's skin, so check its joints by eye"},
   };
   return templates;
 }

@@ -11,7 +11,7 @@ namespace limber {
 namespace {
 
 [[noreturn]] void fail(const std::string& where) {
-  throw Error("the seams in the header are damaged", where, "make the file anew");
+  throw Error("the seams in the header are damaged", where, "write the file again with 'limber prepare --seams'");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ void export_keymap(Editor& editor, const Path& path) {
   for (const std::string& id : operators_of(keymap_preset(editor.preferences.keymap)))
     if (!bound.contains(id)) json[kUnbound].push_back(id);
   write_file_atomically(path, json.dump(1) + "\n");
-  editor.messages.ok("Keys exported", path.string());
+  editor.messages.ok("Keymap exported", path.string());
 }
 
 void import_keymap(Editor& editor, const Path& path) {
@@ -52,9 +52,9 @@ void import_keymap(Editor& editor, const Path& path) {
   keep_preferences(editor);
   const auto count = clashes(editor.keymap).size();
   if (count > 0)
-    editor.messages.warn("Keys imported",
+    editor.messages.warn("Keymap imported",
                          std::to_string(count) + (count == 1 ? " key has" : " keys have") + " more than one command");
-  else editor.messages.ok("Keys imported", path.filename().string());
+  else editor.messages.ok("Keymap imported", path.filename().string());
 }
 
 void apply_preferences(Editor& editor) {

@@ -59,7 +59,7 @@ Keymap read_keymap(const Path& path, TwoMeanings two_meanings) {
   const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestFile), path.string()), nullptr, false);
   if (!json.is_object() || json.value("schema", nlohmann::json()) != "limber-keymap/1" || !json.contains("contexts") ||
       !json["contexts"].is_object())
-    throw Error("this is not a key map", path.string(), "select another file");
+    throw Error("this is not a keymap", path.string(), "select another file");
   Keymap keymap;
   for (const auto& [context, bindings] : json["contexts"].items()) {
     if (!bindings.is_array())

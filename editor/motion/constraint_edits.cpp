@@ -328,7 +328,7 @@ void toggle_weight_key(Editor& editor, const std::string& name) {
   const int frame = editor.document().frame;
   const double weight = shown_weight(editor, *constraint);
   const bool is_keyed = has_weight_key(editor, *constraint, frame);
-  change_free_clip(editor, is_keyed ? "Delete weight key" : "Key weight", [&](Clip& clip) {
+  change_free_clip(editor, is_keyed ? "Delete weight key" : "Insert weight key", [&](Clip& clip) {
     if (is_keyed) delete_weight_key(clip.keys, name, frame);
     else insert_weight_key(clip.keys, name, frame, weight);
     // If the last weight key was deleted, the constraint keeps that key's weight.

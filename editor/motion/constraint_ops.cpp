@@ -92,7 +92,7 @@ std::vector<Operator> constraint_operators() {
        "decides the rotation.",
        of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Later); }),
        needs_neighbour(InOrder::Later)},
-      {"constraint.key_weight", "Key weight", icon::kKey, "Motion",
+      {"constraint.key_weight", "Key constraint weight", icon::kKey, "Motion",
        "Insert or delete a key of the constraint's weight at this frame.", of_active(toggle_weight_key),
        needs_constraint,
        [](const Editor& e) {

@@ -42,12 +42,12 @@ constexpr char kSteps[] = "solve";  // base name of the files that the solver wr
 
 void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
   const Document& from = request.from;
-  progress.update("hand over", 0);
+  progress.update("write inputs", 0);
   FileType type = from.volume_type ? *from.volume_type : FileType{};
   type.format = "NRRD";
   type.compressed = false;
   write_volume(*from.volume, folder / "volume.nrrd", *from.tissues, type);
-  progress.update("hand over", 0.5);
+  progress.update("write inputs", 0.5);
   write_tissue_table(*from.tissues, folder / "tissues.json");
   write_armature(*from.armature, folder / "rig.json");
   write_pose(*from.pose, *from.armature, folder / "pose.json");

@@ -79,7 +79,7 @@ void draw_fit_check(Editor& editor, Column& column) {
                     {{rect.high.x - look.px(10) - width, y}, {rect.high.x - look.px(10), y + look.px(24)}}, "Next");
     operator_button(editor, "view.rig_check",
                     {{rect.high.x - look.px(16) - 2 * width, y}, {rect.high.x - look.px(16) - width, y + look.px(24)}},
-                    "Marks", editor.transform_settings->rig_check_marks ? ButtonStyle::Soft : ButtonStyle::Plain);
+                    "Mark", editor.transform_settings->rig_check_marks ? ButtonStyle::Soft : ButtonStyle::Plain);
     const ListKey key = list_key(editor, kList, static_cast<int>(rows.size()));
     if (!rows.empty() && (key == ListKey::Moved || key == ListKey::Activate))
       show_leaving(editor, rows[editor.list_focus.row]);

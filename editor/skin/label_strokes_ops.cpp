@@ -71,7 +71,7 @@ std::vector<Operator> label_brush_operators() {
       erasing("labels.erase_to_surroundings", "Erase to surroundings",
               "Erased voxels become the tissue or air around them.", Erased::Surroundings),
       erasing("labels.erase_to_air", "Erase to air", "Erased voxels become air.", Erased::Air),
-      {"labels.flat", "One slice", "", "Labels",
+      {"labels.flat", "Only one slice", "", "Labels",
        "In slices, paint only voxels of the shown slice. If switched off, the brush is a ball and paints neighbouring "
        "slices too.",
        [](Editor& e) { brush_of(e).flat = !brush_of(e).flat; }, nullptr,

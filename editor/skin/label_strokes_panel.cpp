@@ -103,7 +103,7 @@ void draw_label_brush_section(Editor& editor, Column& column) {
   draw_choice(editor, column, "Erase to", {"labels.erase_to_surroundings", "labels.erase_to_air"},
               {"Surroundings", "Air"});
   const Rect flat = column.property("");
-  checkbox(editor, "One slice", flat, "One slice", brush.flat);
+  checkbox(editor, "One slice", flat, "Only one slice", brush.flat);
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "labels.flat"), flat);
   draw_range(editor, column, brush);
   column.space(4);

@@ -133,7 +133,7 @@ std::vector<Operator> slice_operators() {
                        render::SliceDisplay::Labels),
       display_operator("slice.show_outlines", "Outline", "Show tissues in the slices as outlines.",
                        render::SliceDisplay::Outline),
-      {"view.place_cross_hair", "Place cross-hair", icon::kCrossHair, "View",
+      {"view.place_cross_hair", "Move cross-hair", icon::kCrossHair, "View",
        "Move the cross-hair, the point where the slices meet, to the pointer.", place_cross_hair, needs_volume},
   };
 }

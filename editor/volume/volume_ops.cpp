@@ -42,7 +42,7 @@ void ask_regrid(Editor& editor) {
   };
   const auto act = [](Editor& e, const Fields& fields) {
     const double spacing = fields[0].value;
-    start_preparation(e, {"Re-grid to " + trimmed(spacing) + " mm",
+    start_preparation(e, {"Resample to " + trimmed(spacing) + " mm",
                           [spacing](const LabelVolume& v, Progress& p) { return regrid(v, glm::dvec3(spacing), p); }});
   };
   editor.open_dialog(
@@ -76,7 +76,7 @@ void ask_orient(Editor& editor) {
   const auto outcome = [code_of](const Editor&, const Fields& fields) {
     if (fields[0].chosen / 2 == fields[1].chosen / 2 || fields[0].chosen / 2 == fields[2].chosen / 2 ||
         fields[1].chosen / 2 == fields[2].chosen / 2)
-      throw Error("two axes point along one line", code_of(fields),
+      throw Error("two voxel axes point along the same body axis", code_of(fields),
                   "use left or right, front or back, and up or down once each");
     return "Voxel axes " + code_of(fields) + ". The voxels are not resampled and stay where they are.";
   };

@@ -89,7 +89,7 @@ class ArmSolved {
         wait_for([&] { return stage_of_solve() == stage || stage_of_solve() == "solving"; });
         for (const double until = seconds() + later; seconds() < until;) frame();
         const std::string reached = stage_of_solve();
-        std::printf("%s{\"stage\": \"%s\", \"ms\": %.0f}", before, reached.empty() ? "hand over" : reached.c_str(),
+        std::printf("%s{\"stage\": \"%s\", \"ms\": %.0f}", before, reached.empty() ? "write inputs" : reached.c_str(),
                     cancel());
         std::fflush(stdout);
         before = ", ";

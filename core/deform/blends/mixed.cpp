@@ -25,7 +25,7 @@ const BlendRule kMixedBlend{
     .name = "Mixed blend",
     .summary = "between linear and dual quaternions, then restores the volume of soft tissue",
     .description =
-        "Mixed blending: between linear and dual quaternions. Results then restore the volume of soft tissue.",
+        "Mixed blending: between linear and dual quaternions. Resampling then restores the volume of soft tissue.",
     .point = blend_one<MixedKernel, false>,
     .stretched_point = blend_one<MixedKernel, true>,
     .four_points = blend_four<MixedKernel>,

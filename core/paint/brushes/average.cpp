@@ -44,7 +44,7 @@ class AverageSide final : public BrushSide {
 BrushRule average_brush() {
   return {.id = "average",
           .name = "Average",
-          .description = "Moves weights towards the mean under the brush.",
+          .description = "Moves weights towards the mean weight under the brush.",
           .looks_around = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
             return std::make_unique<AverageSide>(view);

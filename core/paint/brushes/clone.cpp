@@ -37,13 +37,15 @@ class CloneSide final : public BrushSide {
 }  // namespace
 
 BrushRule clone_brush() {
-  return {.id = "clone",
-          .name = "Clone",
-          .description = "Copies the weights around the cross-hair, at the same distance all along the stroke.",
-          .looks_around = true,
-          .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
-            return std::make_unique<CloneSide>(view);
-          }};
+  return {
+      .id = "clone",
+      .name = "Clone",
+      .description =
+          "Copies weights from the cross-hair to the brush. During a stroke, the source moves along with the brush.",
+      .looks_around = true,
+      .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
+        return std::make_unique<CloneSide>(view);
+      }};
 }
 
 }  // namespace limber

@@ -53,13 +53,14 @@ class JointCapsuleSide final : public BrushSide {
 }  // namespace
 
 BrushRule joint_capsule_brush() {
-  return {.id = "capsule",
-          .name = "Joint capsule",
-          .description = "Blends the active bone with its parent around their joint, over a length in mm.",
-          .one_bone = true,
-          .side = [](const BrushView& view, std::span<const int> bones) -> std::unique_ptr<BrushSide> {
-            return std::make_unique<JointCapsuleSide>(view, bones[0]);
-          }};
+  return {
+      .id = "capsule",
+      .name = "Joint capsule",
+      .description = "Blends the weights of the active bone and its parent around their joint, over a length in mm.",
+      .one_bone = true,
+      .side = [](const BrushView& view, std::span<const int> bones) -> std::unique_ptr<BrushSide> {
+        return std::make_unique<JointCapsuleSide>(view, bones[0]);
+      }};
 }
 
 }  // namespace limber

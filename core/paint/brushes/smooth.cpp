@@ -48,7 +48,7 @@ class SharpenSide final : public SmoothSide {
 BrushRule smooth_brush() {
   return {.id = "smooth",
           .name = "Smooth",
-          .description = "Moves weights towards those around them.",
+          .description = "Moves weights towards those of neighbouring voxels.",
           .looks_around = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
             return std::make_unique<SmoothSide>(view);
@@ -58,7 +58,7 @@ BrushRule smooth_brush() {
 BrushRule sharpen_brush() {
   return {.id = "sharpen",
           .name = "Sharpen",
-          .description = "Moves weights away from those around them.",
+          .description = "Moves weights away from those of neighbouring voxels.",
           .looks_around = true,
           .side = [](const BrushView& view, std::span<const int>) -> std::unique_ptr<BrushSide> {
             return std::make_unique<SharpenSide>(view);

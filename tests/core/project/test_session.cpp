@@ -241,7 +241,7 @@ TEST_CASE(
   CHECK(session->status().message.find("removed or replaced") != std::string::npos);
   CHECK(same_contents(recover(journal_path(path)).document, edited));  // recovered without the project's file
 
-  CHECK(session->save({.document = edited}) == "The project's file had been removed. It was written anew.");
+  CHECK(session->save({.document = edited}) == "The project's file had been removed. It was written again.");
   CHECK(session->status().message.empty());
   CHECK(same_contents(read_project(path).document, edited));
 

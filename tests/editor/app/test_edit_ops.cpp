@@ -135,7 +135,7 @@ std::vector<Proof> proofs_of_work() {
        "click \"Edit/Prepare volume/Re-grid...\"\n double-click Spacing/value\n type \"6\"\n key Return\n key Return\n "
        "wait-job",
        [](Stage& s, const Seen&) {
-         return s.is("edit", "Re-grid to 6 mm") && s.document().volume->grid.spacing == glm::dvec3(6);
+         return s.is("edit", "Resample to 6 mm") && s.document().volume->grid.spacing == glm::dvec3(6);
        }},
       {"prepare.orient",
        "click \"Edit/Prepare volume/Orient...\"\n click \"Columns (x)/list\"\n click \"Columns (x)/Right\"\n key "

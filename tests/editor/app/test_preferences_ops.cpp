@@ -214,7 +214,7 @@ TEST_CASE("preferences: keys are exported and imported as a file, a file that is
             file + "expect error none\nexpect \"text:1 clash\"");
   CHECK(test.editor->preferences.keys == mine);
   std::ofstream(folder / "keys.json") << "{}";
-  test.play("click dialog/Import...\n" + file + "expect error \"This is not a key map\"\nkey Return\nkey Escape");
+  test.play("click dialog/Import...\n" + file + "expect error \"This is not a keymap\"\nkey Return\nkey Escape");
   CHECK(test.editor->preferences.keys == mine);
 }
 

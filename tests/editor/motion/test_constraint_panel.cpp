@@ -81,7 +81,7 @@ std::vector<Proof> proofs_of_constraints() {
        ready_two("B")},
       {"constraint.down", choose("Move constraint down"), in_order("B", "Move constraint down"), Shows::InBody, "",
        ready_two("A")},
-      {"constraint.key_weight", choose("Key weight"),
+      {"constraint.key_weight", choose("Key constraint weight"),
        [](Stage& s, const Seen&) {
          return weights(s.editor()) == std::map<int, double>{{10, 1}};
        },

@@ -96,7 +96,7 @@ std::vector<Proof> proofs_of_label_brush() {
       {"labels.over_all", menu + "Paint over all\"", over(PaintOver::All)},
       {"labels.erase_to_air", menu + "Erase to air\"", erases(Erased::Air)},
       {"labels.erase_to_surroundings", menu + "Erase to surroundings\"", erases(Erased::Surroundings)},
-      {"labels.flat", menu + "One slice\"", [](Stage& s, const Seen&) { return brush_of(s.editor()).flat; }},
+      {"labels.flat", menu + "Only one slice\"", [](Stage& s, const Seen&) { return brush_of(s.editor()).flat; }},
       {"labels.in_range", menu + "Only in a value range\"",
        [](Stage& s, const Seen&) { return brush_of(s.editor()).in_range; }, Shows::Nothing, "",
        [](Stage& s) { show_halves(s.editor()); }},

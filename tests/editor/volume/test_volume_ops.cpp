@@ -23,7 +23,7 @@ TEST_CASE("prepare: each command is a job and one edit, undone bit for bit") {
     key Return
     key Return
     wait-job
-    expect edit "Re-grid to 6 mm"
+    expect edit "Resample to 6 mm"
     click "Edit/Prepare volume/Pad..."
     key Return
     wait-job
@@ -111,7 +111,7 @@ TEST_CASE("prepare: crop to the clip box keeps what is seen, a form says what is
     click "Edit/Prepare volume/Orient..."
     click "Rows (y)/list"
     click "Rows (y)/Right"
-    expect "text:two axes point along one line" shown
+    expect "text:two voxel axes point along the same body axis" shown
     key Return
     expect dialog yes
     key Escape
