@@ -25,7 +25,7 @@ constexpr std::int32_t kFurthestNode = 1 << 20;
 constexpr float kFurthestShift = 2000;  // mm; a file with a larger shift is refused
 
 [[noreturn]] void damaged(const std::string& where) {
-  throw Error("this is no baked joint, or it is damaged", where, "bake the joint again: limber bake-joint");
+  throw Error("this is not a baked joint, or it is damaged", where, "bake the joint again: limber bake-joint");
 }
 
 void put_vector(ByteWriter& writer, const glm::dvec3& v) {

@@ -42,7 +42,8 @@ Description::Description(const Path& file, const std::string& what) {
   file_ = std::make_shared<const File>(File{file, what, Json::parse(text, nullptr, false)});
   value_ = &file_->json;
   if (!is_object())
-    refuse("this is no description of a " + what, R"(write a JSON object: {"poses": [...], ...}, as the guide says)");
+    refuse("this is not a description of a " + what,
+           R"(write a JSON object: {"poses": [...], ...}, as the guide says)");
 }
 Description::Description(std::shared_ptr<const File> file, const void* value, std::string place)
     : file_(std::move(file)),

@@ -58,7 +58,8 @@ std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joint
   }
   if (stuck.empty() && claimed_twice == 0) return "";
   const std::string claimed = std::to_string(claimed_twice) + " voxels are covered by two bones: ";
-  if (joints && stuck.empty()) return claimed + "no joint overlaps by more than half a voxel, other bones may meet";
+  if (joints && stuck.empty())
+    return claimed + "no bones of a joint overlap by more than half a voxel; other bones may overlap";
   return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints do not glide") +
          "; limber fit-joint, a command of its own, moves the axis of a joint";
 }

@@ -267,7 +267,7 @@ BoneMap parse_bone_map(const std::string& bytes, const std::string& where) {
     return true;
   };
   const Json json = Json::parse(bytes, note_keys, false);
-  if (!json.is_object()) throw wrong("this is no bone map");
+  if (!json.is_object()) throw wrong("this is not a bone map");
   if (!twice.empty()) throw wrong("the bone map says \"" + twice.substr(0, 80) + "\" twice");
   for (const auto& [key, value] : json.items()) {
     if (!value.is_string()) throw wrong("the bone map gives \"" + key.substr(0, 80) + "\" no rig bone's name");

@@ -77,7 +77,9 @@ void add_export_gltf(CLI::App& app) {
       ->type_name("MM")
       ->check(CLI::PositiveNumber);
   writes(command->add_option("-o,--output", options->output, "glTF file to write, OUT.glb"))->required();
-  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
+  command
+      ->add_option("--progress", options->progress,
+                   "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { export_gltf(*options); });
 }

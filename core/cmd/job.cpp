@@ -137,7 +137,9 @@ void add_job(CLI::App& app) {
                    "job file (JSON): {\"command\": \"resample\", \"volume\": FILE, \"rig\": FILE, ...}, with the "
                    "command's options as keys")
       ->required();
-  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
+  command
+      ->add_option("--progress", options->progress,
+                   "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
   command
       ->add_option("--memory-limit", options->memory_limit,

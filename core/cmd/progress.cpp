@@ -82,7 +82,9 @@ void CommandProgress::on_update(std::string_view stage, double fraction) {
 
 void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--threads", options.threads, "threads to use (default: every core)")->check(CLI::Range(1, 1024));
-  command.add_option("--progress", options.progress, "json: print progress to stderr, one JSON line per step")
+  command
+      .add_option("--progress", options.progress,
+                  "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
 }
 

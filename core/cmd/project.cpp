@@ -321,7 +321,9 @@ void add_project(CLI::App& app) {
           "of export pose: frame of the shown clip to export, with keys and constraints (default: the project's pose)")
       ->check(CLI::Range(-kFarthestFrame, kFarthestFrame));
   command->add_flag("--replace", options->replace, "of create and recover: overwrite an existing file");
-  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
+  command
+      ->add_option("--progress", options->progress,
+                   "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { run(*options); });
 }

@@ -127,8 +127,10 @@ void add_skin_points(CLI::App& app) {
     bool json = false;
   };
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("skin-points", "prints the points of a skin-ref/1 test case, posed by blending");
-  command->add_option("CASE", options->file, "JSON of schema skin-ref/1")->required();
+  auto* command = app.add_subcommand(
+      "skin-points",
+      "poses the points of a test case of skinning (JSON, schema skin-ref/1) by blending, and prints them");
+  command->add_option("CASE", options->file, "test case: JSON file of schema skin-ref/1")->required();
   command->add_option("--method", options->method, method_summaries(Methods::Blends))
       ->required()
       ->check(CLI::IsMember(method_words(Methods::Blends)));

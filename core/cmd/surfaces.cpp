@@ -99,7 +99,9 @@ void add_surfaces(CLI::App& app) {
                              "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (one file per tissue: OUT-NAME.stl)"),
          files_of_surfaces)
       ->required();
-  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
+  command
+      ->add_option("--progress", options->progress,
+                   "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] {
     check_place(options->output);

@@ -118,7 +118,9 @@ void add_tissues(CLI::App& app) {
   command->add_flag("--json", options->json, "print as JSON");
   writes(command->add_option("-o,--output", options->output, "CSV file to write: the list as comma-separated values"))
       ->type_name("OUT.csv");
-  command->add_option("--progress", options->progress, "json: print progress to stderr, one JSON line per step")
+  command
+      ->add_option("--progress", options->progress,
+                   "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
   command->callback([options] { list_tissues(*options); });
 }

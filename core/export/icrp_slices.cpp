@@ -57,7 +57,7 @@ void write_icrp_slices(const LabelVolume& volume, const TissueTable& tissues, co
   std::vector<std::string> number_of_label(65536, "0");
   for (const Tissue& tissue : tissues.tissues) {
     if (tissue.file_value < 1 || tissue.file_value > 65535)
-      throw Error("the label " + text_of(tissue.file_value) + " is no organ number", path.string(),
+      throw Error("the label " + text_of(tissue.file_value) + " is not an organ number", path.string(),
                   "number labels from 1 to 65535 with `limber prepare --merge`");
     number_of_label[tissue.label] = text_of(tissue.file_value);
   }

@@ -73,7 +73,7 @@ class PlyReader {
       const std::string_view line = take_line(header);
       std::string_view words = line;
       const std::string_view word = next_word(words);
-      if (line_number == 1 && word != "ply") soup_.refuse("this is no PLY file", "export it again");
+      if (line_number == 1 && word != "ply") soup_.refuse("this is not a PLY file", "export it again");
       if (word == "format") format = format_of(next_word(words));
       else if (word == "element") add_element(words);
       else if (word == "property") add_property(words);
@@ -91,7 +91,7 @@ class PlyReader {
     if (word == "ascii") return PlyFormat::Ascii;
     if (word == "binary_little_endian") return PlyFormat::LittleEndian;
     if (word == "binary_big_endian") return PlyFormat::BigEndian;
-    soup_.refuse(in_quotes(word) + " is no format of PLY", "export it as ascii, or as binary_little_endian");
+    soup_.refuse(in_quotes(word) + " is not a format of PLY", "export it as ascii, or as binary_little_endian");
   }
 
   void add_element(std::string_view words) {
@@ -112,7 +112,7 @@ class PlyReader {
     std::string_view type = next_word(words);
     if (type == "list") {
       property.count = type_of(next_word(words));
-      if (*property.count >= PlyType::Float) soup_.refuse("a list's length is no whole number", "correct the file");
+      if (*property.count >= PlyType::Float) soup_.refuse("a list's length is not a whole number", "correct the file");
       type = next_word(words);
     }
     property.type = type_of(type);
@@ -122,7 +122,7 @@ class PlyReader {
 
   PlyType type_of(std::string_view word) const {
     const auto type = ply_type(word);
-    if (!type) soup_.refuse(in_quotes(word) + " is no type of PLY", "correct the file, or export it again");
+    if (!type) soup_.refuse(in_quotes(word) + " is not a type of PLY", "correct the file, or export it again");
     return *type;
   }
 
@@ -197,14 +197,14 @@ class PlyReader {
   int corner(PlyType type) {
     const double index = number(type);
     if (!(index >= 0 && index < static_cast<double>(vertices_) && index == std::floor(index)))
-      soup_.refuse("a face has a corner that is no vertex", "correct the file, or export it again");
+      soup_.refuse("a face has a corner that is not a vertex", "correct the file, or export it again");
     return static_cast<int>(index);
   }
 
   std::uint64_t length(const PlyProperty& property) {
     const double count = number(*property.count);
     if (!(count >= 0 && count <= 4294967295.0 && count == std::floor(count)))
-      soup_.refuse("a list's length is no whole number", "correct the file, or export it again");
+      soup_.refuse("a list's length is not a whole number", "correct the file, or export it again");
     return static_cast<std::uint64_t>(count);
   }
 

@@ -135,7 +135,7 @@ BvhChannel channel_of(Reader& in) {
   const std::string_view word = in.word();
   for (size_t i = 0; i < kNames.size(); ++i)
     if (same_word(word, kNames[i])) return static_cast<BvhChannel>(i);
-  in.refuse("\"" + Reader::printable(word) + "\" is no channel",
+  in.refuse("\"" + Reader::printable(word) + "\" is not a channel",
             "use Xposition ... Zrotation, as many as the count says");
 }
 
@@ -258,7 +258,7 @@ double headed_number(Reader& in, std::string_view first, std::string_view second
 void read_motion(Reader& in, Motion& motion) {
   const double promised = headed_number(in, "frames", "", "Frames:");
   if (promised < 0 || promised != std::floor(promised))
-    in.refuse("the number of frames is no whole number", "correct the file");
+    in.refuse("the number of frames is not a whole number", "correct the file");
   motion.frame_time = headed_number(in, "frame", "time", "Frame Time:");
   if (motion.frame_time < 0) in.refuse("the frame time is negative", "correct the file");
   if (motion.frame_time == 0) {

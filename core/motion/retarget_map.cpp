@@ -22,7 +22,7 @@ glm::dquat rest_offset_of(const Json& value, const std::string& where) {
     q = glm::dquat(value[0].get<double>(), value[1].get<double>(), value[2].get<double>(), value[3].get<double>());
   const double length = glm::length(q);
   if (!(length > 1e-9) || !std::isfinite(length))
-    throw Error("\"rest_offset_wxyz\" is no rotation", where, "give four numbers, not all zero");
+    throw Error("\"rest_offset_wxyz\" is not a rotation", where, "give four numbers, not all zero");
   return std::abs(length - 1) < 1e-15 ? q : q / length;
 }
 
@@ -32,7 +32,7 @@ constexpr const char* kRests = "@rests";
 RestStances stances_of(const Json& value, const std::string& where) {
   RestStances stances;
   if (!value.is_object())
-    throw Error("\"@rests\" is no object", where, R"(write {"motion": "T", "rig": "anatomical"})");
+    throw Error("\"@rests\" is not an object", where, R"(write {"motion": "T", "rig": "anatomical"})");
   for (const auto& [whose, word] : value.items()) {
     if ((whose != "motion" && whose != "rig") || !word.is_string())
       throw Error("\"" + whose.substr(0, 60) + "\" says no rest pose", where + ", @rests",

@@ -266,7 +266,7 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
   if (image.least >= thresholds.body) {
     char text[80];
     std::snprintf(text, sizeof text, "its smallest value is %g", image.least);
-    throw Error("this is no CT: it has no air", text, "give a CT in Hounsfield units, where air is -1000");
+    throw Error("this is not a CT: it has no air", text, "give a CT in Hounsfield units, where air is -1000");
   }
   progress.update("body", 0);
   const Mask body = body_of(image, thresholds.body, progress);

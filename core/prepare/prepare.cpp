@@ -107,7 +107,8 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
     covered += glm::abs(wanted[i]);
   }
   if (covered != glm::dvec3(1))
-    throw Error("this is no orientation", code, "name three axes by L or R, P or A, S or I, for example LPS or RAS");
+    throw Error("this is not an orientation", code,
+                "name three axes by L or R, P or A, S or I, for example LPS or RAS");
 
   const Grid& grid = volume.grid;
   // For each new axis, the index of the old axis that becomes it.

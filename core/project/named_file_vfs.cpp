@@ -88,7 +88,7 @@ bool refuse_journal(State& state, sqlite3_file* file) {
     state.refuse("the journal beside the project names another file, which no journal of Limber's does", state.journal,
                  move_away);
   else if (is_no_journal(file))
-    state.refuse("the file beside the project is no journal of one", state.journal, move_away);
+    state.refuse("the file beside the project is not a journal of it", state.journal, move_away);
   else return false;
   return true;
 }
@@ -104,7 +104,7 @@ int open_file(sqlite3_vfs* vfs, sqlite3_filename path, sqlite3_file* file, int f
     return SQLITE_CANTOPEN;
   }
   if (path != state.database && !is_regular_or_missing(path)) {
-    state.refuse("the file beside the project is no regular file", path,
+    state.refuse("the file beside the project is not a regular file", path,
                  "remove it if you do not know where it comes from, then open the project again");
     return SQLITE_CANTOPEN;
   }

@@ -92,7 +92,7 @@ Weights with_influences(const Weights& from, const py::array_t<int, py::array::c
         if (!(weight >= 0 && std::isfinite(weight))) throw py::value_error("weights: give numbers from 0 up");
         if (weight == 0) continue;
         if (bones.at(v, i) < 0 || bones.at(v, i) >= bone_count)
-          throw py::value_error("bones: " + std::to_string(bones.at(v, i)) + " is no bone of the weights");
+          throw py::value_error("bones: " + std::to_string(bones.at(v, i)) + " is not a bone of the weights");
         parts.emplace_back(bones.at(v, i), weight);
       }
       if (parts.empty()) throw py::value_error("weights: voxel " + std::to_string(v) + " follows no bone");

@@ -171,7 +171,7 @@ void read_field(VtkText& in, VtkArmature& read) {
 
 Armature parse_bender_vtk(const std::string& text, const std::string& where) {
   if (!text.starts_with("# vtk DataFile"))
-    throw Error("this is no legacy VTK file", where, "save the armature as legacy ASCII .vtk");
+    throw Error("this is not a legacy VTK file", where, "save the armature as legacy ASCII .vtk");
   VtkText in(text, where);
   in.line();
   in.line();
@@ -180,7 +180,7 @@ Armature parse_bender_vtk(const std::string& text, const std::string& where) {
   VtkArmature read;
   for (std::string_view word = in.word(); !word.empty(); word = in.word()) {
     if (word == "DATASET") {
-      if (in.word() != "POLYDATA") in.refuse("the data set is no PolyData", "save the armature from Bender");
+      if (in.word() != "POLYDATA") in.refuse("the data set is not PolyData", "save the armature from Bender");
     } else if (word == "POINTS") {
       read_points(in, read);
     } else if (word == "LINES") {
@@ -290,7 +290,7 @@ glm::dquat orientation_of(ArmReader& reader, const char* text) {
   const glm::dquat turn(q[3], q[0], q[1], q[2]);
   const double length = glm::length(turn);
   if (length > 1e-6) return turn / length;
-  reader.refuse("an orientation is no rotation", "give x, y, z, w, not all zero");
+  reader.refuse("an orientation is not a rotation", "give x, y, z, w, not all zero");
   return {1, 0, 0, 0};
 }
 

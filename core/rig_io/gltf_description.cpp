@@ -204,7 +204,7 @@ Chunks chunks_of_glb(const std::string& bytes, const std::string& where) {
   if (bytes.starts_with("version https://git-lfs"))
     throw Error("this is a Git LFS pointer, not the model", where, "fetch the file with git lfs pull");
   if (bytes.size() < 20 || !bytes.starts_with("glTF"))
-    throw Error("this is no binary glTF", where, "export the file again");
+    throw Error("this is not a binary glTF file", where, "export the file again");
   if (u32_at(bytes, 4) != 2)
     throw Error("this is glTF " + std::to_string(u32_at(bytes, 4)), where, "export it as glTF 2.0");
   if (u32_at(bytes, 8) > bytes.size())
@@ -394,7 +394,7 @@ GltfDescription parse_gltf_description(const std::string& bytes, bool is_binary,
   try {
     const Chunks chunks = is_binary ? chunks_of_glb(bytes, where) : Chunks{bytes};
     const Json gltf = Json::parse(checked_json(std::string(chunks.json), where));
-    if (!gltf.is_object()) throw Error("this is no glTF", where, "export the file again");
+    if (!gltf.is_object()) throw Error("this is not a glTF file", where, "export the file again");
     check_types(gltf, "gltf", "", where);
     const std::string version = gltf["asset"]["version"];
     if (!version.starts_with("2."))

@@ -58,7 +58,7 @@ ObjSummary parse_obj_summary(const std::string& text, const std::string& where) 
         std::int64_t vertex = 0;
         // The vertices of a file are numbered from 1. Negative numbers count backwards; -1 is the last vertex so far.
         if (!read_number(corner.substr(0, corner.find('/')), vertex) || vertex == 0 || vertex < -summary.vertices)
-          refuse("a face has a corner that is no vertex", "correct the file");
+          refuse("a face has a corner that is not a vertex", "correct the file");
         largest_corner = std::max(largest_corner, vertex);
       }
       if (corners < 3) refuse("a face has fewer than three corners", "correct the file");

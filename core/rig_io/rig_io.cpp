@@ -205,7 +205,7 @@ Armature parse_armature_json(const std::string& text, const std::string& where) 
         throw Error("\"parent\" is not a name", here, "name a bone, or null for a root");
       const auto parent = place.find(value["parent"]);
       if (parent == place.end())
-        throw Error("the parent is no bone of the rig", here, "name a bone of this rig, or null for a root");
+        throw Error("the parent is not a bone of the rig", here, "name a bone of this rig, or null for a root");
       bones[i].parent = parent->second;
     }
     Armature armature = parents_first(std::move(bones), where);
@@ -229,10 +229,10 @@ ArmatureFile read_armature_file(const Path& path) {
   if (extension == ".gltf" || extension == ".glb") {
     GltfSummary gltf = parse_gltf(text, extension == ".glb", path.string());
     if (gltf.armature.bones.empty())
-      throw Error("the model has no skin, so it is no rig", path.string(), "use a rigged model");
+      throw Error("the model has no skin, so it is not a rig", path.string(), "use a rigged model");
     return {std::move(gltf.armature), "glTF", gltf.warnings};
   }
-  throw Error("this is no kind of rig", path.string(), "use .json, .vtk, .arm, .bvh, .gltf or .glb");
+  throw Error("this is not a rig file that can be read", path.string(), "use .json, .vtk, .arm, .bvh, .gltf or .glb");
 }
 
 void check_armature_writable(const Path& path) {

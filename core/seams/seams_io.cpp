@@ -22,7 +22,7 @@ std::vector<int> faces_by_label(const TissueTable& tissues, const Path& path) {
   for (const Tissue& tissue : tissues.tissues) {
     const double value = tissue.file_value;
     if (!(value >= 1 && value <= 7) || value != std::floor(value))
-      throw Error("these are no seams: value " + std::to_string(value), path.string(),
+      throw Error("this is not a file of seams: it has the value " + std::to_string(value), path.string(),
                   "write them with 'limber prepare --seams'");
     faces[tissue.label] = static_cast<int>(value);
   }

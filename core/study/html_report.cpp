@@ -239,7 +239,7 @@ class Page {
           "Time of a bent pose: median and range over the poses" +
               std::string(study_.repeats > 1 ? " and the " + std::to_string(study_.repeats) + " repeats of each" : "") +
               ", and the time of each pose divided by linear blend’s for the same pose." +
-              (study_.repeats > 1 ? " All repeats gave the same voxels and digits." : ""));
+              (study_.repeats > 1 ? " All repeats gave the same voxels and numbers." : ""));
 
     if (study_.spacings.size() > 1) {
       LineChart lines{.unit = "CPU s", .x_unit = "spacing", .logarithmic = true};

@@ -242,8 +242,8 @@ class MethodsWriter {
     if (of_session_) return paragraph(text);
     text += study_.repeats > 1
                 ? " Each cell was computed " + std::to_string(study_.repeats) +
-                      " times, one after another, in processes of their own; all repeats gave the same voxels "
-                      "and digits. Times are medians, with the range from least to most."
+                      " times, one after another, in processes of their own; all repeats gave the same voxels and "
+                      "numbers. Times are medians, with the range from the smallest to the largest."
                 : " Each cell was computed once, in a process of its own.";
     return paragraph(text + " Times are processor seconds of the whole process, over all its threads.");
   }

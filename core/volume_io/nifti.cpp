@@ -189,7 +189,7 @@ class NiftiReader {
       const bool flipped = fields_.real(at_.pixdim, 0) < 0;
       for (int i = 0; i < 3; ++i) columns[i] *= size[i] * (i == 2 && flipped ? -1 : 1);
       for (int i = 0; i < 3; ++i) origin[i] = fields_.real(at_.q_offset, i);
-      if (!usable(columns)) throw Error("the qform is no rotation", where_, "correct the header");
+      if (!usable(columns)) throw Error("the qform is not a rotation", where_, "correct the header");
     } else if (has_sform) {
       throw Error("the sform is singular and there is no qform", where_, "correct the header");
     }
@@ -297,7 +297,7 @@ NiftiHeader parse_nifti_header(std::string_view bytes, std::optional<std::int64_
                                const std::string& where) {
   const auto version = version_of(bytes);
   if (!version)
-    throw Error("this is no NIfTI file", where,
+    throw Error("this is not a NIfTI file", where,
                 "its header is cut off, damaged, or of the older Analyze format; save it as .nii");
   return NiftiReader(bytes, *version, file_bytes, where).read();
 }

@@ -461,7 +461,7 @@ bool looks_like_nrrd_header(std::string_view bytes) {
 
 VolumeHeader parse_nrrd_header(std::string_view bytes, const std::string& where) {
   if (!looks_like_nrrd_header(bytes))
-    throw Error("this is no NRRD file", where, "it should begin with NRRD0001 to NRRD0005");
+    throw Error("this is not an NRRD file", where, "it should begin with NRRD0001 to NRRD0005");
   return NrrdReader(bytes, where).read();
 }
 

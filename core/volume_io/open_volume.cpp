@@ -47,7 +47,7 @@ ReadHeader read_header(VolumeFiles& files, Holding holding) {
   const std::string name = lower_case(path.filename().string());
   for (const VolumeFormat& format : volume_formats())
     if (format.fits && format.fits(name, bytes)) return {&format, format.read_header(files, file, bytes)};
-  throw Error("this is no volume that can be read", where, "use " + readable_formats());
+  throw Error("this is not a volume that can be read", where, "use " + readable_formats());
 }
 
 // Completes the tissues that a parser found in a header: sets each tissue's kind from its name, and the default

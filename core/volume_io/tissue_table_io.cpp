@@ -36,7 +36,8 @@ Tissue tissue_for(double file_value, std::string name) {
 double file_value_of(std::string_view text, const std::string& where) {
   const auto value = number_of<double>(text);
   if (!value || *value != std::floor(*value) || std::abs(*value) > 9007199254740992.0)
-    throw Error("the label " + in_quotes(text) + " is no whole number", where, "labels are the numbers in the volume");
+    throw Error("the label " + in_quotes(text) + " is not a whole number", where,
+                "labels are the numbers in the volume");
   return *value;
 }
 
@@ -45,7 +46,8 @@ double file_value_of(std::string_view text, const std::string& where) {
 double number_field(const Json& entry, const char* name, double otherwise, double lowest, double highest,
                     const std::string& where) {
   if (!entry.contains(name) || entry[name].is_null()) return otherwise;
-  if (!entry[name].is_number()) throw Error(std::string("\"") + name + "\" is no number", where, "correct the table");
+  if (!entry[name].is_number())
+    throw Error(std::string("\"") + name + "\" is not a number", where, "correct the table");
   const double value = entry[name].get<double>();
   if (!(value >= lowest && value <= highest))
     throw Error(std::string("\"") + name + "\" is " + text_of(value), where,
@@ -91,7 +93,8 @@ Tissue tissue_from_json(double value, const Json& entry, const std::string& wher
     throw Error("the entry is neither a name nor an object", where, "write {\"name\": ..., \"kind\": ...}");
   const auto text = [&](const char* name) -> std::string {
     if (!entry.contains(name) || entry[name].is_null()) return {};
-    if (!entry[name].is_string()) throw Error(std::string("\"") + name + "\" is no text", where, "correct the table");
+    if (!entry[name].is_string())
+      throw Error(std::string("\"") + name + "\" is not a text", where, "correct the table");
     return entry[name].get<std::string>();
   };
   Tissue tissue = tissue_for(value, text("name"));
@@ -122,7 +125,7 @@ std::vector<Tissue> tissues_from_json(const std::string& bytes, const std::strin
   } catch (const Json::exception& error) {
     throw Error("the JSON is damaged", where, std::string(error.what()).substr(0, 120));
   }
-  if (!json.is_object()) throw Error("the table is no JSON object", where, "write {\"17\": {\"name\": \"muscle\"}}");
+  if (!json.is_object()) throw Error("the table is not a JSON object", where, "write {\"17\": {\"name\": \"muscle\"}}");
   std::vector<Tissue> tissues;
   for (const auto& [key, entry] : json.items()) {
     const double value = file_value_of(key, where);
@@ -159,12 +162,12 @@ std::vector<Tissue> tissues_from_lines(std::string_view text, const std::string&
     if (quote != std::string_view::npos) {
       const std::size_t end = content.rfind('"');
       if (end == quote || words.size() < 8)
-        throw Error("the line is no label description", here, "write: value r g b a visible meshed \"name\"");
+        throw Error("the line is not a label description", here, "write: value r g b a visible meshed \"name\"");
       tissue = tissue_for(file_value_of(words[0], here), std::string(content.substr(quote + 1, end - quote - 1)));
       tissue.colour = colour_from_bytes(words, 1, here);
     } else {
       if (words.size() != 6 && words.size() != 5)
-        throw Error("the line is no table entry: " + in_quotes(content), here, "write: value name r g b a");
+        throw Error("the line is not a table entry: " + in_quotes(content), here, "write: value name r g b a");
       tissue = tissue_for(file_value_of(words[0], here), std::string(words[1]));
       tissue.colour = colour_from_bytes(words, 2, here);
     }

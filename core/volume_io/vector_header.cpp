@@ -30,7 +30,7 @@ VolumeHeader header_of_one_number(std::string bytes, const std::string& where) {
 }  // namespace
 
 VolumeHeader parse_vector_header(std::string bytes, const std::string& where) {
-  if (!looks_like_nrrd_header(bytes)) throw Error("this is no displacement field", where, kWhatToDo);
+  if (!looks_like_nrrd_header(bytes)) throw Error("this is not a displacement field", where, kWhatToDo);
   bytes.resize(std::min(bytes.size(), kLargestHeader));
   VolumeHeader header = header_of_one_number(std::move(bytes), where);
   if (header.voxel_type != VoxelType::Float32)

@@ -35,7 +35,7 @@ VectorVolume read_vector_volume(const Path& path) {
     opened.voxels->read(chunk.data(), some * sizeof(glm::vec3));
     for (std::size_t i = 0; i < some; ++i)
       if (!std::isfinite(chunk[i].x) || !std::isfinite(chunk[i].y) || !std::isfinite(chunk[i].z))
-        throw Error("the field has a displacement that is no number", path.string(), kWhatToDo);
+        throw Error("the field has a displacement that is not a number", path.string(), kWhatToDo);
     if (to_rest)
       for (std::size_t i = 0; i < some; ++i) chunk[i] = glm::vec3(0) - chunk[i];
     // A chunk of zeros (air) is not copied into the field: memory that is never written stays zero and takes no space.

@@ -68,7 +68,7 @@ Error no_label(LabelDecoder::Problem problem, double value, const Path& path) {
                  "this looks like a grey image; give a label volume");
   if (problem == LabelDecoder::Problem::TooLarge)
     return Error("the label " + text_of(value) + " is beyond 2^53", path.string(), "renumber the labels");
-  return Error("the voxel value " + text_of(value) + " is no whole number", path.string(),
+  return Error("the voxel value " + text_of(value) + " is not a whole number", path.string(),
                "this looks like a grey image or a weight; give a label volume");
 }
 

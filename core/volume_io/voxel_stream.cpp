@@ -197,7 +197,7 @@ class AsciiDecoder final : public Decoder {
         if (length > 0) break;
         continue;
       }
-      if (length == text.size()) damaged("the text data hold a word that is no number");
+      if (length == text.size()) damaged("the text data hold a word that is not a number");
       text[length++] = c;
     }
     if (length == 0) return false;

@@ -395,7 +395,7 @@ class VtiVoxels final : public VoxelSource {
         while (c != 0 && is_blank(c)) c = bytes_.letter();
         for (; c != 0 && !is_blank(c) && word.size() < 64; c = bytes_.letter()) word += c;
         const auto value = number_of<T>(word);
-        if (!value) bytes_.fail(word.empty() ? "the data are cut off" : "a voxel is no number of its type");
+        if (!value) bytes_.fail(word.empty() ? "the data are cut off" : "a voxel is not a number of its type");
         std::memcpy(to, &*value, sizeof(T));
       }
     });

@@ -118,7 +118,7 @@ void go_to_step(Editor& editor, int step) {
   if (step >= std::ssize(tour_steps())) {
     editor.tour.shown = false;
     editor.recent_files.tour_step = 0;
-    editor.messages.ok("That was the tour", "Help > Tour shows it again");
+    editor.messages.ok("The tour is finished", "Help > Tour starts it again");
     return;
   }
   editor.tour.step = step;

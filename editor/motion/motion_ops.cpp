@@ -180,9 +180,9 @@ void ask_onion_frames(Editor& editor) {
       {"Onion skin",
        "Shows the outline of the body at frames before and after the shown frame, as ghosts.",
        "Show",
-       {number_of("Ghosts per side", "Number of ghosts on each side of the shown frame: before it and after it.",
+       {number_of("Ghosts per side", "Number of ghosts before the shown frame, and the same number after it.",
                   onion.count, 1, 10, "%.0f"),
-        number_of("Frames apart", "Number of frames from one ghost to the next.", onion.step, 1, 10'000, "%.0f")},
+        number_of("Ghost spacing", "Number of frames from one ghost to the next.", onion.step, 1, 10'000, "%.0f")},
        {},
        [](Editor& e, const std::vector<FormField>& fields) {
          auto& changed = e.timeline->onion;

@@ -254,11 +254,11 @@ TEST_CASE("surface file: damaged PLY is refused with its place") {
   const std::string& ascii = files.at("ascii.ply");
   const std::string& little = files.at("little.ply");
   check_refused("", "a.ply", "no end");
-  check_refused("obj\n", "a.ply", "no PLY");
+  check_refused("obj\n", "a.ply", "not a PLY");
   check_refused("ply\n" + std::string(2 << 20, '\n'), "a.ply", "no end");
-  check_refused(replaced(ascii, "ascii", "utf8"), "a.ply", "no format of PLY");
+  check_refused(replaced(ascii, "ascii", "utf8"), "a.ply", "not a format of PLY");
   check_refused(replaced(ascii, "format ascii 1.0\n", ""), "a.ply", "names no format");
-  check_refused(replaced(ascii, "double x", "real x"), "a.ply", "\"real\" is no type");
+  check_refused(replaced(ascii, "double x", "real x"), "a.ply", "\"real\" is not a type");
   check_refused(replaced(ascii, "double x", "double u"), "a.ply", "x, y and z");
   check_refused(replaced(ascii, "list uchar", "list float"), "a.ply", "no whole number");
   check_refused(replaced(ascii, "vertex_indices", "corners"), "a.ply", "no list vertex_indices");

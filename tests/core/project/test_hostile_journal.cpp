@@ -129,11 +129,11 @@ TEST_CASE("hostile journal: a link or a pipe beside the project is refused, not 
   make_project(project);
   put_bytes(victim, "hours of work\n");
   fs::create_symlink(victim, journal);
-  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is no regular file"));
+  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is not a regular file"));
   CHECK(fs::is_symlink(journal));
   fs::remove(journal);
   REQUIRE(::mkfifo(journal.c_str(), 0600) == 0);
-  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is no regular file"));
+  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is not a regular file"));
   CHECK(read_file(victim) == "hours of work\n");
 }
 
@@ -171,8 +171,8 @@ TEST_CASE("hostile journal: a new project takes a name beside which a cut-off sa
     CHECK_FALSE(fs::exists(journal));
   }
   put_bytes(journal, "notes on the journal");
-  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is no journal of one"));
-  CHECK(message_of([&] { make_project(project); }).starts_with("the file beside the project is no journal of one"));
+  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is not a journal of it"));
+  CHECK(message_of([&] { make_project(project); }).starts_with("the file beside the project is not a journal of it"));
   fs::remove(project);
   CHECK(message_of([&] { make_project(project); }).starts_with("another file has the name of the project's journal"));
   CHECK(read_file(journal) == "notes on the journal");

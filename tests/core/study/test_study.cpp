@@ -147,9 +147,9 @@ TEST_CASE("study: a description that is wrong is refused in one line that names 
   std::ofstream(folder / "r.json") << "x";
   const std::string body = R"("volume": "v.nrrd", "rig": "r.json")", pose = R"("poses": [{"name": "a"}])";
   for (const auto& [text, named] : std::vector<std::pair<std::string, std::string>>{
-           {"", "no description"},
-           {"[]", "no description"},
-           {"{", "no description"},
+           {"", "not a description"},
+           {"[]", "not a description"},
+           {"{", "not a description"},
            {"{}", "one body"},
            {R"({"volume": "v.nrrd", )" + pose + "}", "rig"},
            {R"({"volume": "none.nrrd", "rig": "r.json", )" + pose + "}", "none.nrrd"},

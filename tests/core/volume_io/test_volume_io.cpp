@@ -350,7 +350,7 @@ TEST_CASE("volume io: bad files are refused with one line, whatever their format
   refuse(".nrrd", nrrd("type: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: ascii\n", "0 1 2 3 4 5 6 300"),
          "does not fit");
   refuse(".nii", nifti().substr(0, 352), "promises 8 bytes");
-  refuse(".nii", nifti().substr(0, 300), "no NIfTI");
+  refuse(".nii", nifti().substr(0, 300), "not a NIfTI");
   // Tests impossible sizes, spacings and directions.
   refuse(".mha", meta("DimSize = 0 2 2\nElementType = MET_UCHAR\n", kEight), "at least one voxel");
   refuse(".mha", meta("DimSize = 2000000000 2000000000 2000000000\nElementType = MET_UCHAR\n", kEight), "overflows");

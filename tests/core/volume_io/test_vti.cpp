@@ -181,5 +181,5 @@ TEST_CASE("vti: damage is told in a line") {
         std::string::npos);
   CHECK(problem_of(
             file_with("word", image(R"(<DataArray type="UInt8" Name="a" format="ascii">0 1 2 3 0 300</DataArray>)")))
-            .find("no number of its type") != std::string::npos);
+            .find("not a number of its type") != std::string::npos);
 }

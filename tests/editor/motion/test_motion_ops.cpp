@@ -165,7 +165,8 @@ std::vector<Proof> proofs_of_motion() {
       {"motion.onion_skin", "key Shift+O", [](Stage& s, const Seen&) { return s.editor().timeline->onion.on; },
        Shows::Nothing, "", stand_at(20)},
       {"motion.onion_frames",
-       "click \"Motion/Onion skin and paths/Onion frames...\"\n double-click \"Frames apart/value\"\n type \"4\"\n key "
+       "click \"Motion/Onion skin and paths/Onion frames...\"\n double-click \"Ghost spacing/value\"\n type \"4\"\n "
+       "key "
        "Return\n "
        "key Return",
        [](Stage& s, const Seen&) { return s.editor().timeline->onion.step == 4; }, Shows::Nothing, "", stand_at(20)},

@@ -130,7 +130,7 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     click "Skip step"
     expect "text:See the result"
     click top/Resample
-    expect "toast" "That was the tour"
+    expect "toast" "The tour is finished"
   )");
   CHECK(sitting.editor().recent_files.tour_step == 0);
 }
