@@ -130,7 +130,7 @@ FemObject object_of(const std::string& request) {
 }  // namespace
 
 void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& options) {
-  command.add_flag("--contact", options->contact, "fem: skin touches skin instead of passing through");
+  command.add_flag("--contact", options->contact, "fem: let skin press against skin instead of passing through it");
   command.add_flag("--slide", options->slide,
                    "fem: near bent joints skin and fat slide over the bone instead of sticking to it");
   command

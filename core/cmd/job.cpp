@@ -123,7 +123,7 @@ void run(const Options& options) {
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {
-    throw Error("the job does not describe what its command does", path.string(), error.what());
+    throw Error("the options of the job do not fit its command", path.string(), error.what());
   }
 }
 

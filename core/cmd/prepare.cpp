@@ -263,7 +263,8 @@ void add_prepare(CLI::App& app) {
   seams->needs(rig);
   rig->needs(seams);
   writes(command->add_option("--statistics", options->statistics,
-                             "CSV file: per label voxels, volume, mass, centre, box, pieces, surface"));
+                             "CSV file to write: voxels, volume, mass, centre, bounding box, number of pieces and "
+                             "surface area of each label"));
   add_run_options(*command, options->run);
   command->callback([options] { prepare(*options); });
 }

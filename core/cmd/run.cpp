@@ -19,9 +19,9 @@ namespace limber::cmd {
 
 namespace {
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done; 1 the input or the request is wrong, which one line explains; 2 usage; 3 cancelled; 4 the "
-    "finite element solve did not reach the pose, the outputs show the last pose that it reached; 5 with --strict, a "
-    "quality gate failed, the outputs are written.";
+    "Exit codes: 0 success; 1 the input or the request is wrong, as one line of text explains; 2 wrong command line; 3 "
+    "cancelled; 4 the finite element solve did not reach the pose, and the outputs show the last pose that it reached; "
+    "5 a quality gate failed with --strict, and the outputs are written.";
 }  // namespace
 
 void add_commands(CLI::App& app, const std::string& commit) {

@@ -33,8 +33,7 @@ constexpr BodyPose kPoses[] = {
     {"drive", "Sitting in a car, both hands at the wheel.",
      "hips flexion=85; hips abduction=8; knees flexion=60; ankles plantarflexion=5;"
      "shoulders flexion=55; shoulders abduction=5; elbows flexion=45; forearms pronation=100; hands curl=50"},
-    {"supine",
-     "As on a scanner's table: straight, arms a little apart, palms forward. The body itself is not laid down.",
+    {"supine", "As on a scanner's table: straight, arms a little apart, palms forward. The body stays upright.",
      "shoulders abduction=15"},
     {"reach", "Standing, the right arm stretched forward and up.",
      "right shoulder flexion=135; right elbow flexion=5; right forearm "

@@ -89,7 +89,7 @@ Weights with_influences(const Weights& from, const py::array_t<int, py::array::c
       std::vector<std::pair<int, double>> parts;
       for (int i = 0; i < 4; ++i) {
         const double weight = weights.at(v, i);
-        if (!(weight >= 0 && std::isfinite(weight))) throw py::value_error("weights: give numbers from 0 up");
+        if (!(weight >= 0 && std::isfinite(weight))) throw py::value_error("weights: give numbers of 0 or more");
         if (weight == 0) continue;
         if (bones.at(v, i) < 0 || bones.at(v, i) >= bone_count)
           throw py::value_error("bones: " + std::to_string(bones.at(v, i)) + " is not a bone of the weights");

@@ -11,7 +11,7 @@ namespace limber::python {
 namespace {
 void set_thread_count(int threads) {
   static std::unique_ptr<ThreadCount> limit;
-  if (threads < 0) throw py::value_error("threads: give a number from 1 up, or 0 for all cores");
+  if (threads < 0) throw py::value_error("threads: give 1 or more, or 0 for all cores");
   limit.reset();
   if (threads > 0) limit = std::make_unique<ThreadCount>(threads);
 }

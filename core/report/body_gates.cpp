@@ -221,7 +221,7 @@ const GateRule<Json> kBodyGates[] = {
     {"follows", "Bones follow their rig bone",
      "Largest share of a bone's voxels that follow a wrong rig bone, {}. Bones are found by the names of labels.",
      at_most_percent<&QualityLimits::wrong_bone_percent>, true, judge_follows},
-    {"directions", "Limbs point as asked",
+    {"directions", "Limbs point as posed",
      "The angle between the direction of a limb that the pose sets and the direction of its bones, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g degrees", l.direction_degrees); }, true,
      judge_directions},

@@ -110,7 +110,7 @@ void print_report(std::ostream& out, const Report& report) {
   if (report.glide) print_glide(out, *report.glide);
   if (report.deform) {
     const DeformReport& deform = *report.deform;
-    out << line("dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld voxels",
+    out << line("voxels: dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld",
                 static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
                 static_cast<long long>(deform.mended_voxels));

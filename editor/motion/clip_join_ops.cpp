@@ -117,7 +117,7 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
   result.is_doubtful = slides > kSlides || made.foot_gap > 0;
   if (made.foot_gap > 0)
     result.detail += "; a foot moves " + mm_text(made.foot_gap) +
-                     " without being lifted: join at a frame where both motions stand on the same foot";
+                     " without being lifted: join where both motions stand on the same foot";
   return result;
 }
 
@@ -182,7 +182,7 @@ void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {
                   std::clamp(std::round(0.3 * rate), 1.0, most), 1, most, "%.0f", "frames"),
         choice_of("Feet", "Keep standing feet in place during the cross-fade.", {"As they are", "Kept in place"},
                   has_legs ? 1 : 0),
-        choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, next->up == UpAxis::Z ? 1 : 0),
+        choice_of("Up axis", "The axis that points up in the file.", {"Y", "Z"}, next->up == UpAxis::Z ? 1 : 0),
         choice_of("Result", "Store the joined motion in a new clip, or replace the shown clip.",
                   {"New clip", "Same clip"})},
        [next](const Editor& e, const std::vector<FormField>& fields) { return join_outcome(e, *next, fields); },

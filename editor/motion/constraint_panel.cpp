@@ -268,7 +268,7 @@ void draw_plant(Editor& editor, Column& column, const Constraint& constraint) {
   if (!ends_in_hand_or_foot(editor, constraint)) return;
   const std::string name = constraint.name;
   int point = static_cast<int>(constraint.point);
-  if (choose(editor, column, "Point", {"Joint", "Tip"}, point)) {
+  if (choose(editor, column, "Planted point", {"Joint", "Tip"}, point)) {
     attempt(editor, "Set planted point",
             [&](Editor& e) { set_planted_point(e, name, static_cast<PlantPoint>(point)); });
     return;
@@ -285,9 +285,9 @@ void draw_inverse_kinematics(Editor& editor, Column& column, const Constraint& c
   chain.high = kLongestChain;
   chain.format = "%.0f";
   chain.unit = constraint.chain == 0 ? "(to the root)" : constraint.chain == 1 ? "bone" : "bones";
-  draw_number(editor, column.property("Chain"), chain);
+  draw_number(editor, column.property("Chain length"), chain);
   bool keeps = constraint.keep_limits;
-  if (checkbox(editor, "Joint limits", column.property("Limits"), "Keep", keeps))
+  if (checkbox(editor, "Joint limits", column.property("Joint limits"), "Keep", keeps))
     change(editor, constraint, "Keep joint limits", [keeps](Constraint& changed) { changed.keep_limits = keeps; });
 }
 

@@ -119,7 +119,7 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
        {choice_of("Scale",
                   "Scale of the motion's distances: fitted to the rig's legs, or given by the unit of the file.",
                   {"Fit to the rig", "1 = 1 mm", "1 = 1 cm", "1 = 1 m", "1 = 1 inch"}),
-        choice_of("Up", "The axis that points up in the file.", {"Y", "Z"}, static_cast<int>(incoming->up.axis)),
+        choice_of("Up axis", "The axis that points up in the file.", {"Y", "Z"}, static_cast<int>(incoming->up.axis)),
         number_of("First frame", "Frame of the timeline at which the clip begins.", 0, -100'000, 100'000, "%.0f"),
         number_of("Frame rate", "Frames per second, as stored in the file. Change this only if the file is wrong.",
                   rate, 1, 1000, "%.6g", "fps"),

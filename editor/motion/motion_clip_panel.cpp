@@ -93,7 +93,7 @@ void draw_motion(Editor& editor, Column& column) {
         draw_match(editor, column, *on_rig);
         choice_of_operators(editor, column.property("Root motion"), "Root motion",
                             {"motion.travel_locked", "motion.travel_in_place", "motion.travel_free"});
-        choice_of_operators(editor, column.property("Reference"), "Reference",
+        choice_of_operators(editor, column.property("Reference pose"), "Reference pose",
                             {"motion.reference_found", "motion.reference_rest", "motion.reference_first"});
         choice_of_operators(editor, column.property("Clip rest pose"), "Clip rest pose",
                             {"motion.rest_file", "motion.rest_t", "motion.rest_a", "motion.rest_anatomical"}, kRests);

@@ -256,8 +256,8 @@ void split_at_head(Editor& editor) {
     insert_strip(track, std::move(right));
   }
   if (seconds.empty())
-    throw Error("no selected strip plays on both sides of this frame", "frame " + std::to_string(frame),
-                "move the play head into a strip");
+    throw Error("no selected strip plays before and after this frame", "frame " + std::to_string(frame),
+                "move the play head to the middle of a strip");
   change_strips(editor, "Split strips", [&](Strips& strips) { strips = std::move(next); });
   strip_view(editor).chosen = seconds;
   strip_view(editor).active = *seconds.begin();

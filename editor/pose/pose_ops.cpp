@@ -353,7 +353,7 @@ std::vector<Operator> pose_operators() {
          return needs_bone(e).empty() &&
                 anchors_of(e.document()).pins.contains(e.document().armature->bones[*e.selection.bone].name);
        }},
-      {"pose.pole", "Pole", "", "Pose",
+      {"pose.pole", "IK pole", "", "Pose",
        "Add a pole: a point that you can drag and towards which the limb bends. Run again to remove it.", toggle_pole,
        needs_limb,
        [](const Editor& e) {

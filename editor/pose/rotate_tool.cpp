@@ -187,10 +187,10 @@ class Turning final : public TransformTool {
 
   std::vector<FormField> parameters() const override {
     if (trackball_ && !number_.typed())
-      return {number_of("About up", "Angle about the view's vertical axis.", glm::degrees(rolled_.x), -360, 360, "%.2f",
-                        "\u00b0"),
-              number_of("About right", "Angle about the view's horizontal axis.", glm::degrees(rolled_.y), -360, 360,
-                        "%.2f", "\u00b0")};
+      return {number_of("About vertical", "Angle about the view's vertical axis.", glm::degrees(rolled_.x), -360, 360,
+                        "%.2f", "\u00b0"),
+              number_of("About horizontal", "Angle about the view's horizontal axis.", glm::degrees(rolled_.y), -360,
+                        360, "%.2f", "\u00b0")};
     std::vector<FormField> fields = fields_of_axis();
     fields.insert(fields.begin(), number_of("Angle", "Angle by which the bones turn about the axis.", shown_, -360, 360,
                                             "%.2f", "\u00b0"));

@@ -246,7 +246,7 @@ std::vector<Operator> resample_operators() {
        "Draw the solved mesh as lines where slices, the clip box and the clip plane cut it.",
        [](Editor& e) { e.fem_overlay->tets = !e.fem_overlay->tets; }, why_no_fem_overlay,
        [](const Editor& e) { return e.fem_overlay->tets; }},
-      {"fem.display_pie", "Colour by", icon::kVisible, "Finite elements",
+      {"fem.display_pie", "Colour menu", icon::kVisible, "Finite elements",
        "Open a menu at the pointer that selects what the colours of FEM results show.",
        [](Editor& e) { e.open_popup = "Finite elements"; }, why_no_fem_overlay},
       {"view.results", "Results", icon::kTable, "View", "Open or close the table of results below the views.",

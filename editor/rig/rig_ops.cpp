@@ -176,7 +176,7 @@ void symmetrize(Editor& editor) {
     throw Error("the bone's name has no side", all[chosen.back()].name,
                 "give it a name with a side first, such as Arm.L or LeftArm");
   act_and_allow_redo(editor,
-                     {choice_of("From", "The side that is copied to the other side as its mirror image.",
+                     {choice_of("From side", "The side that is copied to the other side as its mirror image.",
                                 {"Selected", "Not selected"})},
                      [](Editor& e, const std::vector<FormField>& fields) {
                        edit(e, "Symmetrize", [&](const Armature& rig, const std::vector<int>& bones) {

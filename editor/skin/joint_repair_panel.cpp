@@ -38,7 +38,7 @@ void draw_gain(Editor& editor, Column& column, const RepairedJoint& repaired) {
           look.theme.text);
   char text[64];
   std::snprintf(text, sizeof text, "%.2f to %.2f %%", mean_sum(figures.before), mean_sum(figures.after));
-  put_row(editor, column, "Volumes", text, colour);
+  put_row(editor, column, "Volume change", text, colour);
   put_row(editor, column, "Overlap, voxels",
           grouped_mean(mean_overlap(figures.before)) + " to " + grouped_mean(mean_overlap(figures.after)), colour);
   if (figures.starts_from_capsule) {

@@ -58,7 +58,7 @@ void draw_range(Editor& editor, Column& column, LabelBrush& brush) {
   if (!editor.views->image) return;
   const Rect rect = column.property("");
   const bool was_in_range = brush.in_range;
-  checkbox(editor, "In a range", rect, "In a range", brush.in_range);
+  checkbox(editor, "Value range", rect, "Value range", brush.in_range);
   if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, "labels.in_range"), rect);
   if (!brush.in_range) return;
   if (!was_in_range) begin_range(editor);

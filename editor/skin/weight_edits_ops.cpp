@@ -100,7 +100,7 @@ void flood(Editor& editor) {
 void fill_part(Editor& editor) {
   const glm::ivec3 voxel = editor.views->hover.voxel;
   edit_weights(editor,
-               {choice_of("Part",
+               {choice_of("Fill within",
                           "Tissue: fill the connected part of the tissue under the pointer. All: also fill other "
                           "tissues that are connected to it.",
                           {"Tissue", "All"}),
@@ -176,7 +176,8 @@ void mirror(Editor& editor) {
                side = left * glm::dot((active.head + active.tail) / 2.0 - plane.point, plane.normal);
   edit_weights(
       editor,
-      {choice_of("From", "The side whose weights are copied to the other side.", {"Left", "Right"}, side >= 0 ? 0 : 1),
+      {choice_of("From side", "The side whose weights are copied to the other side.", {"Left", "Right"},
+                 side >= 0 ? 0 : 1),
        number_of("Distance",
                  "A voxel gets the weights of the tissue nearest to its mirrored position, within this distance.", 10,
                  0.5, 100, "%.1f", "mm")},
@@ -269,8 +270,8 @@ void quantize(Editor& editor) {
 void set_levels(Editor& editor) {
   edit_weights(
       editor,
-      {number_of("Low", "Weights up to this value become 0.", 0, 0, 0.99, "%.2f"),
-       number_of("High", "Weights from this value on become 1.", 1, 0.01, 1, "%.2f"),
+      {number_of("Low weight", "Weights up to this value become 0.", 0, 0, 0.99, "%.2f"),
+       number_of("High weight", "Weights from this value on become 1.", 1, 0.01, 1, "%.2f"),
        number_of("Gamma", "Above 1 raises the weights between 0 and 1, below 1 lowers them.", 1.5, 0.1, 10, "%.2f")},
       [](const Editor& e, const Fields& fields) {
         WeightRules::Levels levels;
@@ -319,7 +320,7 @@ void ask_copy(Editor& editor) {
                                 "Give the weights of one bone to another.",
                                 "Copy",
                                 {choice_of("Bone", "The bone whose weights are copied.", names, from),
-                                 choice_of("to", "The bone that gets the copied weights.", names, to),
+                                 choice_of("To bone", "The bone that gets the copied weights.", names, to),
                                  choice_of("Mode", "How the copied weights combine with the existing ones.",
                                            {"Replace", "Add", "Move", "Swap"}, 2)},
                                 outcome,

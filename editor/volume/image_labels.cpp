@@ -123,8 +123,7 @@ void ask_for_body(Editor& editor) {
   const GreyLevels& image = image_of(editor);
   editor.open_dialog(make_form(
       {"Labels from MR",
-       "Makes labels of body and skin in an MR or other image, by a threshold that the image's histogram suggests. "
-       "Paint bones afterwards.",
+       "Makes labels of body and skin from an image such as an MR, by a threshold. Paint bones afterwards.",
        "Make labels",
        {number_of("Body threshold",
                   "Voxels of at least this value, and all voxels that they enclose in an axial slice, become body. "

@@ -12,7 +12,7 @@
 namespace limber::editor {
 
 struct Preparation {
-  std::string label;  // the name of the job and of the edit: "Re-grid to 2 mm"
+  std::string label;  // the name of the job and of the edit: "Resize voxels to 2 mm"
   std::function<LabelVolume(const LabelVolume& volume, Progress& progress)> change;
   bool mirrors = false;
 };

@@ -42,13 +42,13 @@ void ask_regrid(Editor& editor) {
   };
   const auto act = [](Editor& e, const Fields& fields) {
     const double spacing = fields[0].value;
-    start_preparation(e, {"Resample to " + trimmed(spacing) + " mm",
+    start_preparation(e, {"Resize voxels to " + trimmed(spacing) + " mm",
                           [spacing](const LabelVolume& v, Progress& p) { return regrid(v, glm::dvec3(spacing), p); }});
   };
   editor.open_dialog(
-      make_form({"Re-grid",
+      make_form({"Resize voxels",
                  "Resample the volume to cubic voxels of another size. Thin layers stay closed.",
-                 "Re-grid",
+                 "Resize voxels",
                  {number_of("Spacing", "The edge length of a new voxel.", finest, 0.05, 50, "%.3g", "mm")},
                  outcome,
                  act}));
@@ -158,7 +158,7 @@ void ask_merge(Editor& editor) {
                  "Turn all voxels of one tissue into another tissue.",
                  "Merge",
                  {choice_of("Tissue", "The tissue whose voxels change.", names, chosen),
-                  choice_of("becomes", "The tissue that the voxels become.", names, chosen == 0 ? 1 : 0)},
+                  choice_of("Merge into", "The tissue that the voxels become.", names, chosen == 0 ? 1 : 0)},
                  outcome,
                  act}));
 }
@@ -187,7 +187,7 @@ std::string needs_tissues(const Editor& editor) {
 
 std::vector<Operator> prepare_operators() {
   return {
-      {"prepare.regrid", "Re-grid...", icon::kVolume, "Prepare", "Resample the volume to voxels of another size.",
+      {"prepare.regrid", "Resize voxels...", icon::kVolume, "Prepare", "Resample the volume to voxels of another size.",
        ask_regrid, needs_volume},
       {"prepare.orient", "Orient...", icon::kRotate, "Prepare",
        "Change the order and direction of the voxel axes. The voxels keep their positions in space.", ask_orient,

@@ -323,7 +323,7 @@ TEST_CASE("strict: a job ends with exit code 5 as the command does, and without 
     CHECK(report["gates"][0]["state"] == "failed");
     CHECK(report["doubts"].size() == 1);
   }
-  CHECK(run_limber({"resample", "--help"}).out.find("5 with --strict") != std::string::npos);
+  CHECK(run_limber({"resample", "--help"}).out.find("5 a quality gate failed with --strict") != std::string::npos);
 }
 
 TEST_CASE("strict: gates that nobody could check say so, and never pass") {

@@ -132,10 +132,11 @@ std::vector<Proof> proofs_of_work() {
   const char* undone = "key Ctrl+Z";
   return {
       {"prepare.regrid",
-       "click \"Edit/Prepare volume/Re-grid...\"\n double-click Spacing/value\n type \"6\"\n key Return\n key Return\n "
+       "click \"Edit/Prepare volume/Resize voxels...\"\n double-click Spacing/value\n type \"6\"\n key Return\n key "
+       "Return\n "
        "wait-job",
        [](Stage& s, const Seen&) {
-         return s.is("edit", "Resample to 6 mm") && s.document().volume->grid.spacing == glm::dvec3(6);
+         return s.is("edit", "Resize voxels to 6 mm") && s.document().volume->grid.spacing == glm::dvec3(6);
        }},
       {"prepare.orient",
        "click \"Edit/Prepare volume/Orient...\"\n click \"Columns (x)/list\"\n click \"Columns (x)/Right\"\n key "

@@ -160,7 +160,8 @@ TEST_CASE("whole clips: a length is set, and what cannot be reached is said") {
   const Document old = test.editor->document();
   const std::vector<Pose> before = test.played();
   const auto set_length = [](const std::string& frames) {
-    return "click Set/Length\n double-click Length/value\n key Ctrl+A\n type " + frames + "\n key Tab\n wait-idle\n";
+    return "click \"Change by/Length\"\n double-click Length/value\n key Ctrl+A\n type " + frames +
+           "\n key Tab\n wait-idle\n";
   };
   test.deed("Change speed...", set_length("3") + "click Change\n wait-idle");
   // A speed factor of 28 is refused, so the dialog stays open.

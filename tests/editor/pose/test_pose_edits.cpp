@@ -298,7 +298,7 @@ TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides"
   test.choose(2);
   test.play("move \"3D view/view\"\n key Shift+P");
   CHECK(anchors_of(test.editor->document()).pins == std::set<std::string>{"Fore.L", "Fore.R"});
-  test.play("click \"Edit/IK/Pole\"");
+  test.play("click \"Edit/IK/IK pole\"");
   const auto poles = [&] { return anchors_of(test.editor->document()).poles; };
   REQUIRE(poles().size() == 2);
   CHECK(glm::distance(poles().at("Fore.R"), poles().at("Fore.L") * glm::dvec3(-1, 1, 1)) < 1e-9);

@@ -37,13 +37,13 @@ TEST_CASE("search: arrows choose, what cannot run now stands behind what can and
   CHECK(std::all_of(cannot, found.end(), [](const FoundCommand& c) { return !c.reason.empty(); }));
   test.play(R"(
     key F3
-    type "re-g"
+    type "resize v"
     expect "text:Open a volume first" shown
     key Down
     key Up
     key Return
     expect dialog no
-    expect toast "Re-grid..."
+    expect toast "Resize voxels..."
   )");
 }
 

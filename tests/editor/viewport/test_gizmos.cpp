@@ -355,7 +355,7 @@ TEST_CASE("gizmos: a pole is dragged as one edit with the limb that turns to it,
   test.editor->history.commit("Bend", straight);
   test.editor->selection.bone = 1;
   test.editor->selection.bones = {1};
-  test.play("move \"3D view/view\"\nclick Edit/IK/Pole\nclick \"strip/tool.select\"\nwait-idle");
+  test.play("move \"3D view/view\"\nclick \"Edit/IK/IK pole\"\nclick \"strip/tool.select\"\nwait-idle");
   CHECK(test.last_edit() == "Add pole to Fore");
   const auto pole = [&] { return anchors_of(test.editor->document()).poles.at("Fore"); };
   const glm::dvec3 first = pole();

@@ -54,7 +54,7 @@ std::vector<Proof> proofs_of_handling() {
        [](Stage& s, const Seen&) { return !s.editor().transform_settings->auto_ik; }},
       {"pose.pin", "key Shift+P", [](Stage& s, const Seen&) { return anchors_of(s.document()).pins.contains("Fore"); },
        Shows::Nothing, "", choose_fore},
-      {"pose.pole", "click \"Edit/IK/Pole\"",
+      {"pose.pole", "click \"Edit/IK/IK pole\"",
        [](Stage& s, const Seen&) { return anchors_of(s.document()).poles.contains("Fore"); }},
       {"pose.clear_ik", "key Ctrl+Alt+I",
        [](Stage& s, const Seen& b) {

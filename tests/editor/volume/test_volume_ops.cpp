@@ -23,7 +23,7 @@ TEST_CASE("prepare: each command is a job and one edit, undone bit for bit") {
     key Return
     key Return
     wait-job
-    expect edit "Resample to 6 mm"
+    expect edit "Resize voxels to 6 mm"
     click "Edit/Prepare volume/Pad..."
     key Return
     wait-job
@@ -73,8 +73,8 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
     click "Edit/Prepare volume/Merge tissues..."
     click "Tissue/list"
     click "Tissue/Blood (65)"
-    click "becomes/list"
-    click "becomes/Muscle (17)"
+    click "Merge into/list"
+    click "Merge into/Muscle (17)"
     key Return
     wait-job
   )--");
