@@ -16,7 +16,7 @@ TEST_CASE("prepare: each command is a job and one edit, undone bit for bit") {
   const std::string before = test.fact("document");
   test.play(R"--(
     key F3
-    type "re-grid"
+    type "resize voxels"
     key Return
     double-click "Spacing/value"
     type "6"
