@@ -61,7 +61,7 @@ std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joint
   if (joints && stuck.empty())
     return claimed + "no bones of a joint overlap by more than half a voxel; other bones may overlap";
   return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints do not glide") +
-         "; limber fit-joint, a command of its own, moves the axis of a joint";
+         "; the command limber fit-joint moves the axis of a joint";
 }
 
 }  // namespace limber

@@ -132,7 +132,7 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   if (closed.bare_bone_voxels > 0)
     print("skin: %lld voxels of bone touch the air and stay bone; --close-skin outward covers them\n",
           static_cast<long long>(closed.bare_bone_voxels));
-  if (closed.is_padded) print("skin: the volume was grown by one voxel on every side to hold it\n");
+  if (closed.is_padded) print("skin: the volume was grown by one voxel on every side to hold the skin\n");
   if (closed.enclosed_voxels > 0)
     print("skin: it encloses %lld voxels of air\n", static_cast<long long>(closed.enclosed_voxels));
   return std::move(closed.volume);

@@ -417,9 +417,10 @@ void add_resample(CLI::App& app) {
   add_seam_option(*command, options->seams);
   add_pose_options(*command, options->pose);
   command
-      ->add_option("--frames", options->frames,
-                   "several frames of the motion, one after the other: put {frame} into the outputs' names; fem makes "
-                   "its mesh once and starts each solve from the frame before")
+      ->add_option(
+          "--frames", options->frames,
+          "poses several frames of the motion, one after the other: put {frame} into the outputs' names, where each "
+          "frame's number replaces it; fem makes its mesh once and starts each solve from the frame before")
       ->type_name("FIRST:LAST[:STEP]");
   command->add_option("--method", options->method, method_summaries(Methods::All))
       ->capture_default_str()

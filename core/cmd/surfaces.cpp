@@ -82,8 +82,8 @@ void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, co
 }
 
 void add_surfaces(CLI::App& app) {
-  auto* command =
-      app.add_subcommand("surfaces", "writes closed, smooth surfaces of tissues; neighbours share their borders");
+  auto* command = app.add_subcommand(
+      "surfaces", "writes the surfaces of tissues, closed and smooth; neighbouring tissues share their borders");
   auto options = std::make_shared<Options>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");

@@ -16,7 +16,8 @@ std::vector<Operator> help_operators() {
        [](Editor& e) { e.open_dialog(open_document("What is new", "docs/new.md")); }},
       {"help.keys", "Keys", icon::kKeyboard, "Help", "List all keyboard shortcuts and the commands that they run.",
        [](Editor& e) { e.open_dialog(open_keys_page()); }},
-      {"help.last_error", "Error details", icon::kError, "Help", "Show why the last failed job failed, and what to do.",
+      {"help.last_error", "Error details", icon::kError, "Help",
+       "Show the error of the last failed job, and what to do about it.",
        [](Editor& e) { e.messages.show_again(e.messages.last_failure); },
        [](const Editor& e) {
          return e.messages.last_failure.empty() ? std::string("No job has failed") : std::string();

@@ -26,7 +26,7 @@ namespace {
 std::string in_words_of_the_editor(std::string warning) {
   for (const auto& [said, here] : {std::pair<std::string_view, std::string_view>{
                                        "--glide MM allows longer shifts", "Keep bones apart allows longer shifts"},
-                                   {"limber fit-joint, a command of its own, moves the axis of a joint",
+                                   {"the command limber fit-joint moves the axis of a joint",
                                     "Fit joint axis in the Rig workspace moves the axis of a joint"}})
     if (const auto place = warning.find(said); place != std::string::npos) warning.replace(place, said.size(), here);
   return warning;

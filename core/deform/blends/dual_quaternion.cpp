@@ -10,7 +10,7 @@ const BlendRule kDualQuaternionBlend{
     .label = "DQ",
     .name = "Dual quaternions",
     .summary = "dual quaternions",
-    .description = "Dual quaternions: keeps the thickness of twisted limbs, bulges at shoulders.",
+    .description = "Dual quaternions: keep the thickness of twisted limbs, but bulge at shoulders.",
     .point = blend_one<DualKernel, false>,
     .stretched_point = blend_one<DualKernel, true>,
     .four_points = blend_four<DualKernel>,

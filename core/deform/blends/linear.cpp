@@ -10,7 +10,7 @@ const BlendRule kLinearBlend{
     .label = "LBS",
     .name = "Linear blend",
     .summary = "linear",
-    .description = "Linear blending: quick, loses volume at bent and twisted joints.",
+    .description = "Linear blending: fast, but loses volume at bent and twisted joints.",
     .point = blend_one<LinearKernel, false>,
     .stretched_point = blend_one<LinearKernel, true>,
     .four_points = blend_four<LinearKernel>,
