@@ -409,8 +409,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_resample(CLI::App& app) {
-  auto* command = app.add_subcommand(
-      "resample", "poses a label volume: moves its tissue into a pose of the rig and writes a new label volume");
+  auto* command = app.add_subcommand("resample", "moves the tissue of a label volume into a pose of its rig");
   auto options = std::make_shared<Options>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "weights, W.nrrd (default: computed by heat diffusion)");
@@ -448,7 +447,7 @@ void add_resample(CLI::App& app) {
   add_glide_option(*command, options->glide);
   command
       ->add_option("--baked", options->baked,
-                   "joint baked by limber bake-joint, which gives the flesh the shape that finite elements have; for "
+                   "joint baked by limber bake-joint: the flesh gets the shape that finite elements computed; for "
                    "--method dqs (repeatable)")
       ->type_name("JOINT.bake");
   command->add_flag(
@@ -463,8 +462,7 @@ void add_resample(CLI::App& app) {
       "exit with code 5 when a quality gate fails: measures the result as for --report, and still writes all outputs");
   command->add_option("--spacing", options->spacing, "voxel size of the output, mm (default: same as the input)")
       ->check(CLI::Range(1e-9, 1e6));
-  command->add_flag("--nearest", options->nearest,
-                    "give each voxel the label of the nearest voxel at rest, without interpolation");
+  command->add_flag("--nearest", options->nearest, "takes the label of the nearest voxel at rest, not interpolated");
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact,
                                        "restores the rest volume of each soft tissue, by changing as few voxels at "
                                        "tissue borders as possible, the least certain first");
@@ -476,8 +474,7 @@ void add_resample(CLI::App& app) {
   writes(command->add_option("--with", options->grey, "also poses a grey volume (CT, MR): reads GREY, writes OUT"),
          files_of_pair(options))
       ->type_name("GREY=OUT");
-  writes(command->add_option("--landmarks", options->landmarks,
-                             "also poses points: reads and writes CSV files with lines name,x,y,z (mm, LPS)"),
+  writes(command->add_option("--landmarks", options->landmarks, "also poses points, CSV files of name,x,y,z (mm, LPS)"),
          files_of_pair(options))
       ->type_name("IN.csv=OUT.csv");
   auto* field = writes(command->add_option("--field", options->field,

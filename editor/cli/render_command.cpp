@@ -420,33 +420,25 @@ void add_render(CLI::App& app) {
               [options](const std::string& name) { return files_of_pictures(*options, name); })
       ->required();
   command->add_option("--tissues", options->body.tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
-  command
-      ->add_option("--bones", options->body.bones,
-                   "labels that are bone, as numbers in the volume file (default: from the tissue table, or found "
-                   "automatically)")
+  command->add_option("--bones", options->body.bones, "labels that are bone, as numbers in the volume file")
       ->delimiter(',')
       ->type_name("L,L");
   command->add_option("--size", options->size, "size of the picture, pixels")->type_name("WxH")->capture_default_str();
-  command
-      ->add_option(
-          "--view", options->view,
-          "side of the body from which the camera looks: front, back, left, right, top or bottom (default: front)")
+  command->add_option("--view", options->view, "side of the body from which the camera looks (default: front)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, StandardView>{{"front", StandardView::Front},
                                                                               {"back", StandardView::Back},
                                                                               {"left", StandardView::Left},
                                                                               {"right", StandardView::Right},
                                                                               {"top", StandardView::Top},
                                                                               {"bottom", StandardView::Bottom}}));
-  command->add_option("--turn", options->turn,
-                      "turns the view about the vertical axis by this angle, degrees (default: 0)");
-  command->add_option("--tilt", options->tilt, "tilts the view to look down by this angle, degrees (default: 0)");
-  command->add_option("--zoom", options->zoom, "zoom factor; 1 shows the whole body, 2 is twice as large (default: 1)")
+  command->add_option("--turn", options->turn, "turns the view about the vertical axis, degrees (default: 0)");
+  command->add_option("--tilt", options->tilt, "tilts the view to look down, degrees (default: 0)");
+  command->add_option("--zoom", options->zoom, "zoom factor; 2 is twice as large (default: 1)")
       ->check(CLI::Range(0.01, 100.0));
   command->add_flag("--orthographic", options->orthographic, "parallel projection, without perspective");
   command
       ->add_option("--display", options->display,
-                   "how tissue is shown: solid (opaque surface), xray (soft tissue transparent) or tissue (by the "
-                   "opacity of each tissue)")
+                   "how tissue is shown: solid (default), xray (soft tissue transparent) or tissue (by opacities)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Display>{
           {"solid", Display::Solid}, {"xray", Display::XRay}, {"tissue", Display::Tissue}}));
   command
@@ -472,9 +464,7 @@ void add_render(CLI::App& app) {
       ->expected(6)
       ->type_name("X,Y,Z,NX,NY,NZ");
   command->add_option("--rig", options->body.rig, "rig to draw and to pose with");
-  command
-      ->add_option("--armature", options->armature,
-                   "how bones are drawn: octahedron, stick, cylinder or none (default: octahedron)")
+  command->add_option("--armature", options->armature, "how bones are drawn (default: octahedron)")
       ->check(CLI::IsMember({"octahedron", "stick", "cylinder", "none"}));
   command->add_option("--weights", options->weights,
                       "weights for the pose, W.nrrd (default: computed by heat diffusion)");

@@ -202,8 +202,7 @@ struct Import {
 };
 
 Import read_tissues(const Path& path, const Document& now) {
-  if (!now.volume)
-    refuse("a tissue table needs a volume", path, "open the volume that the tissue table describes first");
+  if (!now.volume) refuse("a tissue table needs a volume", path, "open the tissue table's volume first");
   const TissueTable table = read_tissue_table(path);
   const bool any = std::any_of(table.tissues.begin(), table.tissues.end(),
                                [&](const Tissue& t) { return now.tissues->find_file_value(t.file_value); });
