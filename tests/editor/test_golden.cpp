@@ -424,7 +424,7 @@ TEST_CASE("golden: an error message") {
 TEST_CASE("golden: a hidden tissue, another display, a hidden tool strip and another theme are noticed") {
   Arm scene;
   for (const char* change : {"move \"3D view/view\"\n key H", "move \"3D view/view\"\n key Alt+Z", "key T",
-                             "key F3\n type \"other theme\"\n key Return"}) {
+                             "key F3\n type \"switch theme\"\n key Return"}) {
     INFO(std::string(change));
     const Image before = halved(scene.picture());
     CHECK(compare(before, halved(scene.picture())).same());

@@ -200,7 +200,7 @@ std::vector<Proof> proofs_of_work() {
          std::filesystem::permissions(s.home / "worker", std::filesystem::perms::owner_all);
          s.editor().worker_program = s.home / "worker";
        }},
-      {"result.show_last", "key F3\n type \"show\"\n key Return",
+      {"result.show_last", "key F3\n type \"show result\"\n key Return",
        [](Stage& s, const Seen&) {
          return shown_result(s.editor()) && s.editor().views->scene.volume == s.document().results.back()->volume;
        },

@@ -262,7 +262,7 @@ std::vector<Proof> proofs_of_pages() {
        "move \"3D view/view\"\n key Alt+Z"},
       {"edit.preferences", "key Ctrl+,", becomes("text:Preferences")},
       {"edit.keymap", "click \"Edit/Change keys...\"", becomes("widget:dialog/Keymap")},
-      {"edit.other_theme", "key F3\n type \"other theme\"\n key Return", becomes("theme", "light"), Shows::InBody},
+      {"edit.other_theme", "key F3\n type \"switch theme\"\n key Return", becomes("theme", "light"), Shows::InBody},
       {"help.guide", "click \"Help/User guide\"",
        [](Stage& s, const Seen&) { return s.is("dialog", "yes") && s.is("text:User guide"); }},
       {"help.new", "click \"Help/What is new\"",
