@@ -163,7 +163,7 @@ std::string join_outcome(const Editor& editor, const NextTake& next, const std::
   const bool is_locked = shown_clip(editor)->motion && shown_clip(editor)->retarget.travel == Travel::Locked;
   return grouped(here) + " frames and " + grouped(there) + " of " + next.name + " become " +
          grouped(here + there - wish.settings.fade) + ", keys included." +
-         (is_locked ? " Root motion keeps the body in place: for travel, set it to Free first." : "");
+         (is_locked ? " Root motion keeps the body in place. To let it travel, set Root motion to Free first." : "");
 }
 
 void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {

@@ -262,7 +262,7 @@ void ask_cleaning(Editor& editor) {
                 (is_let_go(*shown_clip(e), cleaning)
                      ? " Feet are planted as the body travels; root motion then keeps it in place again."
                  : cleaning.plants_feet && keeps_in_place(*shown_clip(e))
-                     ? " Root motion keeps the body in place, so few feet stand: set it to Free first."
+                     ? " Root motion keeps the body in place, so few feet stand: set Root motion to Free first."
                      : "");
        },
        [cleaning_of](Editor& e, const std::vector<FormField>& fields) { start_cleaning(e, cleaning_of(fields)); }}));

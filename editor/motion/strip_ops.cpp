@@ -164,28 +164,29 @@ void ask_strip(Editor& editor) {
   std::vector<std::string> names;
   for (const auto& clip : editor.document().clips)
     if (!clip->strips) sources.push_back(clip), names.push_back(clip->name);
-  editor.open_dialog(
-      make_form({"Add strip",
-                 "Adds a strip of a clip on the active track, or above it where that has no room.",
-                 "Add",
-                 {choice_of("Clip", "The clip that the strip plays.", names),
-                  number_of("Start", "The frame at which it begins.", shown_frame(editor), -100'000, 1e6, "%.0f")},
-                 [=](const Editor& e, const std::vector<FormField>& fields) {
-                   if (!shown_clip(e) || (has_strips && !shown_strips(e)))
-                     throw Error("there are no strips any more", "strip", "open this again");
-                   const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
-                   const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
-                   return grouped(frames) + (frames == 1 ? " frame." : " frames of the clip.") +
-                          (shown_strips(e) ? "" : " A new clip plays " + shown_clip(e)->name + " as a strip, too.");
-                 },
-                 [=](Editor& e, const std::vector<FormField>& fields) {
-                   const auto& source = sources[static_cast<std::size_t>(fields[0].chosen)];
-                   const auto& clips = e.document().clips;
-                   if (!shown_clip(e) || (has_strips && !shown_strips(e)) ||
-                       std::find(clips.begin(), clips.end(), source) == clips.end())
-                     throw Error("the clip is not there any more", source->name, "open this again");
-                   add_strip(e, source, static_cast<int>(std::lround(fields[1].value)));
-                 }}));
+  editor.open_dialog(make_form(
+      {"Add strip",
+       "Adds a strip that plays a clip. The strip is put on the active track, or on a track above it if there is no "
+       "room.",
+       "Add",
+       {choice_of("Clip", "The clip that the strip plays.", names),
+        number_of("Start", "The frame at which the strip begins.", shown_frame(editor), -100'000, 1e6, "%.0f")},
+       [=](const Editor& e, const std::vector<FormField>& fields) {
+         if (!shown_clip(e) || (has_strips && !shown_strips(e)))
+           throw Error("there are no strips any more", "strip", "open this again");
+         const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
+         const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
+         return grouped(frames) + (frames == 1 ? " frame." : " frames of the clip.") +
+                (shown_strips(e) ? "" : " A new clip plays " + shown_clip(e)->name + " as a strip, too.");
+       },
+       [=](Editor& e, const std::vector<FormField>& fields) {
+         const auto& source = sources[static_cast<std::size_t>(fields[0].chosen)];
+         const auto& clips = e.document().clips;
+         if (!shown_clip(e) || (has_strips && !shown_strips(e)) ||
+             std::find(clips.begin(), clips.end(), source) == clips.end())
+           throw Error("the clip was deleted meanwhile", source->name, "open the dialog again");
+         add_strip(e, source, static_cast<int>(std::lround(fields[1].value)));
+       }}));
 }
 
 void bake_strips(Editor& editor) {
@@ -202,7 +203,7 @@ void bake_strips(Editor& editor) {
       take_in_clip(e, source, rig, "Bake strips to clip", *baked, true);
       show_face(e, TimelineFace::Rows);
       e.messages.ok(grouped(baked->motion->frame_count) + " frames baked",
-                    "The clip " + shown_clip(e)->name + " plays what the strips play");
+                    "The clip " + shown_clip(e)->name + " contains the combined motion of the strips");
     };
   });
 }
