@@ -1,38 +1,26 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "editor/context/editor.h"
+#include "editor/app/editor.h"
 
 #include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "editor/app/editor_parts.h"
 #include "editor/app/editor_session.h"
 #include "editor/app/event_dispatch.h"
 #include "editor/app/poll_jobs.h"
+#include "editor/context/arriving_body.h"
 #include "editor/context/document_edits.h"
-#include "editor/context/frame_timing.h"
 #include "editor/context/keep_preferences.h"
 #include "editor/context/panels.h"
-#include "editor/context/transform_settings.h"
-#include "editor/dialogs/redo_last_operator.h"
 #include "editor/files/import.h"
 #include "editor/files/project_session.h"
 #include "editor/files/tour.h"
-#include "editor/measure/measure_view.h"
-#include "editor/motion/timeline.h"
-#include "editor/pose/live_preview.h"
-#include "editor/resample/difference_overlay.h"
-#include "editor/resample/fem_overlay.h"
-#include "editor/resample/overlap_overlay.h"
 #include "editor/resample/results.h"
-#include "editor/rig/bone_table.h"
 #include "editor/rig/joint_axis_fit.h"
 #include "editor/screen/steady.h"
-#include "editor/seams/seam_view.h"
-#include "editor/shown/fem_live_view.h"
-#include "editor/shown/test_pose.h"
 #include "editor/skin/paint_mode.h"
-#include "editor/skin/weight_display.h"
 #include "editor/ui/asset_path.h"
 #include "editor/ui/keyboard.h"
 #include "editor/ui/tooltip.h"
@@ -44,7 +32,6 @@ namespace {
 constexpr double kCameraMove = 0.18;  // duration of a camera move, s
 constexpr double kLongestRest = 60;   // the editor waits at most this long for an event before it draws again, s
 constexpr double kJobPulse = 0.1;     // time between frames while a job runs, s
-constexpr int kJobsAtOnce = 2;
 // Typed keys cause at most this many extra draws of the panels per frame; later keys wait.
 constexpr int kMostTurns = 200;
 // Panels are drawn at most this many extra times per frame because a widget moved under the pointer.
@@ -81,9 +68,10 @@ void draw_view_picture(Views& views, const Document& document, const Layout& lay
   else if (!views.other_scene) slice.other.reset();
 }
 
-Layout layout_of(const Editor& editor, const glm::ivec2& size) {
-  Layout layout = arrange(size, editor.look.scale, editor.arrangement());
-  return side_by_side(editor) ? in_sides(std::move(layout), editor.comparison.share, editor.look.scale) : layout;
+Layout layout_of(const Context& context, const glm::ivec2& size) {
+  Layout layout = arrange(size, context.ui->look.scale, context.screen->arrangement());
+  return side_by_side(context) ? in_sides(std::move(layout), context.comparison->share, context.ui->look.scale)
+                               : layout;
 }
 
 bool is_complete(const SliceState& slice) {
@@ -104,22 +92,22 @@ bool begins_something(const Event& event) {
   return std::holds_alternative<Wheeled>(event);
 }
 
-void ended(const Editor& editor, const char* part_of_frame) {
-  if (editor.timeline->frame_log) editor.timeline->frame_log->part(part_of_frame);
+void ended(const Context& context, const char* part_of_frame) {
+  if (context.timeline->frame_log) context.timeline->frame_log->part(part_of_frame);
 }
 
 // Begins another ImGui frame without input, so that the panels are drawn again before the window shows the frame.
-void begin_turn_without_input(Editor& editor) {
+void begin_turn_without_input(Ui& ui) {
   ImGuiIO& io = ImGui::GetIO();
   ImGui::EndFrame();
   io.DeltaTime = kTurnSeconds;
-  io.MouseWheel = io.MouseWheelH = editor.input.wheel = editor.input.wheel_sideways = 0;
+  io.MouseWheel = io.MouseWheelH = ui.input.wheel = ui.input.wheel_sideways = 0;
   ImGui::NewFrame();
 }
 
-void show_preferred(Editor& editor) {
-  const Preferences& preferences = editor.preferences;
-  Views& views = *editor.views;
+void show_preferred(Context& context) {
+  const Preferences& preferences = context.preferences;
+  Views& views = *context.views;
   views.grid = preferences.grid;
   views.axes = preferences.axes;
   views.scale_bar = preferences.scale_bar;
@@ -128,41 +116,22 @@ void show_preferred(Editor& editor) {
   views.display = preferences.display == "xray"     ? render::Display::XRay
                   : preferences.display == "tissue" ? render::Display::Tissue
                                                     : render::Display::Solid;
-  apply_preferences(editor);
+  apply_preferences(context);
 }
 
 }  // namespace
 
-void Dialog::escape(Editor& editor) { editor.close_dialog(); }
-
-Editor::Editor(Host& host, const Preferences& preferences)
-    : host(host),
-      preferences(preferences),
-      keymap(read_keymap(asset("keymap.json"))),
-      operators(gather_operators()),
-      jobs(kJobsAtOnce, [&host] { host.wake(); }),
-      arrangements(preferences.arrangements),
-      transform_settings(std::make_unique<TransformSettings>()),
-      skin(std::make_unique<SkinDisplay>()),
-      fem(std::make_unique<FemView>()),
-      fem_overlay(std::make_unique<FemOverlay>()),
-      trial(std::make_unique<TestPose>()),
-      difference(std::make_unique<DifferenceView>()),
-      overlap(std::make_unique<OverlapView>()),
-      seams(std::make_unique<SeamView>()),
-      bone_table(std::make_unique<BoneTable>()),
-      measures(std::make_unique<MeasureView>()),
-      timeline(std::make_unique<Timeline>()),
-      last_operation(std::make_unique<LastOperation>()) {
-  before_change = stop_playing;
+Editor::Editor(Host& owner, const Preferences& preferred) : parts_(std::make_unique<Parts>(owner, preferred)) {
+  host.refer_to(&owner);
+  refer_to_parts();
   IMGUI_CHECKVERSION();
-  imgui = ImGui::CreateContext();
+  window->imgui = ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   io.LogFilename = nullptr;
   io.ConfigInputTextCursorBlink = false;  // no blinking, so that an idle editor draws nothing
   io.ConfigDragClickToInputText = true;   // a click without a drag starts typing the number
-  io.ClipboardUserData = &host;
+  io.ClipboardUserData = &owner;
   io.GetClipboardTextFn = [](void* user) {
     static std::string text;
     text = static_cast<Host*>(user)->clipboard();
@@ -171,56 +140,51 @@ Editor::Editor(Host& host, const Preferences& preferences)
   io.SetClipboardTextFn = [](void* user, const char* text) { static_cast<Host*>(user)->set_clipboard(text); };
   teach_imgui_keys();
   ImGui_ImplOpenGL3_Init("#version 330 core");
-  views.emplace();
-  live = std::make_unique<LivePose>([&host] { host.wake(); });
+  views.refer_to(&parts_->views.emplace());
+  live.refer_to(&parts_->live.emplace([&owner] { owner.wake(); }));
   show_preferred(*this);
-  apply_look(look, preferences.theme, scale_for(preferences, host));
-  layout = arrange(host.size(), look.scale, arrangement());
+  apply_look(ui->look, preferences->theme, scale_for(preferences, host));
+  screen->layout = arrange(host->size(), ui->look.scale, screen->arrangement());
 }
 
 Editor::~Editor() {
-  preferences.arrangements = arrangements;
+  preferences->arrangements = screen->arrangements;
   write_preferences(*this);
-  ImGui::SetCurrentContext(imgui);
-  each_frame.clear();
-  pictures.clear();
-  views.reset();
+  ImGui::SetCurrentContext(window->imgui);
+  background->each_frame.clear();
+  pictures->clear();
+  views.refer_to(nullptr);
+  parts_->views.reset();
   ImGui_ImplOpenGL3_Shutdown();
-  ImGui::DestroyContext(imgui);
+  ImGui::DestroyContext(window->imgui);
 }
 
-void Editor::open_dialog(std::unique_ptr<Dialog> dialog) {
-  if (!of_users_act_) return waiting_dialogs_.push_back(std::move(dialog));
-  next_dialog_ = std::move(dialog);
-  await_field(*this);
-}
-void Editor::close_dialog() { next_dialog_ = std::unique_ptr<Dialog>(); }
-
-bool Editor::busy() const { return jobs.busy() || live->busy() || skin->shares.busy(); }
+bool Editor::busy() const { return jobs->busy() || live->busy() || skin->shares.busy(); }
 
 double Editor::rest() const {
-  if (frames_wanted_ > 0 || !host.events.empty() || views->body.move || (modal && modal->moving())) return 0;
-  if (layout.place_of(ViewId::Body) &&
+  if (ui->time_to_next_frame() <= 0 || !host->events.empty() || views->body.move ||
+      (interaction->modal && interaction->modal->moving()))
+    return 0;
+  if (screen->layout.place_of(ViewId::Body) &&
       (!views->body.picture->complete() || (views->body.other && !views->body.other->complete())))
     return 0;
-  for (const ViewPlace& place : layout.view_places)
+  for (const ViewPlace& place : screen->layout.view_places)
     if (place.id != ViewId::Body && !is_complete(views->slices[static_cast<std::size_t>(axis_of(place.id))])) return 0;
-  double seconds = kLongestRest;
-  seconds = std::min(seconds, wake_at_ - now);
+  double seconds = std::min(kLongestRest, ui->time_to_next_frame());
   if (busy()) seconds = std::min(seconds, kJobPulse);
   return std::clamp(seconds, 0.0, kLongestRest);
 }
 
 void Editor::take_input() {
   std::vector<Event> events;
-  if (!keyboard.waits())
-    events = host.events.take_frame(keyboard.typed ? KeysFor::Text : KeysFor::Commands, input.modifiers());
-  const InputState before = input;
-  input.wheel = input.wheel_sideways = 0;
-  for (const Event& event : events) input.apply(event);
-  if (!events.empty()) touch();
+  if (!ui->keyboard.waits())
+    events = host->events.take_frame(ui->keyboard.typed ? KeysFor::Text : KeysFor::Commands, ui->input.modifiers());
+  const InputState before = ui->input;
+  ui->input.wheel = ui->input.wheel_sideways = 0;
+  for (const Event& event : events) ui->input.apply(event);
+  if (!events.empty()) ui->touch();
   if (std::any_of(events.begin(), events.end(), begins_something)) views->body.move.reset();
-  tell_imgui(events, input);
+  tell_imgui(events, ui->input);
   ImGui::NewFrame();
   dispatch(*this, events, before);
 }
@@ -228,10 +192,11 @@ void Editor::take_input() {
 // Draws the panels again after each typed key that does more than insert a character, without drawing the views again.
 // The frame that is then shown reads the remaining input.
 void Editor::read_typed_text() {
-  for (int turn = 0; turn < kMostTurns && (keyboard.typed || keyboard.waits()) && !host.events.empty(); ++turn) {
-    layout = layout_of(*this, host.size());
+  for (int turn = 0; turn < kMostTurns && (ui->keyboard.typed || ui->keyboard.waits()) && !host->events.empty();
+       ++turn) {
+    screen->layout = layout_of(*this, host->size());
     draw();
-    change_dialog();
+    dialogs->change();
     ImGui::EndFrame();
     ImGui::GetIO().DeltaTime = kTurnSeconds;
     take_input();
@@ -241,36 +206,29 @@ void Editor::read_typed_text() {
 // Handles finished jobs. Their dialogs and messages wait while they would take the keyboard from a text field or appear
 // under a pressed mouse button.
 void Editor::meet_jobs() {
-  const std::size_t errors = messages.errors.size();
-  of_users_act_ = false;
+  const std::size_t errors = messages->errors.size();
+  dialogs->of_users_act = false;
   open_waiting_files(*this);
-  if (modal && !modal->frame(*this, ImGui::GetIO().DeltaTime)) modal.reset();
-  if (poll_jobs(*this)) touch();
-  std::erase_if(each_frame, [this](const auto& act) { return !act(*this); });
-  of_users_act_ = true;
-  const auto first = messages.errors.begin() + static_cast<std::ptrdiff_t>(std::min(errors, messages.errors.size()));
-  std::move(first, messages.errors.end(), std::back_inserter(waiting_errors_));
-  messages.errors.erase(first, messages.errors.end());
-  if ((waiting_errors_.empty() && waiting_dialogs_.empty()) || next_dialog_ || !may_interrupt(*this)) return;
+  if (interaction->modal && !interaction->modal->frame(*this, ImGui::GetIO().DeltaTime)) interaction->modal.reset();
+  if (poll_jobs(*this)) ui->touch();
+  std::erase_if(background->each_frame, [this](const auto& act) { return !act(*this); });
+  dialogs->of_users_act = true;
+  const auto first = messages->errors.begin() + static_cast<std::ptrdiff_t>(std::min(errors, messages->errors.size()));
+  std::move(first, messages->errors.end(), std::back_inserter(waiting_errors_));
+  messages->errors.erase(first, messages->errors.end());
+  if ((waiting_errors_.empty() && dialogs->waiting.empty()) || dialogs->next || !may_interrupt(*this)) return;
   if (!waiting_errors_.empty()) {
-    messages.errors = std::exchange(waiting_errors_, {});
+    messages->errors = std::exchange(waiting_errors_, {});
   } else {
-    open_dialog(std::move(waiting_dialogs_.front()));
-    waiting_dialogs_.pop_front();
+    dialogs->open(std::move(dialogs->waiting.front()));
+    dialogs->waiting.pop_front();
   }
-  touch();
-}
-
-void Editor::change_dialog() {
-  if (!next_dialog_) return;
-  dialog = std::move(*next_dialog_);
-  next_dialog_.reset();
-  touch();
+  ui->touch();
 }
 
 void Editor::draw_views() {
-  update_scene(*views, document(), selection, preferences.theme == "dark");
-  views->scene.line_scale = look.scale;
+  update_scene(*views, document(), selection, preferences->theme == "dark");
+  views->scene.line_scale = ui->look.scale;
   live->follow(*this);
   show_posed(*this);
   show_weights(*this);
@@ -279,13 +237,13 @@ void Editor::draw_views() {
   show_overlap(*this);
   show_bone_table(*this);
   show_proposed_joint(*this);
-  move_camera(views->body, now, preferences.reduce_motion);
+  move_camera(views->body, ui->now, preferences->reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);
   views->renderer.begin_frame(kUploadTime);
-  if (views->arriving->upload(views->renderer)) touch();
-  for (const ViewPlace& place : layout.view_places) {
-    draw_view_picture(*views, shown, layout, place, now);
+  if (views->arriving->upload(views->renderer)) ui->touch();
+  for (const ViewPlace& place : screen->layout.view_places) {
+    draw_view_picture(*views, shown, screen->layout, place, ui->now);
     ended(*this, place.id == ViewId::Body ? "body" : "slice");
   }
   hover_views(*this);
@@ -294,12 +252,12 @@ void Editor::draw_views() {
 }
 
 void Editor::draw() {
-  widgets.begin_frame();
-  cursor = Cursor::Arrow;
-  place.windows.clear();
-  window = layout.window;
-  tooltip_delay = preferences.tooltip_delay;
-  dialog_open = dialog || !messages.errors.empty();
+  ui->widgets.begin_frame();
+  window->cursor = Cursor::Arrow;
+  ui->place.windows.clear();
+  ui->window = screen->layout.window;
+  ui->tooltip_delay = preferences->tooltip_delay;
+  ui->dialog_open = dialogs->shown || !messages->errors.empty();
   draw_top_bar(*this);
   draw_tool_header(*this);
   draw_views_region(*this);
@@ -311,55 +269,53 @@ void Editor::draw() {
   draw_start_screen(*this);
   draw_tour(*this);
   draw_toasts(*this);
-  if (dialog && messages.errors.empty()) dialog->draw(*this);
+  if (dialogs->shown && messages->errors.empty()) dialogs->shown->draw(*this);
   draw_error_message(*this);
-  draw_tooltip(*this);
-  widgets.end_frame();
-  follow_keyboard(*this);
-  if (modal && modal->hides_pointer()) cursor = Cursor::Hidden;
-  host.set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : cursor);
+  draw_tooltip(ui);
+  ui->widgets.end_frame();
+  follow_keyboard(ui);
+  if (interaction->modal && interaction->modal->hides_pointer()) window->cursor = Cursor::Hidden;
+  host->set_cursor(ImGui::GetIO().WantTextInput ? Cursor::Text : window->cursor);
   // Moves the ImGui windows of the regions behind popups and dialogs. The regions' windows keep the order in which they
   // were drawn.
-  for (auto name = place.windows.rbegin(); name != place.windows.rend(); ++name)
+  for (auto name = ui->place.windows.rbegin(); name != ui->place.windows.rend(); ++name)
     ImGui::BringWindowToDisplayBack(ImGui::FindWindowByName(name->c_str()));
 }
 
 void Editor::frame(double time) {
-  ImGui::SetCurrentContext(imgui);
+  ImGui::SetCurrentContext(window->imgui);
   ImGuiIO& io = ImGui::GetIO();
-  io.DeltaTime = static_cast<float>(glm::clamp(time - now, 1e-4, 0.25));
-  now = time;
-  wake_at_ = 1e300;
-  if (frames_wanted_ > 0) --frames_wanted_;
+  io.DeltaTime = static_cast<float>(glm::clamp(time - ui->now, 1e-4, 0.25));
+  ui->begin_frame(time);
 
-  const glm::ivec2 size = host.size();
+  const glm::ivec2 size = host->size();
   if (size.x < 1 || size.y < 1) return;  // the window is minimized
-  if (glm::vec2(size) != layout.window.size()) touch();
-  if (apply_look_if_changed(*this)) touch();
+  if (glm::vec2(size) != screen->layout.window.size()) ui->touch();
+  if (apply_look_if_changed(*this)) ui->touch();
   io.DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
-  layout = layout_of(*this, size);
+  screen->layout = layout_of(*this, size);
   ImGui_ImplOpenGL3_NewFrame();
-  const bool pressed = input.down(MouseButton::Left) || input.down(MouseButton::Right);
+  const bool pressed = ui->input.down(MouseButton::Left) || ui->input.down(MouseButton::Right);
   take_input();
   read_typed_text();
   // A press or release of a button acts on what the user saw at that moment. It is therefore handled before a finished
   // job changes the panels.
-  if (pressed != (input.down(MouseButton::Left) || input.down(MouseButton::Right))) {
+  if (pressed != (ui->input.down(MouseButton::Left) || ui->input.down(MouseButton::Right))) {
     draw();
     note_pressed(*this);
-    change_dialog();
-    begin_turn_without_input(*this);
+    dialogs->change();
+    begin_turn_without_input(ui);
   }
   ended(*this, "input");
   meet_jobs();
   ended(*this, "jobs");
-  layout = layout_of(*this, size);
+  screen->layout = layout_of(*this, size);
   advance_time(*this);
   ended(*this, "time");
   draw_views();
   draw();
   for (int again = 0; again < kMostAgain && has_moved_under_pointer(*this); ++again) {
-    begin_turn_without_input(*this);
+    begin_turn_without_input(ui);
     draw();
   }
   ended(*this, "panels");
@@ -368,16 +324,16 @@ void Editor::frame(double time) {
   keep_edits(*this);
   keep_recent_files(*this);
   ended(*this, "keeping");
-  change_dialog();
+  dialogs->change();
 
-  if (const std::string title = name.empty() ? "Limber" : name + " - Limber"; title != shown_title)
-    host.set_title(shown_title = title);
+  if (const std::string title = project->name.empty() ? "Limber" : project->name + " - Limber"; title != shown_title_)
+    host->set_title(shown_title_ = title);
 
   ImGui::Render();
-  host.present([this, size] {
-    ImGui::SetCurrentContext(imgui);
+  host->present([this, size] {
+    ImGui::SetCurrentContext(window->imgui);
     glViewport(0, 0, size.x, size.y);
-    const ImVec4 gap = ImGui::ColorConvertU32ToFloat4(look.theme.void_);
+    const ImVec4 gap = ImGui::ColorConvertU32ToFloat4(ui->look.theme.void_);
     glClearColor(gap.x, gap.y, gap.z, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());

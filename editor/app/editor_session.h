@@ -4,9 +4,11 @@
 // also found.
 #pragma once
 
-#include "editor/context/editor.h"
+#include "editor/app/editor.h"
 
 namespace limber::editor {
+
+struct Folders;
 
 // Reads the recent files, preferences and other state that earlier runs stored. Call it before the first frame.
 //   files  files to open; if there are any, the start screen is not shown

@@ -4,11 +4,22 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/modal_tool.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
+#include "editor/context/platform_window.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/start_screen_state.h"
+#include "editor/context/views.h"
+#include "editor/input/keymap.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/selection/transform_gizmo.h"
 #include "editor/ui/keyboard.h"
 #include "editor/ui/list_navigation.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -17,7 +28,7 @@ namespace {
 constexpr float kDragThreshold = 4;    // a press becomes a drag when the pointer has moved this far, px at scale 1
 constexpr double kLongestClick = 0.3;  // a press that takes longer is not a click, s
 
-bool dialog_open(const Editor& editor) { return editor.dialog || !editor.messages.errors.empty(); }
+bool dialog_open(const Context& context) { return context.dialogs->shown || !context.messages->errors.empty(); }
 
 // Returns true if a chord belongs to the focused text field, even if the field does not use it. Chords with Alt belong
 // to the field, because they type characters on many keyboard layouts.
@@ -35,157 +46,167 @@ bool belongs_to_start_screen(const Chord& chord) {
   return chord.modifiers == Modifiers{} && (chord.key == Key::Up || chord.key == Key::Down || chord.key == Key::Return);
 }
 
-void run_chord(Editor& editor, const Chord& chord) {
-  if (editor.start_screen && belongs_to_start_screen(chord)) return;
+void run_chord(Context& context, const Chord& chord) {
+  if (context.start_screen->shown && belongs_to_start_screen(chord)) return;
   // Any other key that is bound to a command closes the start screen and runs the command.
-  if (editor.start_screen && editor.keymap.find(chord, contexts(editor))) editor.start_screen = false;
-  if (const std::string* id = editor.keymap.find(chord, contexts(editor))) run(editor, *id);
+  if (context.start_screen->shown && context.keymap->find(chord, contexts(context)))
+    context.start_screen->shown = false;
+  if (const std::string* id = context.keymap->find(chord, contexts(context))) run(context, *id);
 }
 
-void end_modal(Editor& editor, bool goes_on) {
-  if (!goes_on) editor.modal.reset();
+void end_modal(Interaction& interaction, bool goes_on) {
+  if (!goes_on) interaction.modal.reset();
 }
 
-void on_key(Editor& editor, const KeyChanged& event) {
-  if (editor.modal) return end_modal(editor, editor.modal->key(editor, event));
+void on_key(Context& context, const KeyChanged& event) {
+  if (context.interaction->modal)
+    return end_modal(context.interaction, context.interaction->modal->key(context, event));
   if (!event.down || event.key >= Key::Ctrl) return;
   if (event.key == Key::Escape) {
-    if (editor.views->preview_visibility || editor.views->preview_tissues || editor.views->preview_armature) {
-      editor.views->preview_armature.reset();
-      editor.views->preview_visibility.reset();
-      editor.views->preview_tissues.reset();
-    } else if (editor.drag) {
-      if (editor.drag->cancelled) editor.drag->cancelled(editor);
-      editor.drag.reset();
-    } else if (!editor.messages.errors.empty()) {
-      editor.messages.errors.erase(editor.messages.errors.begin());
+    if (context.views->preview_visibility || context.views->preview_tissues || context.views->preview_armature) {
+      context.views->preview_armature.reset();
+      context.views->preview_visibility.reset();
+      context.views->preview_tissues.reset();
+    } else if (context.interaction->drag) {
+      if (context.interaction->drag->cancelled) context.interaction->drag->cancelled(context);
+      context.interaction->drag.reset();
+    } else if (!context.messages->errors.empty()) {
+      context.messages->errors.erase(context.messages->errors.begin());
     } else if (ImGui::GetCurrentContext()->OpenPopupStack.Size > 0) {
       ImGui::ClosePopupToLevel(0, true);
-    } else if (editor.dialog) {
-      editor.dialog->escape(editor);
-    } else if (!editor.list_focus.list.empty()) {
-      editor.list_focus = {};
+    } else if (context.dialogs->shown) {
+      context.dialogs->shown->escape(context);
+    } else if (!context.ui->list_focus.list.empty()) {
+      context.ui->list_focus = {};
     } else {
-      editor.start_screen = false;
+      context.start_screen->shown = false;
     }
     return;
   }
-  if (!editor.messages.errors.empty() && (event.key == Key::Return || event.key == Key::NumEnter)) {
-    editor.messages.errors.erase(editor.messages.errors.begin());
+  if (!context.messages->errors.empty() && (event.key == Key::Return || event.key == Key::NumEnter)) {
+    context.messages->errors.erase(context.messages->errors.begin());
     return;
   }
-  const Chord chord{Chord::Kind::Key, editor.input.modifiers(), event.key};
-  if (editor.drag || !editor.messages.errors.empty()) return;
-  if (editor.dialog) {
-    editor.dialog->key(editor, chord);
+  const Chord chord{Chord::Kind::Key, context.ui->input.modifiers(), event.key};
+  if (context.interaction->drag || !context.messages->errors.empty()) return;
+  if (context.dialogs->shown) {
+    context.dialogs->shown->key(context, chord);
     return;
   }
-  if (is_typing(editor)) {
+  if (is_typing(context.ui)) {
     // While a text field has the keyboard, keys run only commands of the context "global".
-    const std::string* id = belongs_to_text(chord) ? nullptr : editor.keymap.find(chord, {"global"});
-    if (id) run(editor, *id);
+    const std::string* id = belongs_to_text(chord) ? nullptr : context.keymap->find(chord, {"global"});
+    if (id) run(context, *id);
     return;
   }
-  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId) || list_takes(editor, chord)) return;
-  run_chord(editor, chord);
+  if (ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId) || list_takes(context.ui, chord)) return;
+  run_chord(context, chord);
 }
 
 // Handles the press of a button in a view or the timeline. The press may become a drag.
-void on_press(Editor& editor, MouseButton button) {
-  editor.list_focus = {};
-  const ViewPlace* view = hovered_view(editor);
-  if (!(view || over_timeline(editor)) || editor.drag || dialog_open(editor)) return;
-  if (button == MouseButton::Left && over_widget(editor)) return;
-  if (view) editor.views->active = view->id;
-  if (view && button == MouseButton::Left && press_gizmo(editor)) return;
-  const Modifiers modifiers = editor.input.modifiers();
+void on_press(Context& context, MouseButton button) {
+  context.ui->list_focus = {};
+  const ViewPlace* view = hovered_view(context);
+  if (!(view || over_timeline(context)) || context.interaction->drag || dialog_open(context)) return;
+  if (button == MouseButton::Left && over_widget(context.ui)) return;
+  if (view) context.views->active = view->id;
+  if (view && button == MouseButton::Left && press_gizmo(context)) return;
+  const Modifiers modifiers = context.ui->input.modifiers();
   const Chord press{Chord::Kind::Press, modifiers, Key::None, button},
       drag{Chord::Kind::Drag, modifiers, Key::None, button};
-  if (!editor.keymap.find(drag, contexts(editor))) return run_chord(editor, press);
-  editor.pending_press = {press, drag, editor.input.pointer, editor.now};
+  if (!context.keymap->find(drag, contexts(context))) return run_chord(context, press);
+  context.interaction->pending_press = {press, drag, context.ui->input.pointer, context.ui->now};
 }
 
-void on_release(Editor& editor, MouseButton button) {
-  if (editor.pending_press && editor.pending_press->press.button == button) {
-    const PendingPress pending = *editor.pending_press;
-    editor.pending_press.reset();
-    if (editor.now - pending.since < kLongestClick) run_chord(editor, pending.press);
+void on_release(Context& context, MouseButton button) {
+  if (context.interaction->pending_press && context.interaction->pending_press->press.button == button) {
+    const PendingPress pending = *context.interaction->pending_press;
+    context.interaction->pending_press.reset();
+    if (context.ui->now - pending.since < kLongestClick) run_chord(context, pending.press);
   }
-  if (!editor.drag || editor.drag->button != button) return;
-  const Drag ended = std::move(*editor.drag);
-  editor.drag.reset();
-  if (ended.ended) ended.ended(editor);
+  if (!context.interaction->drag || context.interaction->drag->button != button) return;
+  const Drag ended = std::move(*context.interaction->drag);
+  context.interaction->drag.reset();
+  if (ended.ended) ended.ended(context);
 }
 
-void on_move(Editor& editor, const glm::vec2& from, const glm::vec2& to) {
+void on_move(Context& context, const glm::vec2& from, const glm::vec2& to) {
   const auto outside = [](const glm::vec2& point) { return point.x < -1e5f; };
   if (outside(from) || outside(to)) return;
-  if (editor.modal) {
-    end_modal(editor, editor.modal->moved(editor, editor.modal_wrap.moved(from, to)));
-    if (const glm::vec2 leap = editor.modal_wrap.leap(to); editor.modal && leap != glm::vec2(0))
-      editor.host.shift_pointer(leap);
+  if (context.interaction->modal) {
+    end_modal(context.interaction,
+              context.interaction->modal->moved(context, context.interaction->modal_wrap.moved(from, to)));
+    if (const glm::vec2 leap = context.interaction->modal_wrap.leap(to);
+        context.interaction->modal && leap != glm::vec2(0))
+      context.host->shift_pointer(leap);
     return;
   }
-  if (from != to && hovered_view(editor)) editor.list_focus = {};
-  if (editor.pending_press &&
-      glm::distance(editor.pending_press->from, editor.input.pointer) >= kDragThreshold * editor.look.scale) {
-    const PendingPress pending = *editor.pending_press;
-    editor.pending_press.reset();
-    run_chord(editor, pending.drag);
-    if (editor.drag && editor.drag->moved) editor.drag->moved(editor, editor.input.pointer - pending.from);
+  if (from != to && hovered_view(context)) context.ui->list_focus = {};
+  if (context.interaction->pending_press &&
+      glm::distance(context.interaction->pending_press->from, context.ui->input.pointer) >=
+          kDragThreshold * context.ui->look.scale) {
+    const PendingPress pending = *context.interaction->pending_press;
+    context.interaction->pending_press.reset();
+    run_chord(context, pending.drag);
+    if (context.interaction->drag && context.interaction->drag->moved)
+      context.interaction->drag->moved(context, context.ui->input.pointer - pending.from);
     return;
   }
-  if (!editor.drag || !editor.drag->moved) return;
-  editor.drag->moved(editor, editor.drag->wrap.moved(from, to));
-  if (const glm::vec2 leap = editor.drag->wrap.leap(to); leap != glm::vec2(0)) editor.host.shift_pointer(leap);
+  if (!context.interaction->drag || !context.interaction->drag->moved) return;
+  context.interaction->drag->moved(context, context.interaction->drag->wrap.moved(from, to));
+  if (const glm::vec2 leap = context.interaction->drag->wrap.leap(to); leap != glm::vec2(0))
+    context.host->shift_pointer(leap);
 }
 
-void on_wheel(Editor& editor, const Wheeled& event) {
-  if (editor.modal) return end_modal(editor, editor.modal->wheel(editor, event.steps));
-  if (!(hovered_view(editor) || over_timeline(editor)) || editor.drag || dialog_open(editor)) return;
-  editor.input.wheel = event.steps;
-  editor.input.wheel_sideways = event.sideways;
-  if (event.steps != 0) run_chord(editor, {Chord::Kind::Wheel, editor.input.modifiers()});
-  if (event.sideways != 0 && hovered_view(editor)) run(editor, "view.pan_sideways_step");
+void on_wheel(Context& context, const Wheeled& event) {
+  if (context.interaction->modal)
+    return end_modal(context.interaction, context.interaction->modal->wheel(context, event.steps));
+  if (!(hovered_view(context) || over_timeline(context)) || context.interaction->drag || dialog_open(context)) return;
+  context.ui->input.wheel = event.steps;
+  context.ui->input.wheel_sideways = event.sideways;
+  if (event.steps != 0) run_chord(context, {Chord::Kind::Wheel, context.ui->input.modifiers()});
+  if (event.sideways != 0 && hovered_view(context)) run(context, "view.pan_sideways_step");
 }
 
 }  // namespace
 
-bool may_interrupt(const Editor& editor) {
-  const bool pressed =
-      std::any_of(std::begin(editor.input.buttons), std::end(editor.input.buttons), [](bool down) { return down; });
-  return editor.host.events.empty() && !editor.keyboard.typed && !editor.keyboard.waits() && !pressed &&
-         !editor.modal && !editor.drag && !editor.dialog && editor.messages.errors.empty() &&
+bool may_interrupt(const Context& context) {
+  const bool pressed = std::any_of(std::begin(context.ui->input.buttons), std::end(context.ui->input.buttons),
+                                   [](bool down) { return down; });
+  return context.host->events.empty() && !context.ui->keyboard.typed && !context.ui->keyboard.waits() && !pressed &&
+         !context.interaction->modal && !context.interaction->drag && !context.dialogs->shown &&
+         context.messages->errors.empty() &&
          !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
-void dispatch(Editor& editor, const std::vector<Event>& events, InputState before) {
-  const InputState after = editor.input;
-  drop_missing_bones(editor);
+void dispatch(Context& context, const std::vector<Event>& events, InputState before) {
+  const InputState after = context.ui->input;
+  drop_missing_bones(context);
   for (const Event& event : events) {
     const glm::vec2 from = before.pointer;
     before.apply(event);
-    editor.input = before;
+    context.ui->input = before;
     if (std::holds_alternative<PointerMoved>(event)) {
-      on_move(editor, from, before.pointer);
+      on_move(context, from, before.pointer);
     } else if (const auto* button = std::get_if<ButtonChanged>(&event)) {
-      if (editor.modal) end_modal(editor, editor.modal->button(editor, *button));
-      else button->down ? on_press(editor, button->button) : on_release(editor, button->button);
+      if (context.interaction->modal)
+        end_modal(context.interaction, context.interaction->modal->button(context, *button));
+      else button->down ? on_press(context, button->button) : on_release(context, button->button);
     } else if (const auto* wheel = std::get_if<Wheeled>(&event)) {
-      on_wheel(editor, *wheel);
+      on_wheel(context, *wheel);
     } else if (const auto* key = std::get_if<KeyChanged>(&event)) {
-      on_key(editor, *key);
+      on_key(context, *key);
     } else if (const auto* dropped = std::get_if<FilesDropped>(&event)) {
-      editor.to_open.insert(editor.to_open.end(), dropped->paths.begin(), dropped->paths.end());
+      context.project->to_open.insert(context.project->to_open.end(), dropped->paths.begin(), dropped->paths.end());
     } else if (const auto* focus = std::get_if<FocusChanged>(&event); focus && !focus->focused) {
-      editor.pending_press.reset();
-      if (editor.drag && editor.drag->ended) editor.drag->ended(editor);
-      editor.drag.reset();
-      if (editor.modal) editor.modal->cancel(editor);
-      editor.modal.reset();
+      context.interaction->pending_press.reset();
+      if (context.interaction->drag && context.interaction->drag->ended) context.interaction->drag->ended(context);
+      context.interaction->drag.reset();
+      if (context.interaction->modal) context.interaction->modal->cancel(context);
+      context.interaction->modal.reset();
     }
   }
-  editor.input = after;
+  context.ui->input = after;
 }
 
 }  // namespace limber::editor

@@ -7,14 +7,16 @@
 
 #include <vector>
 
-#include "editor/context/editor.h"
+#include "editor/input/events.h"
 
 namespace limber::editor {
 
+struct Context;
+
 // Handles the events of a frame. Call it after ImGui::NewFrame and before the panels are drawn. `before` is the input
 // state before these events.
-void dispatch(Editor& editor, const std::vector<Event>& events, InputState before);
+void dispatch(Context& context, const std::vector<Event>& events, InputState before);
 // Returns true if a dialog or message that the user did not ask for may take the keyboard and the pointer now.
-bool may_interrupt(const Editor& editor);
+bool may_interrupt(const Context& context);
 
 }  // namespace limber::editor

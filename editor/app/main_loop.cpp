@@ -7,6 +7,11 @@
 #include "editor/app/glfw_window.h"
 #include "editor/app/headless_window.h"
 #include "editor/app/script_player.h"
+#include "editor/context/operator.h"
+#include "editor/context/preferences_state.h"
+#include "editor/context/project_life.h"
+#include "editor/context/user_folders.h"
+#include "editor/context/window_state.h"
 
 namespace limber::editor {
 
@@ -39,7 +44,7 @@ void play(const StartOptions& options) {
   struct Ending {
     Editor& editor;
     ~Ending() {
-      if (editor.life.session) editor.life.session->discard();
+      if (editor.life->session) editor.life->session->discard();
       end_editor_session(editor);
     }
   } ending{editor};
@@ -50,10 +55,10 @@ void run_in_window(const StartOptions& options) {
   const auto host = open_window(options.size, "Limber");
   std::string problem;
   Editor editor(*host, with_options(read_preferences(preferences_path(), problem), options));
-  editor.preferences_path = preferences_path();
-  if (!problem.empty()) editor.messages.warn("Preferences could not be read", problem);
+  editor.preferences_state->path = preferences_path();
+  if (!problem.empty()) editor.messages->warn("Preferences could not be read", problem);
   begin_editor_session(editor, user_folders(), options.files);
-  while (!editor.quit) {
+  while (!editor.window->quit) {
     const bool minimized = host->size().x == 0 || host->size().y == 0;
     host->wait(minimized ? kMinimizedRest : editor.rest());
     if (host->close_requested()) {

@@ -5,8 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include <glm/glm.hpp>
+
 #include "core/base/file.h"
-#include "editor/context/editor.h"
+#include "editor/app/editor.h"
 
 namespace limber::editor {
 

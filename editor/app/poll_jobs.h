@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+struct Context;
 
 // Applies the edits of finished jobs to the document and reports failed jobs. Returns true if anything changed. Call it
 // once per frame.
-bool poll_jobs(Editor& editor);
+bool poll_jobs(Context& context);
 
 }  // namespace limber::editor

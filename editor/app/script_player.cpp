@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "editor/context/frame_timing.h"
 #include "editor/motion/timeline.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -141,16 +142,16 @@ void Player::hold(const std::vector<std::string>& words, std::size_t first, bool
 }
 
 glm::vec2 Player::place_of(const std::string& name) {
-  const Widget* widget = editor_.widgets.find(name);
+  const Widget* widget = editor_.ui->widgets.find(name);
   // The rows of a menu exist only while the menu is open, so this opens the menu first.
   if (const auto slash = name.rfind('/'); !widget && slash != std::string::npos) {
     const std::string parent = name.substr(0, slash);
     host_.events.push(PointerMoved{place_of(parent)});
     settle();
-    widget = editor_.widgets.find(name);
+    widget = editor_.ui->widgets.find(name);
     if (!widget) {
       click(parent, MouseButton::Left, 1);
-      widget = editor_.widgets.find(name);
+      widget = editor_.ui->widgets.find(name);
     }
   }
   if (!widget) throw Error("no widget has this name", name, "compare the name with the widgets that are shown");
@@ -222,7 +223,8 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     settle();
   } else if (command == "drag") {
     need(words, 4);
-    const glm::vec2 from = place_of(words[1]), by = glm::vec2(number(words[2]), number(words[3])) * editor_.look.scale;
+    const glm::vec2 from = place_of(words[1]),
+                    by = glm::vec2(number(words[2]), number(words[3])) * editor_.ui->look.scale;
     MouseButton button = MouseButton::Left;
     for (std::size_t i = 4; i < words.size(); ++i) button = mouse_button(words[i]).value_or(button);
     host_.events.push(PointerMoved{from});
@@ -251,8 +253,9 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     settle();
   } else if (command == "move") {
     need(words, 2);
-    host_.events.push(PointerMoved{words.size() > 2 ? glm::vec2(number(words[1]), number(words[2])) * editor_.look.scale
-                                                    : place_of(words[1])});
+    host_.events.push(PointerMoved{words.size() > 2
+                                       ? glm::vec2(number(words[1]), number(words[2])) * editor_.ui->look.scale
+                                       : place_of(words[1])});
     settle();
   } else if (command == "key") {
     need(words, 2);

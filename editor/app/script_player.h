@@ -23,8 +23,9 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/project/document.h"
+#include "editor/app/editor.h"
 #include "editor/app/headless_window.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
 
@@ -67,7 +68,7 @@ class Player {
 
 // Returns a fact about the editor as text. For example, "workspace" gives "rig", "history" gives the number of steps in
 // the undo history, and "text:Muscle" gives "shown" or "absent". Throws Error for an unknown name.
-std::string fact(const Editor& editor, const std::string& name);
+std::string fact(const Context& context, const std::string& name);
 std::vector<std::string> fact_names();
 // Returns a hash of the voxels, tissues, visibility and bones. Equal contents give equal hashes.
 std::string document_hash(const Document& document);

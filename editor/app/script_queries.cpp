@@ -8,9 +8,19 @@
 
 #include "core/base/error.h"
 #include "core/deform/preview_map.h"
+#include "core/project/job.h"
 #include "editor/app/script_player.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/open_project.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/context/window_state.h"
 #include "editor/motion/timeline.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -41,114 +51,124 @@ class Hash {
   std::uint64_t value_ = 14695981039346656037ull;
 };
 
-std::string hidden(const Editor& editor) {
+std::string hidden(const Context& context) {
   int count = 0;
-  if (editor.document().visibility)
-    for (const auto& [label, look] : editor.document().visibility->looks) count += !look.visible;
+  if (context.document().visibility)
+    for (const auto& [label, look] : context.document().visibility->looks) count += !look.visible;
   return std::to_string(count);
 }
 
 // Returns the content of the text field that has the keyboard. Returns no value if no text field has it.
-std::optional<std::string> typed_text(const Editor& editor) {
-  ImGui::SetCurrentContext(editor.imgui);
+std::optional<std::string> typed_text(const Context& context) {
+  ImGui::SetCurrentContext(context.window->imgui);
   const ImGuiInputTextState* state = ImGui::GetInputTextState(ImGui::GetActiveID());
-  if (!editor.keyboard.typed || !state) return std::nullopt;
+  if (!context.ui->keyboard.typed || !state) return std::nullopt;
   return std::string(state->TextA.Data);
 }
 
 std::string yes(bool is) { return is ? "yes" : "no"; }
 
-using Fact = std::function<std::string(const Editor&)>;
+using Fact = std::function<std::string(const Context&)>;
 
 const std::vector<std::pair<std::string, Fact>>& facts() {
   static const std::vector<std::pair<std::string, Fact>> all = {
       {"workspace",
-       [](const Editor& e) {
+       [](const Context& c) {
          constexpr const char* kNames[] = {"rig", "skin", "pose", "resample"};
-         return std::string(kNames[static_cast<int>(e.workspace)]);
+         return std::string(kNames[static_cast<int>(c.workspace())]);
        }},
       {"layout",
-       [](const Editor& e) {
+       [](const Context& c) {
          constexpr const char* kNames[] = {"one", "split", "four"};
-         return std::string(kNames[static_cast<int>(e.arrangement().views)]);
+         return std::string(kNames[static_cast<int>(c.screen->arrangement().views)]);
        }},
       {"maximized",
-       [](const Editor& e) {
-         return e.arrangement().maximized ? name_of(*e.arrangement().maximized) : std::string("no");
+       [](const Context& c) {
+         return c.screen->arrangement().maximized ? name_of(*c.screen->arrangement().maximized) : std::string("no");
        }},
       {"display",
-       [](const Editor& e) {
+       [](const Context& c) {
          constexpr const char* kNames[] = {"solid", "xray", "tissue"};
-         return std::string(kNames[static_cast<int>(e.views->display)]);
+         return std::string(kNames[static_cast<int>(c.views->display)]);
        }},
       {"weights",
-       [](const Editor& e) {
+       [](const Context& c) {
          constexpr const char* kNames[] = {"active", "dominant", "mixed", "count", "field"};
-         return std::string(!e.views->scene.weights ? "none"
-                                                    : kNames[static_cast<int>(e.views->scene.weights->display)]);
+         return std::string(!c.views->scene.weights ? "none"
+                                                    : kNames[static_cast<int>(c.views->scene.weights->display)]);
        }},
       {"bone",
-       [](const Editor& e) {
-         const auto bone = e.workspace == Workspace::Skin ? skin_bone(e) : e.selection.bone;
-         return bone && e.document().armature && *bone < std::ssize(e.document().armature->bones)
-                    ? e.document().armature->bones[static_cast<std::size_t>(*bone)].name
+       [](const Context& c) {
+         const auto bone = c.workspace() == Workspace::Skin ? skin_bone(c) : c.selection->bone;
+         return bone && c.document().armature && *bone < std::ssize(c.document().armature->bones)
+                    ? c.document().armature->bones[static_cast<std::size_t>(*bone)].name
                     : std::string("none");
        }},
       {"locked",
-       [](const Editor& e) { return std::to_string(e.document().locks ? e.document().locks->bones.size() : 0); }},
+       [](const Context& c) { return std::to_string(c.document().locks ? c.document().locks->bones.size() : 0); }},
       {"slices",
-       [](const Editor& e) {
-         return std::string(e.views->slice_display == render::SliceDisplay::Labels ? "labels" : "outline");
+       [](const Context& c) {
+         return std::string(c.views->slice_display == render::SliceDisplay::Labels ? "labels" : "outline");
        }},
-      {"view", [](const Editor& e) { return e.views->body.name.empty() ? std::string("free") : e.views->body.name; }},
+      {"view", [](const Context& c) { return c.views->body.name.empty() ? std::string("free") : c.views->body.name; }},
       {"projection",
-       [](const Editor& e) {
-         return std::string(e.views->body.camera.projection == render::Projection::Perspective ? "perspective"
+       [](const Context& c) {
+         return std::string(c.views->body.camera.projection == render::Projection::Perspective ? "perspective"
                                                                                                : "parallel");
        }},
-      {"sidebar", [](const Editor& e) { return yes(!e.layout.sidebar.empty()); }},
-      {"strip", [](const Editor& e) { return yes(!e.layout.tool_strip.empty()); }},
-      {"console", [](const Editor& e) { return yes(!e.layout.bottom.empty() && e.arrangement().console); }},
-      {"frame", [](const Editor& e) { return std::to_string(shown_frame(e)); }},
-      {"playing", [](const Editor& e) { return yes(e.timeline->play.on); }},
-      {"clip", [](const Editor& e) { return shown_clip(e) ? shown_clip(e)->name : std::string("none"); }},
+      {"sidebar", [](const Context& c) { return yes(!c.screen->layout.sidebar.empty()); }},
+      {"strip", [](const Context& c) { return yes(!c.screen->layout.tool_strip.empty()); }},
+      {"console",
+       [](const Context& c) { return yes(!c.screen->layout.bottom.empty() && c.screen->arrangement().console); }},
+      {"frame", [](const Context& c) { return std::to_string(shown_frame(c)); }},
+      {"playing", [](const Context& c) { return yes(c.timeline->play.on); }},
+      {"clip",
+       [](const Context& c) {
+         return shown_clip(c.document()) ? shown_clip(c.document())->name : std::string("none");
+       }},
       {"keys",
-       [](const Editor& e) { return std::to_string(shown_clip(e) ? frames_of(shown_clip(e)->keys).size() : 0); }},
-      {"theme", [](const Editor& e) { return e.preferences.theme; }},
+       [](const Context& c) {
+         return std::to_string(shown_clip(c.document()) ? frames_of(shown_clip(c.document())->keys).size() : 0);
+       }},
+      {"theme", [](const Context& c) { return c.preferences->theme; }},
       {"tool",
-       [](const Editor& e) {
+       [](const Context& c) {
          constexpr const char* kNames[] = {"select", "cross-hair", "move", "rotate", "scale", "reach", "extrude"};
-         return std::string(kNames[static_cast<int>(e.tool)]);
+         return std::string(kNames[static_cast<int>(c.interaction->tool)]);
        }},
-      {"selected", [](const Editor& e) { return std::to_string(e.selection.tissues.size()); }},
+      {"selected", [](const Context& c) { return std::to_string(c.selection->tissues.size()); }},
       {"tissue",
-       [](const Editor& e) { return e.selection.tissue ? std::to_string(*e.selection.tissue) : std::string("none"); }},
+       [](const Context& c) {
+         return c.selection->tissue ? std::to_string(*c.selection->tissue) : std::string("none");
+       }},
       {"hidden", hidden},
-      {"volume", [](const Editor& e) { return yes(e.document().volume != nullptr); }},
+      {"volume", [](const Context& c) { return yes(c.document().volume != nullptr); }},
       {"clip-box",
-       [](const Editor& e) { return yes(e.document().visibility && e.document().visibility->clip_box.enabled); }},
+       [](const Context& c) { return yes(c.document().visibility && c.document().visibility->clip_box.enabled); }},
       {"clip-plane",
-       [](const Editor& e) { return yes(e.document().visibility && e.document().visibility->clip_plane.enabled); }},
-      {"history", [](const Editor& e) { return std::to_string(e.history.steps().size()); }},
-      {"position", [](const Editor& e) { return std::to_string(e.history.position()); }},
-      {"edit", [](const Editor& e) { return e.history.steps()[e.history.position()].label; }},
-      {"unsaved", [](const Editor& e) { return yes(e.history.unsaved()); }},
-      {"document", [](const Editor& e) { return document_hash(e.document()); }},
-      {"name", [](const Editor& e) { return e.name; }},
+       [](const Context& c) { return yes(c.document().visibility && c.document().visibility->clip_plane.enabled); }},
+      {"history", [](const Context& c) { return std::to_string(c.history->steps().size()); }},
+      {"position", [](const Context& c) { return std::to_string(c.history->position()); }},
+      {"edit", [](const Context& c) { return c.history->steps()[c.history->position()].label; }},
+      {"unsaved", [](const Context& c) { return yes(c.history->unsaved()); }},
+      {"document", [](const Context& c) { return document_hash(c.document()); }},
+      {"name", [](const Context& c) { return c.project->name; }},
       {"posed",
-       [](const Editor& e) {
-         return e.views->scene.pose ? std::to_string(e.views->scene.pose->step) : std::string("no");
+       [](const Context& c) {
+         return c.views->scene.pose ? std::to_string(c.views->scene.pose->step) : std::string("no");
        }},
-      {"jobs", [](const Editor& e) { return yes(e.jobs.busy()); }},
+      {"jobs", [](const Context& c) { return yes(c.jobs->busy()); }},
       {"toast",
-       [](const Editor& e) { return e.messages.toasts.empty() ? std::string("none") : e.messages.toasts.back().line; }},
-      {"error",
-       [](const Editor& e) {
-         return e.messages.errors.empty() ? std::string("none") : e.messages.errors.front().what;
+       [](const Context& c) {
+         return c.messages->toasts.empty() ? std::string("none") : c.messages->toasts.back().line;
        }},
-      {"typed", [](const Editor& e) { return typed_text(e).value_or("no field"); }},
-      {"dialog", [](const Editor& e) { return yes(e.dialog != nullptr); }},
-      {"quit", [](const Editor& e) { return yes(e.quit); }},
+      {"error",
+       [](const Context& c) {
+         return c.messages->errors.empty() ? std::string("none") : c.messages->errors.front().what;
+       }},
+      {"typed", [](const Context& c) { return typed_text(c).value_or("no field"); }},
+      {"dialog", [](const Context& c) { return yes(c.dialogs->shown != nullptr); }},
+      {"quit", [](const Context& c) { return yes(c.window->quit); }},
   };
   return all;
 }
@@ -162,18 +182,18 @@ std::vector<std::string> fact_names() {
   return names;
 }
 
-std::string fact(const Editor& editor, const std::string& name) {
+std::string fact(const Context& context, const std::string& name) {
   if (name.starts_with("text:")) {
-    const auto& texts = editor.widgets.texts();
+    const auto& texts = context.ui->widgets.texts();
     const std::string wanted = name.substr(5);
     return std::any_of(texts.begin(), texts.end(),
                        [&](const std::string& text) { return text.find(wanted) != std::string::npos; })
                ? "shown"
                : "absent";
   }
-  if (name.starts_with("widget:")) return editor.widgets.find(name.substr(7)) ? "shown" : "absent";
+  if (name.starts_with("widget:")) return context.ui->widgets.find(name.substr(7)) ? "shown" : "absent";
   for (const auto& [known, value] : facts())
-    if (known == name) return value(editor);
+    if (known == name) return value(context);
   throw Error("the fact is unknown", name, "write one of those that the script's documentation lists");
 }
 

@@ -1,20 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <memory>
 #include <string>
 
-#include "core/project/document.h"
-
 namespace limber::editor {
-
-struct ResultFacts;
-
-// What tables show about a result (a resampled volume). The facts are computed once for each result.
-struct KnownResult {
-  std::weak_ptr<const Result> result;
-  std::shared_ptr<const ResultFacts> facts;
-};
 
 // The names of the two results A and B that the views show and compare. A result is a resampled volume. An empty or
 // unknown name means the volume at rest.

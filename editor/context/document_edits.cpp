@@ -5,7 +5,13 @@
 
 #include <backends/imgui_impl_opengl3.h>
 
+#include "core/project/history.h"
 #include "core/project/strip_clips.h"
+#include "editor/context/context.h"
+#include "editor/context/platform_window.h"
+#include "editor/context/preferences.h"
+#include "editor/context/preferences_state.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -17,17 +23,18 @@ float scale_for(const Preferences& preferences, const Host& host) {
   return static_cast<float>(glm::clamp(std::min(preferences.scale * host.monitor_scale(), fitting), 0.75, 6.0));
 }
 
-void commit(Editor& editor, const std::string& label, Document next) {
-  relink_strips(editor.document(), next);
-  editor.history.commit(label, std::move(next));
-  editor.touch();
+void commit(Context& context, const std::string& label, Document next) {
+  relink_strips(context.document(), next);
+  context.history->commit(label, std::move(next));
+  context.ui->touch();
 }
 
-bool apply_look_if_changed(Editor& editor) {
-  const float scale = scale_for(editor.preferences, editor.host);
-  if (scale == editor.look.scale && editor.shown_theme == editor.preferences.theme) return false;
-  editor.shown_theme = editor.preferences.theme;
-  if (apply_look(editor.look, editor.preferences.theme, scale))
+bool apply_look_if_changed(Context& context) {
+  const float scale = scale_for(context.preferences, context.host);
+  if (scale == context.ui->look.scale && context.preferences_state->shown_theme == context.preferences->theme)
+    return false;
+  context.preferences_state->shown_theme = context.preferences->theme;
+  if (apply_look(context.ui->look, context.preferences->theme, scale))
     ImGui_ImplOpenGL3_DestroyFontsTexture(), ImGui_ImplOpenGL3_CreateFontsTexture();
   return true;
 }

@@ -7,6 +7,14 @@
 
 #include "core/base/error.h"
 #include "core/base/json_text.h"
+#include "core/project/job.h"
+#include "editor/context/context.h"
+#include "editor/context/preferences.h"
+#include "editor/context/preferences_state.h"
+#include "editor/context/views.h"
+#include "editor/input/keymap_overrides.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -16,7 +24,7 @@ constexpr char kUnbound[] = "unbound";  // JSON member of an exported key map: t
 
 std::set<std::string> operators_of(const Keymap& keymap) {
   std::set<std::string> ids;
-  for (const auto& [context, bindings] : keymap.contexts)
+  for (const auto& [key_context, bindings] : keymap.contexts)
     for (const Binding& binding : bindings) ids.insert(binding.operator_id);
   return ids;
 }
@@ -33,57 +41,57 @@ std::set<std::string> operators_known_to(const Keymap& keymap, const Path& path)
 
 }  // namespace
 
-void export_keymap(Editor& editor, const Path& path) {
-  auto json = nlohmann::ordered_json::parse(to_json(editor.keymap));
-  const std::set<std::string> bound = operators_of(editor.keymap);
+void export_keymap(Context& context, const Path& path) {
+  auto json = nlohmann::ordered_json::parse(to_json(context.keymap));
+  const std::set<std::string> bound = operators_of(context.keymap);
   json[kUnbound] = nlohmann::ordered_json::array();
-  for (const std::string& id : operators_of(keymap_preset(editor.preferences.keymap)))
+  for (const std::string& id : operators_of(keymap_preset(context.preferences->keymap)))
     if (!bound.contains(id)) json[kUnbound].push_back(id);
   write_file_atomically(path, json.dump(1) + "\n");
-  editor.messages.ok("Keymap exported", path.string());
+  context.messages->ok("Keymap exported", path.string());
 }
 
-void import_keymap(Editor& editor, const Path& path) {
+void import_keymap(Context& context, const Path& path) {
   const Keymap wanted = read_keymap(path, TwoMeanings::LetIn);
-  editor.preferences.keys = differences(keymap_preset(editor.preferences.keymap), wanted);
+  context.preferences->keys = differences(keymap_preset(context.preferences->keymap), wanted);
   // An operator that the file does not mention is newer than the file. Such an operator keeps its keys.
   const std::set<std::string> known = operators_known_to(wanted, path);
-  std::erase_if(editor.preferences.keys, [&](const auto& change) { return !known.contains(change.first.second); });
-  keep_preferences(editor);
-  const auto count = clashes(editor.keymap).size();
+  std::erase_if(context.preferences->keys, [&](const auto& change) { return !known.contains(change.first.second); });
+  keep_preferences(context);
+  const auto count = clashes(context.keymap).size();
   if (count > 0)
-    editor.messages.warn("Keymap imported",
-                         std::to_string(count) + (count == 1 ? " key has" : " keys have") + " more than one command");
-  else editor.messages.ok("Keymap imported", path.filename().string());
+    context.messages->warn("Keymap imported",
+                           std::to_string(count) + (count == 1 ? " key has" : " keys have") + " more than one command");
+  else context.messages->ok("Keymap imported", path.filename().string());
 }
 
-void apply_preferences(Editor& editor) {
-  const Preferences& preferences = editor.preferences;
-  editor.keymap = changed(keymap_preset(preferences.keymap), preferences.keys);
-  editor.history.set_limit(std::int64_t{preferences.undo_limit_mb} << 20);
-  editor.jobs.set_at_once(preferences.jobs_at_once);
-  editor.touch();
+void apply_preferences(Context& context) {
+  const Preferences& preferences = context.preferences;
+  *context.keymap = changed(keymap_preset(preferences.keymap), preferences.keys);
+  context.history->set_limit(std::int64_t{preferences.undo_limit_mb} << 20);
+  context.jobs->set_at_once(preferences.jobs_at_once);
+  context.ui->touch();
 }
 
-void apply_light(Editor& editor) {
-  editor.views->renderer.light_at_rest(editor.preferences.fine_light ? render::Light::Fine : render::Light::Draft);
+void apply_light(Context& context) {
+  context.views->renderer.light_at_rest(context.preferences->fine_light ? render::Light::Fine : render::Light::Draft);
 }
 
-void write_preferences(Editor& editor) {
-  if (editor.preferences_path.empty()) return;
+void write_preferences(Context& context) {
+  if (context.preferences_state->path.empty()) return;
   try {
-    std::filesystem::create_directories(editor.preferences_path.parent_path());
-    write_file_atomically(editor.preferences_path, to_json(editor.preferences));
-    editor.preferences_problem = false;
+    std::filesystem::create_directories(context.preferences_state->path.parent_path());
+    write_file_atomically(context.preferences_state->path, to_json(context.preferences));
+    context.preferences_state->problem = false;
   } catch (const std::exception& error) {
-    if (!editor.preferences_problem) editor.messages.warn("Preferences cannot be saved", error.what());
-    editor.preferences_problem = true;
+    if (!context.preferences_state->problem) context.messages->warn("Preferences cannot be saved", error.what());
+    context.preferences_state->problem = true;
   }
 }
 
-void keep_preferences(Editor& editor) {
-  apply_preferences(editor);
-  write_preferences(editor);
+void keep_preferences(Context& context) {
+  apply_preferences(context);
+  write_preferences(context);
 }
 
 }  // namespace limber::editor

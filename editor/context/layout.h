@@ -17,12 +17,12 @@
 #include <optional>
 #include <vector>
 
+#include "editor/context/view_place.h"
+#include "editor/context/workspace.h"
 #include "editor/ui/rect.h"
 
 namespace limber::editor {
 
-enum class Workspace { Rig, Skin, Pose, Resample };
-enum class ViewId { Body, Axial, Coronal, Sagittal };
 enum class ViewLayout { One, Split, Four };
 
 // The regions of the window that the user has opened, and their sizes. Each workspace has its own arrangement.
@@ -44,12 +44,6 @@ Arrangement default_arrangement(Workspace workspace);
 
 using Arrangements = std::array<Arrangement, 4>;  // one arrangement for each workspace
 Arrangements default_arrangements();
-
-struct ViewPlace {
-  ViewId id;
-  Rect rect;
-  bool side_a = false;  // true for the left one of two views side by side, which shows result A
-};
 
 enum class SplitterId { Sidebar, Bottom, SplitX, SplitY, FourX, FourY };
 struct Splitter {

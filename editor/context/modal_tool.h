@@ -12,7 +12,7 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 struct ViewPlace;
 
 // A hint in the status bar: the names of keys, and what these keys do.
@@ -24,17 +24,17 @@ struct KeyHint {
 class Modal {
  public:
   virtual ~Modal() = default;
-  virtual bool moved(Editor&, const glm::vec2& /*pixels*/) { return true; }
-  virtual bool wheel(Editor&, float /*steps*/) { return true; }
-  virtual bool button(Editor&, const ButtonChanged&) { return true; }
-  virtual bool key(Editor&, const KeyChanged&) { return true; }
+  virtual bool moved(Context&, const glm::vec2& /*pixels*/) { return true; }
+  virtual bool wheel(Context&, float /*steps*/) { return true; }
+  virtual bool button(Context&, const ButtonChanged&) { return true; }
+  virtual bool key(Context&, const KeyChanged&) { return true; }
   // Called once in every frame, after the functions that handle input.
-  virtual bool frame(Editor&, double /*seconds*/) { return true; }
+  virtual bool frame(Context&, double /*seconds*/) { return true; }
   // Draws the tool's graphics over a view. The view's picture has been drawn before.
-  virtual void draw(Editor&, const ViewPlace&) {}
+  virtual void draw(Context&, const ViewPlace&) {}
   virtual bool moving() const { return false; }  // true: frames must be drawn even without input
-  virtual void cancel(Editor&) {}                // undoes what the tool did
-  virtual std::vector<KeyHint> hints(const Editor&) const { return {}; }
+  virtual void cancel(Context&) {}               // undoes what the tool did
+  virtual std::vector<KeyHint> hints(const Context&) const { return {}; }
   virtual bool hides_pointer() const { return false; }
   virtual std::string title() const { return {}; }  // shown under the view's name; "" for none
 };

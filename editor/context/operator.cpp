@@ -6,7 +6,12 @@
 #include <new>
 
 #include "core/base/error.h"
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/operator_registry.h"
+#include "editor/context/preferences.h"
+#include "editor/input/keymap.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -14,16 +19,16 @@ namespace {
 
 // Records that an operator was used. The command Repeat runs the last operator again, and the search lists the latest
 // and the most used operators first.
-void note_use(Editor& editor, const Operator& op) {
+void note_use(Context& context, const Operator& op) {
   if (op.id == "search.commands" || op.id == "edit.repeat_last" || op.id == "edit.adjust_last" ||
-      needs_pointer(editor, op))
+      needs_pointer(context.keymap, op))
     return;
-  editor.last_operator = op.id;
-  auto& recent = editor.preferences.recent_commands;
+  context.operators->last = op.id;
+  auto& recent = context.preferences->recent_commands;
   std::erase(recent, op.id);
   recent.insert(recent.begin(), op.id);
   if (recent.size() > Preferences::kMostRecent) recent.pop_back();
-  editor.preferences.command_counts[op.id] += 1;
+  context.preferences->command_counts[op.id] += 1;
 }
 
 // Returns true if the animation keeps playing while the operator runs: for operators that do not change the pose, such
@@ -36,60 +41,61 @@ bool goes_on_while_playing(const Operator& op) {
 
 }  // namespace
 
-const Operator* find_operator(const Editor& editor, std::string_view id) {
+const Operator* find_operator(const OperatorRegistry& operators, std::string_view id) {
   const auto found =
-      std::find_if(editor.operators.begin(), editor.operators.end(), [&](const Operator& op) { return op.id == id; });
-  return found == editor.operators.end() ? nullptr : &*found;
+      std::find_if(operators.all.begin(), operators.all.end(), [&](const Operator& op) { return op.id == id; });
+  return found == operators.all.end() ? nullptr : &*found;
 }
 
-std::string disabled_reason(const Editor& editor, const Operator& op) {
-  return op.disabled_reason ? op.disabled_reason(editor) : "";
+std::string disabled_reason(const Context& context, const Operator& op) {
+  return op.disabled_reason ? op.disabled_reason(context) : "";
 }
 
-bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act) {
+bool attempt(Context& context, const std::string& label, const std::function<void(Context&)>& act) {
   try {
-    act(editor);
+    act(context);
     return true;
   } catch (const Cancelled&) {
   } catch (const Error& error) {
-    editor.messages.show_error(error.what(), label);
+    context.messages->show_error(error.what(), label);
   } catch (const std::bad_alloc&) {
-    editor.messages.show_error("There is not enough memory: " + label +
-                               ": close other programs, or use a coarser volume");
+    context.messages->show_error("There is not enough memory: " + label +
+                                 ": close other programs, or use a coarser volume");
   } catch (const std::filesystem::filesystem_error& error) {
-    editor.messages.show_error(error.code().message() + ": " + error.path1().string() +
-                                   ": check the name, and your permission to read and write there",
-                               label);
+    context.messages->show_error(error.code().message() + ": " + error.path1().string() +
+                                     ": check the name, and your permission to read and write there",
+                                 label);
   } catch (const std::exception& error) {
-    editor.messages.show_error(std::string("Internal error: ") + label + ": " + error.what());
+    context.messages->show_error(std::string("Internal error: ") + label + ": " + error.what());
   }
   return false;
 }
 
 // Shows a message that says why an operator cannot run now. If the operator belongs to another workspace, the message
 // has a button that opens that workspace.
-static void tell_why_not(Editor& editor, const Operator& op, const std::string& reason) {
-  editor.messages.info(op.label, reason);
+static void tell_why_not(Messages& messages, const Operator& op, const std::string& reason) {
+  messages.info(op.label, reason);
   for (const auto& [name, id] : {std::pair("Rig", "workspace.rig"),
                                  {"Skin", "workspace.skin"},
                                  {"Pose", "workspace.pose"},
                                  {"Resample", "workspace.resample"}}) {
     if (!reason.starts_with(std::string("Switch to the ") + name)) continue;
-    for (Toast& toast : editor.messages.toasts)
+    for (Toast& toast : messages.toasts)
       if (toast.line == op.label && toast.detail == reason) toast.action = id;
   }
 }
 
-void run(Editor& editor, const Operator& op) {
-  editor.touch();
-  if (const std::string reason = disabled_reason(editor, op); !reason.empty()) return tell_why_not(editor, op, reason);
-  if (!goes_on_while_playing(op)) editor.before_change(editor);
-  if (attempt(editor, op.label, op.run)) note_use(editor, op);
+void run(Context& context, const Operator& op) {
+  context.ui->touch();
+  if (const std::string reason = disabled_reason(context, op); !reason.empty())
+    return tell_why_not(context.messages, op, reason);
+  if (!goes_on_while_playing(op)) context.operators->before_change(context);
+  if (attempt(context, op.label, op.run)) note_use(context, op);
 }
 
-bool needs_pointer(const Editor& editor, const Operator& op) {
+bool needs_pointer(const Keymap& keymap, const Operator& op) {
   bool any = false;
-  for (const auto& [context, bindings] : editor.keymap.contexts)
+  for (const auto& [key_context, bindings] : keymap.contexts)
     for (const Binding& binding : bindings) {
       if (binding.operator_id != op.id) continue;
       if (binding.chord.kind == Chord::Kind::Key) return false;
@@ -98,8 +104,8 @@ bool needs_pointer(const Editor& editor, const Operator& op) {
   return any;
 }
 
-void run(Editor& editor, std::string_view id) {
-  if (const Operator* op = find_operator(editor, id)) run(editor, *op);
+void run(Context& context, std::string_view id) {
+  if (const Operator* op = find_operator(context.operators, id)) run(context, *op);
 }
 
 }  // namespace limber::editor

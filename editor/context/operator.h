@@ -10,7 +10,9 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
+struct Keymap;
+struct OperatorRegistry;
 
 struct Operator {
   std::string id;           // unique name of the operator, such as "view.frame_all"
@@ -18,28 +20,28 @@ struct Operator {
   const char* icon = "";    // icon, one of the constants in icons.h; "": none
   std::string category;     // the menu that the operator belongs to, such as "View"; the search shows it
   std::string description;  // text of the tool tip: what the operator does
-  std::function<void(Editor&)> run;
+  std::function<void(Context&)> run;
   // Returns why the operator cannot run now; "" or no function: it can run.
-  std::function<std::string(const Editor&)> disabled_reason;
+  std::function<std::string(const Context&)> disabled_reason;
   // Returns true if the operator is a switch and is on now; empty: it is no switch.
-  std::function<bool(const Editor&)> checked;
+  std::function<bool(const Context&)> checked;
 };
 
 // Returns all operators, in the order of the menus.
 std::vector<Operator> gather_operators();
 
 // Returns the operator with this id; nullptr if there is none.
-const Operator* find_operator(const Editor& editor, std::string_view id);
+const Operator* find_operator(const OperatorRegistry& operators, std::string_view id);
 // Returns why the operator cannot run now; "" if it can.
-std::string disabled_reason(const Editor& editor, const Operator& op);
+std::string disabled_reason(const Context& context, const Operator& op);
 // Runs the operator. If it cannot run now, shows a message with the reason instead.
-void run(Editor& editor, const Operator& op);
-void run(Editor& editor, std::string_view id);
+void run(Context& context, const Operator& op);
+void run(Context& context, std::string_view id);
 // Returns true if the operator needs the pointer: it is bound to mouse buttons or the wheel, and to no key.
-bool needs_pointer(const Editor& editor, const Operator& op);
+bool needs_pointer(const Keymap& keymap, const Operator& op);
 // Calls `act` and returns true. If `act` throws an exception, shows it as an error message and returns false. All
 // operators are run by this function, and so is their later work, such as the answer to a question, a selected file or
 // a task's end.
-bool attempt(Editor& editor, const std::string& label, const std::function<void(Editor&)>& act);
+bool attempt(Context& context, const std::string& label, const std::function<void(Context&)>& act);
 
 }  // namespace limber::editor

@@ -10,21 +10,21 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 struct Operator;
 
 // Draws an operator's button with its icon and `label`. An empty label leaves only the icon. Returns true if the button
 // was clicked.
-bool operator_button(Editor& editor, std::string_view id, const Rect& rect, const std::string& label,
+bool operator_button(Context& context, std::string_view id, const Rect& rect, const std::string& label,
                      ButtonStyle style = ButtonStyle::Plain);
 
 // Draws an operator's row in a popup menu.
-void operator_menu_item(Editor& editor, std::string_view id);
+void operator_menu_item(Context& context, std::string_view id);
 
 // Draws a check box for an operator that switches something on and off.
-void operator_box(Editor& editor, std::string_view id, const Rect& rect, const std::string& label);
+void operator_box(Context& context, std::string_view id, const Rect& rect, const std::string& label);
 
 // Shows the operator's tool tip: name, key, what it does, and why it cannot run now.
-void operator_tooltip(Editor& editor, const Operator& op, const Rect& rect);
+void operator_tooltip(Context& context, const Operator& op, const Rect& rect);
 
 }  // namespace limber::editor

@@ -5,6 +5,11 @@
 
 #include <imgui_internal.h>
 
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
+#include "editor/ui/ui.h"
+
 namespace limber::editor {
 
 namespace {
@@ -16,48 +21,48 @@ bool is_over(const char* region) {
   return window && std::string_view(window->RootWindow->Name) == region;
 }
 
-bool over_strips(const Editor& editor) {
-  const auto& widgets = editor.widgets.widgets();
+bool over_strips(const Ui& ui) {
+  const auto& widgets = ui.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
     return widget.region == Region::Bottom && widget.name.ends_with("timeline/strips") &&
-           widget.rect.contains(editor.input.pointer);
+           widget.rect.contains(ui.input.pointer);
   });
 }
 
 }  // namespace
 
-bool over_timeline(const Editor& editor) {
+bool over_timeline(const Context& context) {
   const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
   return window && std::string_view(window->RootWindow->Name) == "##bottom" &&
-         editor.timeline_area.contains(editor.input.pointer) && editor.arrangement().timeline &&
-         !editor.arrangement().console;
+         context.screen->timeline_area.contains(context.ui->input.pointer) && context.screen->arrangement().timeline &&
+         !context.screen->arrangement().console;
 }
 
-bool over_widget(const Editor& editor) {
-  const auto& widgets = editor.widgets.widgets();
+bool over_widget(const Ui& ui) {
+  const auto& widgets = ui.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
-    return widget.region == Region::Views && !widget.name.ends_with("/view") &&
-           widget.rect.contains(editor.input.pointer);
+    return widget.region == Region::Views && !widget.name.ends_with("/view") && widget.rect.contains(ui.input.pointer);
   });
 }
 
-const ViewPlace* hovered_view(const Editor& editor) {
+const ViewPlace* hovered_view(const Context& context) {
   const ImGuiWindow* window = ImGui::GetCurrentContext()->HoveredWindow;
   if (window && std::string_view(window->RootWindow->Name) != "##views") return nullptr;
-  return editor.layout.view_at(editor.input.pointer);
+  return context.screen->layout.view_at(context.ui->input.pointer);
 }
 
-std::vector<std::string> contexts(const Editor& editor) {
+std::vector<std::string> contexts(const Context& context) {
   std::vector<std::string> contexts;
-  const ViewPlace* view = hovered_view(editor);
+  const ViewPlace* view = hovered_view(context);
   if (view && view->id != ViewId::Body) contexts.push_back("slice");
   if (view && view->id == ViewId::Body) contexts.push_back("view3d");
-  if (over_timeline(editor) && editor.graph_area.contains(editor.input.pointer)) contexts.push_back("graph");
-  if (over_timeline(editor) && over_strips(editor)) contexts.push_back("strips");
-  if (over_timeline(editor)) contexts.push_back("timeline");
+  if (over_timeline(context) && context.screen->graph_area.contains(context.ui->input.pointer))
+    contexts.push_back("graph");
+  if (over_timeline(context) && over_strips(context.ui)) contexts.push_back("strips");
+  if (over_timeline(context)) contexts.push_back("timeline");
   if (is_over("##sidebar")) contexts.push_back("sidebar");
   constexpr const char* kWorkspaces[] = {"rig", "skin", "pose", "resample"};
-  contexts.push_back(kWorkspaces[static_cast<int>(editor.workspace)]);
+  contexts.push_back(kWorkspaces[static_cast<int>(context.workspace())]);
   contexts.push_back("select");
   if (!view && !is_over("##sidebar") && !is_over("##bottom")) contexts.push_back("view3d");
   contexts.push_back("global");

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/platform/desktop.h"
+#include "editor/input/keymap_overrides.h"
 #include "editor/ui/asset_path.h"
 
 namespace limber::editor {

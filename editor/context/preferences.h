@@ -9,9 +9,11 @@
 
 #include "core/base/file.h"
 #include "editor/context/layout.h"
-#include "editor/input/keymap_overrides.h"
+#include "editor/input/key_changes.h"
 
 namespace limber::editor {
+
+struct Keymap;
 
 struct Preferences {
   // Preferences of the interface

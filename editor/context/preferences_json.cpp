@@ -8,6 +8,7 @@
 #include "core/base/json_text.h"
 #include "editor/context/layout_json.h"
 #include "editor/context/preferences.h"
+#include "editor/input/keymap_overrides.h"
 
 namespace limber::editor {
 

@@ -40,9 +40,9 @@ struct TransformSettings {
   // Joint axis that the user may accept (joint_axis_fit.h); null: none is proposed.
   std::shared_ptr<ProposedJoint> proposed_joint;
   // Result of the last rig check (rig_check.h); null: not checked yet.
-  std::shared_ptr<KnownRigCheck> rig_check;
+  mutable std::shared_ptr<KnownRigCheck> rig_check;
   // Coordinate frames of the rig's joints (clinical_angle_edits.h); null: not found yet.
-  std::shared_ptr<const KnownBodyFrames> body_frames;
+  mutable std::shared_ptr<const KnownBodyFrames> body_frames;
   bool rig_check_marks = true;  // true: the views mark the problems that rig_check found
 
   struct {             // the bone whose row in the outliner is being dragged
@@ -53,7 +53,7 @@ struct TransformSettings {
 
   // Name of the selected pose of the library. For a built-in body pose, this is its library_name() (body_pose_cards.h).
   std::string library_pose;
-  struct {  // the program's own body poses, made for the current rig
+  mutable struct {  // the program's own body poses, made for the current rig
     std::shared_ptr<const Armature> armature;
     PoseLibrary poses;  // the poses' pictures are drawn when they are first shown
   } body_poses;

@@ -3,18 +3,20 @@
 
 #include <cmath>
 
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 
 namespace limber::editor {
 
-ViewProjection::ViewProjection(const Editor& editor, const ViewPlace& at)
+ViewProjection::ViewProjection(const Context& context, const ViewPlace& at)
     : place(at),
-      camera(editor.views->body.camera) {
+      camera(context.views->body.camera) {
   if (place.id == ViewId::Body) {
     right = camera.world_from_view * glm::dvec3(1, 0, 0);
     up = camera.world_from_view * glm::dvec3(0, 1, 0);
   } else {
-    slice = editor.views->slices[static_cast<std::size_t>(axis_of(place.id))].camera;
+    slice = context.views->slices[static_cast<std::size_t>(axis_of(place.id))].camera;
     const render::SliceFrame frame = render::frame_of(slice.axis);
     right = frame.right;
     up = -frame.down;
@@ -79,10 +81,10 @@ std::optional<double> ViewProjection::along_line(const glm::dvec2& pixel, const 
   return (b * e - d) / denominator;
 }
 
-std::optional<ViewProjection> body_seen(const Editor& editor) {
-  const Rect* rect = editor.layout.place_of(ViewId::Body);
+std::optional<ViewProjection> body_seen(const Context& context) {
+  const Rect* rect = context.screen->layout.place_of(ViewId::Body);
   if (!rect) return std::nullopt;
-  return ViewProjection(editor, {ViewId::Body, *rect});
+  return ViewProjection(context, {ViewId::Body, *rect});
 }
 
 }  // namespace limber::editor

@@ -5,15 +5,15 @@
 
 #include <optional>
 
-#include "editor/context/layout.h"
+#include "editor/context/view_place.h"
 #include "render/view.h"
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 
 struct ViewProjection {
-  ViewProjection(const Editor& editor, const ViewPlace& place);
+  ViewProjection(const Context& context, const ViewPlace& place);
 
   std::optional<glm::dvec2> pixel_of(const glm::dvec3& point) const;  // returns no value for a point behind the eye
   render::Ray ray(const glm::dvec2& pixel) const;
@@ -40,6 +40,6 @@ struct ViewProjection {
 };
 
 // Returns the projection of the 3D view. Returns no value when the 3D view is not shown.
-std::optional<ViewProjection> body_seen(const Editor& editor);
+std::optional<ViewProjection> body_seen(const Context& context);
 
 }  // namespace limber::editor

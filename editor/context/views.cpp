@@ -5,6 +5,9 @@
 #include <limits>
 
 #include "core/deform/preview_map.h"
+#include "editor/context/arriving_body.h"
+#include "editor/context/selection.h"
+#include "editor/context/tissue_bounds.h"
 #include "render/scene/tissue_appearance.h"
 
 namespace limber::editor {
@@ -37,7 +40,7 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
   return t < 1 ? camera : to;
 }
 
-Views::Views(int largest_texture) : renderer(largest_texture) {
+Views::Views(int largest_texture) : renderer(largest_texture), arriving(std::make_shared<ArrivingBodies>()) {
   renderer.limit_memory(kMostBytes);
   // The first camera looks from the front, a little from the left and from above.
   body.camera = render::orbited(render::looking_from(render::StandardView::Front, body.camera), {-75, 25});

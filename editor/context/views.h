@@ -5,20 +5,21 @@
 #include <array>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "core/base/file.h"
 #include "core/project/document.h"
 #include "core/volume/tissue_voxels.h"
-#include "editor/context/arriving_body.h"
-#include "editor/context/layout.h"
-#include "editor/context/tissue_bounds.h"
+#include "editor/context/view_place.h"
 #include "render/scene/scene.h"
 #include "render/view.h"
 
 namespace limber::editor {
+
+class ArrivingBodies;
+struct Extents;
+struct Selection;
 
 // A move of the camera, shown as an animation of 180 ms that slows down towards its end. Any input ends the animation.
 struct CameraMove {
@@ -41,22 +42,6 @@ struct SliceState {
   render::SliceCamera camera;
   bool fitted = false;  // true: the camera shows the whole body; this has to wait until the view's size is known
   std::unique_ptr<render::SliceView> picture, other;
-};
-
-// The selected tissues and bones. They are not part of the document, so selecting is no edit.
-struct Selection {
-  std::optional<Label> tissue;  // the active tissue
-  std::set<Label> tissues;      // all selected tissues, including the active one
-  std::optional<int> bone;
-  std::set<int> bones;
-};
-
-// A bone or a tissue under the pointer, which a click can select.
-struct Pickable {
-  std::optional<int> bone;  // index of the bone; no value: this is the tissue with the label `tissue`
-  Label tissue = 0;
-
-  bool operator==(const Pickable&) const = default;
 };
 
 struct BoneWeight {
@@ -90,7 +75,7 @@ struct Views {
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;
-  std::shared_ptr<ArrivingBodies> arriving = std::make_shared<ArrivingBodies>();
+  std::shared_ptr<ArrivingBodies> arriving;  // never null
   BodyView body;
   std::array<SliceState, 3> slices;  // the three slices, indexed by render::SliceAxis
   glm::dvec3 cross_hair{0};          // the point at which the three slices meet, world, mm

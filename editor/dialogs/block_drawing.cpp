@@ -80,8 +80,8 @@ float for_each_word(const Look& look, const Block& block, float left, float righ
   return y + line;
 }
 
-void draw_word(Editor& editor, const Block& block, BlockPlace& place, const Word& word, float line) {
-  const Look& look = editor.look;
+void draw_word(Ui& ui, const Block& block, BlockPlace& place, const Word& word, float line) {
+  const Look& look = ui.look;
   ImFont* font = font_of(look, block.kind, word.run.style);
   const Colour colour = colour_of(look, block.kind, word.run.style);
   ImGui::GetWindowDrawList()->AddText(
@@ -93,14 +93,14 @@ void draw_word(Editor& editor, const Block& block, BlockPlace& place, const Word
   const bool goes_on = word.text.data() != word.run.text.data() && word.where.x > word.left;
   const float blank = goes_on ? text_size(font, " ").x : 0;
   const Rect rect{word.where - glm::vec2(blank, 0), word.where + glm::vec2(word.width, line)};
-  const Pressed pressed = press_area(editor, place.name + "/" + std::to_string(word.index), rect);
+  const Pressed pressed = press_area(ui, place.name + "/" + std::to_string(word.index), rect);
   const float under = std::round(rect.centre().y + font->FontSize * 0.42f);
   fill({{rect.low.x, under}, {rect.high.x, under + look.line()}}, with_alpha(colour, pressed.hovered ? 1.0f : 0.4f));
   if (pressed.clicked) place.clicked = word.run.target;
 }
 
-float draw_document_picture(Editor& editor, const Block& block, const BlockPlace& place, float y) {
-  const Look& look = editor.look;
+float draw_document_picture(Ui& ui, const Block& block, const BlockPlace& place, float y) {
+  const Look& look = ui.look;
   const DocumentPicture picture = place.picture ? place.picture(block.picture) : DocumentPicture{};
   if (picture.texture && picture.size.x > 0) {
     const float width = std::min(place.right - place.left, look.px(picture.size.x)),
@@ -109,12 +109,11 @@ float draw_document_picture(Editor& editor, const Block& block, const BlockPlace
     ImGui::GetWindowDrawList()->AddImageRounded(reinterpret_cast<ImTextureID>(std::uintptr_t(picture.texture)),
                                                 im(rect.low), im(rect.high), {0, 0}, {1, 1}, 0xFFFFFFFF, look.px(4));
     outline(rect, look.theme.line2, look.px(4), look.line());
-    register_widget(editor, "picture " + block.picture, rect);
+    register_widget(ui, "picture " + block.picture, rect);
     y = rect.high.y + look.px(5);
   }
   const std::string caption = plain_text(block);
-  return y +
-         put_wrapped(editor, look.fonts.small, look.theme.text2, {place.left, y}, place.right - place.left, caption);
+  return y + put_wrapped(ui, look.fonts.small, look.theme.text2, {place.left, y}, place.right - place.left, caption);
 }
 
 }  // namespace
@@ -128,9 +127,9 @@ float gap_below(const Block& block) {
   }
 }
 
-float draw_block(Editor& editor, const Block& block, BlockPlace& place, float y) {
-  if (block.kind == Block::Kind::Picture) return draw_document_picture(editor, block, place, y);
-  const Look& look = editor.look;
+float draw_block(Ui& ui, const Block& block, BlockPlace& place, float y) {
+  if (block.kind == Block::Kind::Picture) return draw_document_picture(ui, block, place, y);
+  const Look& look = ui.look;
   const float line = block.kind == Block::Kind::Title ? look.px(40) : look.px(22);
   float left = place.left;
   if (block.kind == Block::Kind::Point || block.kind == Block::Kind::Step)
@@ -144,11 +143,11 @@ float draw_block(Editor& editor, const Block& block, BlockPlace& place, float y)
     fill({{place.left + look.px(4), y + look.px(9)}, {place.left + look.px(8), y + look.px(13)}}, look.theme.text3,
          look.px(2));
   if (block.kind == Block::Kind::Step)
-    put_text(editor, look.fonts.semibold, look.theme.accent_text, Rect{{place.left, y}, {left - look.px(8), y + line}},
+    put_text(ui, look.fonts.semibold, look.theme.accent_text, Rect{{place.left, y}, {left - look.px(8), y + line}},
              std::to_string(block.number), Align::Right);
   y = for_each_word(look, block, left, place.right, y, line,
-                    [&](const Word& word) { draw_word(editor, block, place, word, line); });
-  editor.widgets.add_text(plain_text(block));
+                    [&](const Word& word) { draw_word(ui, block, place, word, line); });
+  ui.widgets.add_text(plain_text(block));
   return y;
 }
 

@@ -5,10 +5,13 @@
 #include <functional>
 #include <string>
 
-#include "editor/context/editor.h"
+#include <glm/glm.hpp>
+
 #include "editor/ui/markdown.h"
 
 namespace limber::editor {
+
+struct Ui;
 
 // A picture of a document as an OpenGL texture. The texture is 0 if the picture cannot be shown.
 struct DocumentPicture {
@@ -25,7 +28,7 @@ struct BlockPlace {
 };
 
 // Draws a block with its upper end at the y coordinate `y`. Returns the y coordinate of its lower end.
-float draw_block(Editor& editor, const Block& block, BlockPlace& place, float y);
+float draw_block(Ui& ui, const Block& block, BlockPlace& place, float y);
 // Returns the distance from this block to the next one, pixels at scale 1.
 float gap_below(const Block& block);
 

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+struct Context;
 
 struct Answer {
   std::string label;
-  std::function<void(Editor&)> act;  // called when the user selects the answer; empty: nothing happens
-  bool primary = false;              // true: the key Return selects this answer
+  std::function<void(Context&)> act;  // called when the user selects the answer; empty: nothing happens
+  bool primary = false;               // true: the key Return selects this answer
 };
 
 struct Question {
@@ -24,6 +24,6 @@ struct Question {
   std::vector<Answer> answers;  // the buttons from left to right; Escape closes the dialog without an answer
 };
 
-void ask(Editor& editor, Question question);
+void ask(Context& context, Question question);
 
 }  // namespace limber::editor

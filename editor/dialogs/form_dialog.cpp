@@ -5,6 +5,9 @@
 #include <cstdio>
 
 #include "core/base/error.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/dialogs/redo_last_operator.h"
 #include "editor/ui/icons.h"
@@ -18,26 +21,26 @@ constexpr float kWidth = 480, kRow = 34, kLabel = 130, kProblem = 18, kPicture =
 constexpr std::size_t kMostBeside = 4;
 constexpr int kMostLines = 5;  // the text that tells what the form's action will do is cut off after this many lines
 
-bool draw_choice(Editor& editor, FormField& field, const Rect& rect) {
-  const Look& look = editor.look;
+bool draw_choice(Ui& ui, FormField& field, const Rect& rect) {
+  const Look& look = ui.look;
   float widest = 0;
-  for (const std::string& choice : field.choices) widest = std::max(widest, width_of_button(editor, {"", choice}));
+  for (const std::string& choice : field.choices) widest = std::max(widest, width_of_button(ui, {"", choice}));
   const float width = std::round(rect.width() / static_cast<float>(field.choices.size()));
   if (field.choices.size() > kMostBeside || widest > width) {
-    const bool changed = choice_field(editor, rect, field.choices, field.chosen);
+    const bool changed = choice_field(ui, rect, field.choices, field.chosen);
     if (ImGui::IsMouseHoveringRect(im(rect.low), im(rect.high)) &&
         !ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId))
-      tooltip(editor, rect, field.label, field.description);
+      tooltip(ui, rect, field.label, field.description);
     return changed;
   }
   const int before = field.chosen;
   for (int i = 0; i < std::ssize(field.choices); ++i) {
     const Rect place{{rect.low.x + width * static_cast<float>(i), rect.low.y},
                      {rect.low.x + width * static_cast<float>(i + 1) - look.px(1), rect.high.y}};
-    if (button(editor, field.choices[i], place,
+    if (button(ui, field.choices[i], place,
                {"", field.choices[i], i == field.chosen ? ButtonStyle::Chosen : ButtonStyle::Plain}))
       field.chosen = i;
-    if (ImGui::IsItemHovered()) tooltip(editor, place, field.label, field.description);
+    if (ImGui::IsItemHovered()) tooltip(ui, place, field.label, field.description);
   }
   return field.chosen != before;
 }
@@ -46,8 +49,8 @@ class Form final : public Dialog {
  public:
   explicit Form(FormRequest request) : request_(std::move(request)) {}
 
-  void draw(Editor& editor) override;
-  bool key(Editor&, const Chord& chord) override {
+  void draw(Context& context) override;
+  bool key(Context&, const Chord& chord) override {
     if (chord.key != Key::Return && chord.key != Key::NumEnter) return false;
     return accept_ = true;
   }
@@ -79,13 +82,13 @@ float height_of(const Look& look, const FormField& field) {
       kRow, 16 + height_of_wrapped(look.fonts.regular, field.text, look.px(kWidth - 36 - kLabel - 8)) / look.scale);
 }
 
-void Form::draw(Editor& editor) {
-  const Look& look = editor.look;
+void Form::draw(Context& context) {
+  const Look& look = context.ui->look;
   const float description =
       height_of_wrapped(look.fonts.regular, request_.description, look.px(kWidth - 36), 2) > look.px(24) ? 44 : 28;
   // Updates the lines about wrong numbers only while the left mouse button is up. They change the dialog's layout, and
   // nothing may move under the pointer during a press.
-  if (!editor.input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
+  if (!context.ui->input.down(MouseButton::Left) || problems_.size() != request_.fields.size()) {
     problems_.clear();
     for (const FormField& field : request_.fields) problems_.push_back(problem_of(field));
   }
@@ -94,24 +97,24 @@ void Form::draw(Editor& editor) {
     fields += height_of(look, request_.fields[i]) + (problems_[i].empty() ? 0 : kProblem);
   const float said = std::max(
       52.0f, 20 + height_of_wrapped(look.fonts.small, words_, look.px(kWidth - 36 - 24), kMostLines) / look.scale);
-  Rect rect = begin_dialog(editor, request_.title, kWidth + (request_.picture ? kPicture + 18 : 0),
+  Rect rect = begin_dialog(context, request_.title, kWidth + (request_.picture ? kPicture + 18 : 0),
                            36 + 18 + description + fields + said + 28 + 18);
   if (request_.picture) {
     const float left = rect.high.x - look.px(kPicture);
-    request_.picture(editor, {{left, rect.low.y}, rect.high}, request_.fields);
+    request_.picture(context, {{left, rect.low.y}, rect.high}, request_.fields);
     rect.high.x = left - look.px(18);
   }
-  put_wrapped(editor, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.description, 2);
+  put_wrapped(context.ui, look.fonts.regular, look.theme.text2, rect.low, rect.width(), request_.description, 2);
   float y = rect.low.y + look.px(description);
   for (std::size_t i = 0; i < request_.fields.size(); ++i) {
     FormField& field = request_.fields[i];
     const bool typed_into = field.kind == FormField::Kind::Text || field.kind == FormField::Kind::Number;
     const float end = y + look.px(height_of(look, field));
-    draw_field(editor, field, {{rect.low.x, y}, {rect.high.x, end}}, look.px(kLabel),
+    draw_field(context, field, {{rect.low.x, y}, {rect.high.x, end}}, look.px(kLabel),
                typed_into && !std::exchange(focused_, true), OutOfRange::Stays);
     y = end;
     if (const std::string& wrong = problems_[i]; !wrong.empty()) {
-      put_text(editor, look.fonts.small, look.theme.warn,
+      put_text(context.ui, look.fonts.small, look.theme.warn,
                Rect{{rect.low.x + look.px(kLabel + 8), y - look.px(3)}, {rect.high.x, y + look.px(kProblem - 3)}},
                wrong);
       y += look.px(kProblem);
@@ -122,7 +125,7 @@ void Form::draw(Editor& editor) {
   bool ready = std::all_of(request_.fields.begin(), request_.fields.end(),
                            [](const FormField& field) { return problem_of(field).empty(); });
   try {
-    if (request_.outcome && ready) outcome = request_.outcome(editor, request_.fields);
+    if (request_.outcome && ready) outcome = request_.outcome(context, request_.fields);
   } catch (const Error& error) {
     problem = error.what();
     ready = false;
@@ -131,9 +134,9 @@ void Form::draw(Editor& editor) {
     ready = false;
   }
   const std::string& words = problem.empty() ? outcome : problem;
-  if (words != words_ && !editor.input.down(MouseButton::Left)) {
+  if (words != words_ && !context.ui->input.down(MouseButton::Left)) {
     words_ = words;
-    editor.touch();
+    context.ui->touch();
   }
   float x = rect.low.x;
   if (!problem.empty()) {
@@ -141,52 +144,54 @@ void Form::draw(Editor& editor) {
              icon::kWarning);
     x += look.px(24);
   }
-  put_wrapped(editor, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)},
+  put_wrapped(context.ui, look.fonts.small, problem.empty() ? look.theme.text2 : look.theme.warn, {x, y + look.px(10)},
               rect.high.x - x, words, kMostLines);
 
   const ButtonLook action{"", request_.action, ButtonStyle::Primary, ready};
-  const float width = std::max(look.px(96), width_of_button(editor, action)), low = rect.high.y - look.px(28),
+  const float width = std::max(look.px(96), width_of_button(context.ui, action)), low = rect.high.y - look.px(28),
               cancel = look.px(80);
   const Rect primary{{rect.high.x - width, low}, rect.high};
-  const bool pressed = button(editor, request_.action, primary, action);
+  const bool pressed = button(context.ui, request_.action, primary, action);
   if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
-    tooltip(editor, primary, request_.action, ready ? request_.description : problem,
+    tooltip(context.ui, primary, request_.action, ready ? request_.description : problem,
             Chord{Chord::Kind::Key, {}, Key::Return});
-  if (button(editor, "Cancel", {{primary.low.x - look.px(8) - cancel, low}, {primary.low.x - look.px(8), rect.high.y}},
-             {"", "Cancel"}))
-    editor.close_dialog();
-  end_dialog(editor);
+  if (button(context.ui, "Cancel",
+             {{primary.low.x - look.px(8) - cancel, low}, {primary.low.x - look.px(8), rect.high.y}}, {"", "Cancel"}))
+    context.dialogs->close();
+  end_dialog(context);
 
   if (!(pressed || std::exchange(accept_, false)) || !ready) return;
-  editor.close_dialog();
-  attempt(editor, request_.title, [this](Editor& e) { act_and_allow_redo(e, request_.fields, request_.act); });
+  context.dialogs->close();
+  attempt(context, request_.title, [this](Context& c) { act_and_allow_redo(c, request_.fields, request_.act); });
 }
 
 }  // namespace
 
-bool draw_field(Editor& editor, FormField& field, const Rect& row, float label_width, bool focus, OutOfRange numbers) {
-  const Look& look = editor.look;
-  const PathScope path(editor, field.label);
-  put_text(editor, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + label_width, row.high.y}},
+bool draw_field(Context& context, FormField& field, const Rect& row, float label_width, bool focus,
+                OutOfRange numbers) {
+  const Look& look = context.ui->look;
+  const PathScope path(context.ui, field.label);
+  put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{row.low, {row.low.x + label_width, row.high.y}},
            field.label);
   const Rect rect{{row.low.x + label_width + look.px(8), row.low.y + look.px(4)},
                   {row.high.x, row.high.y - look.px(4)}};
-  if (field.kind == FormField::Kind::Choice) return draw_choice(editor, field, rect);
-  if (field.kind == FormField::Kind::Text) return text_field(editor, "text", rect, field.text, "", focus);
+  if (field.kind == FormField::Kind::Choice) return draw_choice(context.ui, field, rect);
+  if (field.kind == FormField::Kind::Text) return text_field(context.ui, "text", rect, field.text, "", focus);
   if (field.kind == FormField::Kind::Fact) {
     const int lines = std::max(1, static_cast<int>((row.height() - look.px(12)) / look.fonts.regular->FontSize));
-    put_wrapped(editor, look.fonts.regular, look.theme.text, {rect.low.x, row.low.y + look.px(8)}, rect.width(),
+    put_wrapped(context.ui, look.fonts.regular, look.theme.text, {rect.low.x, row.low.y + look.px(8)}, rect.width(),
                 field.text, lines);
     return false;
   }
   bool committed = false;
   if (numbers == OutOfRange::Clamped)
-    number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, false, committed);
+    number_field(context.ui, "value", rect, field.value, field.low, field.high, field.format, field.unit, false,
+                 committed);
   else
-    committed =
-        judged_number_field(editor, "value", rect, field.value, field.low, field.high, field.format, field.unit, focus);
+    committed = judged_number_field(context.ui, "value", rect, field.value, field.low, field.high, field.format,
+                                    field.unit, focus);
   if (ImGui::IsItemHovered())
-    tooltip(editor, rect, field.label, field.description + "\nDrag to change the number, or click and type.");
+    tooltip(context.ui, rect, field.label, field.description + "\nDrag to change the number, or click and type.");
   return committed;
 }
 

@@ -9,12 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
-#include "editor/dialogs/form_dialog.h"
+#include "editor/dialogs/form_field.h"
 
 namespace limber::editor {
 
-using ActWith = std::function<void(Editor&, const std::vector<FormField>&)>;
+struct Context;
+struct Rect;
+
+using ActWith = std::function<void(Context&, const std::vector<FormField>&)>;
 
 struct LastOperation {
   std::string label;  // label of the operation's step in the undo history; "": no operation can be redone
@@ -33,22 +37,22 @@ struct LastOperation {
   bool wanted_at_pointer = false;
 };
 
-// Performs an operation by act(editor, fields). If the call adds exactly one step to the history, the user may change
+// Performs an operation by act(context, fields). If the call adds exactly one step to the history, the user may change
 // the fields afterwards, which undoes the step and calls `act` again.
 //   first  called in place of `act` the first time; empty: `act` is called
-void act_and_allow_redo(Editor& editor, const std::vector<FormField>& fields, const ActWith& act,
-                        const std::function<void(Editor&)>& first = {});
+void act_and_allow_redo(Context& context, const std::vector<FormField>& fields, const ActWith& act,
+                        const std::function<void(Context&)>& first = {});
 
 // Returns why the user cannot change the fields of the last operation now; "" when it is possible.
-std::string why_not_redo(const Editor& editor);
+std::string why_not_redo(const Context& context);
 // Undoes the last operation and performs it again with other fields. If the operation throws an error, shows the error
 // as a message and restores the document.
-void redo_last_operator(Editor& editor, const std::vector<FormField>& fields);
+void redo_last_operator(Context& context, const std::vector<FormField>& fields);
 
 // Draws the panel with the last operation's fields at the lower left corner of a view.
-void draw_last_operation(Editor& editor, const Rect& view);
+void draw_last_operation(Context& context, const Rect& view);
 // Draws the panel with the last operation's fields as a popup, which opens at the pointer when
 // LastOperation::wanted_at_pointer is set.
-void draw_last_operation_popup(Editor& editor);
+void draw_last_operation_popup(Context& context);
 
 }  // namespace limber::editor

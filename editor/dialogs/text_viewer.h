@@ -6,9 +6,9 @@
 #include <memory>
 #include <string>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+class Dialog;
 
 // Makes a dialog that shows a Markdown file of the assets. Throws Error when the file is missing.
 std::unique_ptr<Dialog> open_document(const std::string& title, const std::string& asset_name);

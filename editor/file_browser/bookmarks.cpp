@@ -2,6 +2,9 @@
 #include "editor/file_browser/bookmarks.h"
 
 #include "core/platform/desktop.h"
+#include "editor/context/context.h"
+#include "editor/context/open_project.h"
+#include "editor/context/recent_files.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
@@ -27,7 +30,7 @@ bool is_folder(const Path& path) {
   return fs::is_directory(path, error);
 }
 
-std::vector<Place> places_of(const Editor& editor) {
+std::vector<Place> places_of(const Context& context) {
   std::vector<Place> places;
   const auto add = [&](const char* icon, const std::string& name, const Path& path) {
     if (!is_folder(path)) return;
@@ -36,7 +39,7 @@ std::vector<Place> places_of(const Editor& editor) {
     places.push_back({icon, name, path});
   };
   const Path home = home_folder();
-  if (!editor.project_path.empty()) add(icon::kFolder, "Project's folder", editor.project_path.parent_path());
+  if (!context.project->path.empty()) add(icon::kFolder, "Project's folder", context.project->path.parent_path());
   add(icon::kFolder, "Home", home);
   for (const char* name : {"Desktop", "Documents", "Downloads"}) add(icon::kFolder, name, home / name);
   add(icon::kVolume, "Computer", "/");
@@ -45,8 +48,8 @@ std::vector<Place> places_of(const Editor& editor) {
   const auto add_recent = [&](const Path& folder) {
     if (places.size() < most) add(icon::kHistory, folder.filename().string(), folder);
   };
-  for (const Path& folder : editor.recent_files.recent_folders) add_recent(folder);
-  for (const Recent& one : editor.recent_files.recents) add_recent(one.path.parent_path());
+  for (const Path& folder : context.recent_files->recent_folders) add_recent(folder);
+  for (const Recent& one : context.recent_files->recents) add_recent(one.path.parent_path());
   return places;
 }
 

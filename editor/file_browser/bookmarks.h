@@ -6,16 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
+#include "core/platform/path.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct Place {
   const char* icon;
   std::string name;
   Path path;
 };
-std::vector<Place> places_of(const Editor& editor);  // returns the folders of the list that exist
+std::vector<Place> places_of(const Context& context);  // returns the folders of the list that exist
 bool is_folder(const Path& path);
 
 }  // namespace limber::editor

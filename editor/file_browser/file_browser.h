@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
 #include "editor/file_browser/directory_listing.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct FileRequest {
   enum class Kind { Open, OpenFolder, Save };
@@ -27,10 +28,10 @@ struct FileRequest {
   std::string name;          // file name that a Save dialog proposes
   bool takes_dicom = false;  // true: the dialog offers to open a folder of DICOM images as one volume
   Path folder;               // initial folder if the user has not selected a file for this purpose before
-  std::function<void(Editor&, const Path&)> chosen;
-  std::function<void(Editor&)> left;  // called when the dialog is closed without a selection; may be empty
+  std::function<void(Context&, const Path&)> chosen;
+  std::function<void(Context&)> left;  // called when the dialog is closed without a selection; may be empty
 };
 
-void browse(Editor& editor, FileRequest request);
+void browse(Context& context, FileRequest request);
 
 }  // namespace limber::editor

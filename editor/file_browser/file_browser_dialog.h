@@ -7,73 +7,76 @@
 #include <string>
 #include <vector>
 
+#include "editor/context/dialogs.h"
 #include "editor/file_browser/bookmarks.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/ui/widgets.h"
 
 namespace limber::editor {
 
+struct Context;
+
 class FileBrowser final : public Dialog {
  public:
-  FileBrowser(Editor& editor, FileRequest request);
-  void escape(Editor& editor) override;
-  void draw(Editor& editor) override;
+  FileBrowser(Context& context, FileRequest request);
+  void escape(Context& context) override;
+  void draw(Context& context) override;
 
  private:
   enum class Focus { List, Places };
   bool saving() const { return request_.kind == FileRequest::Kind::Save; }
   bool folders_only() const { return request_.kind == FileRequest::Kind::OpenFolder; }
 
-  void go_to(Editor& editor, const Path& folder);
+  void go_to(Context& context, const Path& folder);
   // Gets the folder's entries that the DirectoryReader has read so far, and updates the rows of the list.
-  void follow(Editor& editor);
-  void arrange_rows(Editor& editor);
+  void follow(Context& context);
+  void arrange_rows(Context& context);
   const DirectoryEntry* chosen() const { return row_ < std::ssize(rows_) ? &contents_.entries[rows_[row_]] : nullptr; }
   void select(const std::string& name);
   bool path_is_typed() const { return search_.starts_with("/") || search_.starts_with("~"); }
 
   // Handles the pressed keys. The keyboard can do all that the mouse can.
-  void take_keys(Editor& editor);
-  void move_row(Editor&);
+  void take_keys(Context& context);
+  void move_row(Context&);
   // Sets the text of the name field. The field gets a new ImGui id, because ImGui ignores a new text while the user
   // types in the field.
   void set_name(const std::string& name);
   void take_ending(const FileFilter& filter);
-  void go_up(Editor& editor);
-  void toggle_hidden(Editor& editor);
+  void go_up(Context& context);
+  void toggle_hidden(Context& context);
 
-  void leave(Editor& editor);
-  void finish(Editor& editor, const Path& path);
+  void leave(Context& context);
+  void finish(Context& context, const Path& path);
   // Handles Return and the primary button: opens or saves the selected file, or enters the selected folder.
-  void accept(Editor& editor);
-  void accept_typed(Editor& editor);
-  void accept_name(Editor& editor);
-  void enter(Editor& editor, const DirectoryEntry& entry);
-  void make_folder(Editor& editor);
+  void accept(Context& context);
+  void accept_typed(Context& context);
+  void accept_name(Context& context);
+  void enter(Context& context, const DirectoryEntry& entry);
+  void make_folder(Context& context);
 
-  void draw_places(Editor& editor, const Rect& rect);
+  void draw_places(Context& context, const Rect& rect);
   // Draws the path of the current folder as a row of buttons, one for each folder of the path, and the search field at
   // the right. If there is not enough room, draws only the last folders of the path.
-  void draw_path(Editor& editor, const Rect& rect);
+  void draw_path(Context& context, const Rect& rect);
   static std::string crumb(const Path& path);
-  void draw_search(Editor& editor, const Rect& rect);
+  void draw_search(Context& context, const Rect& rect);
   // Returns true if the dialog's text field should get the keyboard, which is whenever no other widget is in use.
-  bool wants_focus(Editor& editor);
-  void draw_list(Editor& editor, const Rect& rect);
+  bool wants_focus(Context& context);
+  void draw_list(Context& context, const Rect& rect);
   // Draws the row of a file or folder. Returns true when the row was double clicked.
-  bool draw_row(Editor& editor, const DirectoryEntry& entry, const Rect& row, int index, const glm::vec2& columns,
+  bool draw_row(Context& context, const DirectoryEntry& entry, const Rect& row, int index, const glm::vec2& columns,
                 std::int64_t now);
   static const char* icon_of(const std::string& name);
-  void open_row(Editor& editor, int index);
-  void column_head(Editor& editor, const char* title, const Rect& rect, SortBy by, Align align);
+  void open_row(Context& context, int index);
+  void column_head(Context& context, const char* title, const Rect& rect, SortBy by, Align align);
   bool offers_dicom() const { return request_.takes_dicom && contents_.holds_dicom; }
-  float draw_dicom_offer(Editor& editor, const Rect& rect);
-  void finish_folder(Editor& editor);
-  float draw_new_folder(Editor& editor, const Rect& rect);
-  void draw_empty(Editor& editor, const Rect& rect);
-  void draw_foot(Editor& editor, const Rect& rect);
-  float draw_filter(Editor& editor, const Rect& rect);
-  void draw_replace(Editor& editor, const Rect& rect);
+  float draw_dicom_offer(Context& context, const Rect& rect);
+  void finish_folder(Context& context);
+  float draw_new_folder(Context& context, const Rect& rect);
+  void draw_empty(Context& context, const Rect& rect);
+  void draw_foot(Context& context, const Rect& rect);
+  float draw_filter(Context& context, const Rect& rect);
+  void draw_replace(Context& context, const Rect& rect);
 
   FileRequest request_;
   std::vector<Place> places_;

@@ -18,6 +18,12 @@
 #include "core/skin/weights_io.h"
 #include "core/study/session_page.h"
 #include "core/volume_io/volume_io.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/open_project.h"
+#include "editor/context/platform_window.h"
+#include "editor/context/preferences.h"
+#include "editor/context/screen.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/figure/video.h"
@@ -26,6 +32,7 @@
 #include "editor/files/study_pictures.h"
 #include "editor/resample/results.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 #include "editor/volume/shown_image.h"
 #include "render/image_io.h"
 
@@ -75,8 +82,7 @@ render::Camera turned_about(const render::Camera& camera, double angle) {
 
 }  // namespace
 
-std::string why_not_export(const Editor& editor, ExportKind kind) {
-  const Document& document = editor.document();
+std::string why_not_export(const Document& document, ExportKind kind) {
   switch (kind) {
     case ExportKind::Volume:
     case ExportKind::Tissues: return document.volume ? "" : "Open a volume first";
@@ -96,14 +102,14 @@ std::string why_not_export(const Editor& editor, ExportKind kind) {
   return "";
 }
 
-void export_file(Editor& editor, ExportKind kind, const Path& path) {
+void export_file(Context& context, ExportKind kind, const Path& path) {
   check_export(kind, path);
-  start_task(editor, "Export " + path.filename().string(),
-             [kind, path, document = editor.document()](Progress& progress) -> Finish {
+  start_task(context, "Export " + path.filename().string(),
+             [kind, path, document = context.document()](Progress& progress) -> Finish {
                progress.update("write", 0);
                write_export(kind, document, path, progress);
-               return [path](Editor& e) {
-                 e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+               return [path](Context& c) {
+                 c.messages->ok("Exported " + path.filename().string(), path.parent_path().string());
                };
              });
 }
@@ -156,10 +162,10 @@ void write_with(const Exporter& exporter, const Result& result, const TissueTabl
 
 // Starts the task that writes a result to a file.
 //   frequency  frequency of the field that another program will simulate, Hz; used by exporters of electric properties
-void start_export(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path, double frequency) {
-  const Document& document = editor.document();
+void start_export(Context& context, const std::shared_ptr<const Result>& result, const Path& path, double frequency) {
+  const Document& document = context.document();
   const auto tissues = result->from_tissues ? result->from_tissues : document.tissues;
-  start_task(editor, "Export " + path.filename().string(),
+  start_task(context, "Export " + path.filename().string(),
              [result, path, frequency, tissues,
               type = document.volume_type ? *document.volume_type : FileType{}](Progress& progress) -> Finish {
                progress.update("write", 0);
@@ -167,106 +173,107 @@ void start_export(Editor& editor, const std::shared_ptr<const Result>& result, c
                const Exporter* exporter = exporter_for(path);
                if (!exporter) write_volume(*result->volume, path, *tissues, type);
                else write_with(*exporter, *result, *tissues, path, frequency, progress, warnings);
-               return [path, warnings](Editor& e) {
-                 e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
-                 for (const std::string& warning : warnings) e.messages.warn(path.filename().string(), warning);
+               return [path, warnings](Context& c) {
+                 c.messages->ok("Exported " + path.filename().string(), path.parent_path().string());
+                 for (const std::string& warning : warnings) c.messages->warn(path.filename().string(), warning);
                };
              });
 }
 
-void ask_frequency(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
-  const auto tissues = result->from_tissues ? result->from_tissues : editor.document().tissues;
-  const auto outcome = [tissues](const Editor&, const std::vector<FormField>& fields) {
+void ask_frequency(Context& context, const std::shared_ptr<const Result>& result, const Path& path) {
+  const auto tissues = result->from_tissues ? result->from_tissues : context.document().tissues;
+  const auto outcome = [tissues](const Context&, const std::vector<FormField>& fields) {
     return std::to_string(materials_at(*tissues, fields[0].value * 1e6).size()) +
            " tissues get permittivity and conductivity from the published tables.";
   };
-  const auto act = [result, path](Editor& e, const std::vector<FormField>& fields) {
-    start_export(e, result, path, fields[0].value * 1e6);
+  const auto act = [result, path](Context& c, const std::vector<FormField>& fields) {
+    start_export(c, result, path, fields[0].value * 1e6);
   };
-  editor.open_dialog(make_form({"Export " + path.filename().string(),
-                                "The permittivity and conductivity of tissue depend on the frequency of the field.",
-                                "Export",
-                                {number_of("Frequency", "The frequency of the simulated field.", 900,
-                                           kLowestFrequency / 1e6, kHighestFrequency / 1e6, "%g", "MHz")},
-                                outcome,
-                                act,
-                                {}}));
+  context.dialogs->open(make_form({"Export " + path.filename().string(),
+                                   "The permittivity and conductivity of tissue depend on the frequency of the field.",
+                                   "Export",
+                                   {number_of("Frequency", "The frequency of the simulated field.", 900,
+                                              kLowestFrequency / 1e6, kHighestFrequency / 1e6, "%g", "MHz")},
+                                   outcome,
+                                   act,
+                                   {}}));
 }
 
 // Starts the task that writes a report page of all results, oldest first, and opens it.
-void export_page(Editor& editor, const Path& path) {
-  const Document& document = editor.document();
-  SessionPage session{editor.name.empty() ? "Untitled" : Path(editor.name).stem().string(), {}, document.tissues};
+void export_page(Context& context, const Path& path) {
+  const Document& document = context.document();
+  SessionPage session{
+      context.project->name.empty() ? "Untitled" : Path(context.project->name).stem().string(), {}, document.tissues};
   for (const auto& result : document.results)
     session.results.push_back({result, result->from_armature && result->from_pose
                                            ? name_of_pose(*result->from_armature, *result->from_pose)
                                            : result->name});
-  start_task(editor, "Report " + path.filename().string(),
-             [session, path, scratch = editor.preferences.scratch_folder](Progress& progress) -> Finish {
+  start_task(context, "Report " + path.filename().string(),
+             [session, path, scratch = context.preferences->scratch_folder](Progress& progress) -> Finish {
                const ScratchFolder folder(scratch);
                write_file_atomically(path, session_page(session, folder.path(), start_pictures, progress));
-               return [path](Editor& e) {
-                 e.messages.ok((e.host.open_file(path) ? "Opened " : "Wrote ") + path.filename().string(),
-                               path.parent_path().string());
+               return [path](Context& c) {
+                 c.messages->ok((c.host->open_file(path) ? "Opened " : "Wrote ") + path.filename().string(),
+                                path.parent_path().string());
                };
              });
 }
 
 }  // namespace
 
-void export_result(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+void export_result(Context& context, const std::shared_ptr<const Result>& result, const Path& path) {
   const Exporter* exporter = exporter_for(path);
   if (exporter) check_place(path);
   else check_writable(path);
   if (exporter && !exporter->takes_voxels && !has_mesh(*result))
     throw Error("the result has no mesh", result->name, "select a FEM result whose pose bends a joint");
-  if (exporter && exporter->needs_frequency) ask_frequency(editor, result, path);
-  else start_export(editor, result, path, 0);
+  if (exporter && exporter->needs_frequency) ask_frequency(context, result, path);
+  else start_export(context, result, path, 0);
 }
 
-void export_posed_image(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+void export_posed_image(Context& context, const std::shared_ptr<const Result>& result, const Path& path) {
   check_writable(path);
-  const PosedImage* kept = posed_image_of(*editor.views, result->volume);
+  const PosedImage* kept = posed_image_of(*context.views, result->volume);
   if (!kept) throw Error("this result was made without an image", result->name, "show the image, and resample again");
   // The task holds the folder of the posed image, so that the folder remains even if the result is deleted meanwhile.
-  start_task(editor, "Export " + path.filename().string(),
+  start_task(context, "Export " + path.filename().string(),
              [file = kept->file, folder = kept->folder, path](Progress& progress) -> Finish {
                write_grey_volume(read_grey_volume(file, progress), path);
-               return [path](Editor& e) {
-                 e.messages.ok("Exported " + path.filename().string(), path.parent_path().string());
+               return [path](Context& c) {
+                 c.messages->ok("Exported " + path.filename().string(), path.parent_path().string());
                };
              });
 }
 
-void export_report(Editor& editor, const std::shared_ptr<const Result>& result, const Path& path) {
+void export_report(Context& context, const std::shared_ptr<const Result>& result, const Path& path) {
   check_place(path);
-  if (path.extension() == ".html") return export_page(editor, path);
+  if (path.extension() == ".html") return export_page(context, path);
   const std::string text =
-      path.extension() == ".json" ? result->report : text_of_report(result->name, *facts_of(editor, result));
-  start_task(editor, "Report " + path.filename().string(), [text, path](Progress&) -> Finish {
+      path.extension() == ".json" ? result->report : text_of_report(result->name, *facts_of(context, result));
+  start_task(context, "Report " + path.filename().string(), [text, path](Progress&) -> Finish {
     write_file_atomically(path, text);
-    return [path](Editor& e) { e.messages.ok("Wrote " + path.filename().string(), path.parent_path().string()); };
+    return [path](Context& c) { c.messages->ok("Wrote " + path.filename().string(), path.parent_path().string()); };
   });
 }
 
-void export_picture(Editor& editor, const Path& path) {
+void export_picture(Context& context, const Path& path) {
   check_place(path);
-  Views& views = *editor.views;
+  Views& views = *context.views;
   const auto done = [path](Progress&) -> Finish {
-    return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+    return [path](Context& c) { c.messages->ok("Exported " + path.filename().string(), path.parent_path().string()); };
   };
   const std::string label = "Export " + path.filename().string();
-  if (views.active == ViewId::Body || !editor.layout.place_of(views.active))
+  if (views.active == ViewId::Body || !context.screen->layout.place_of(views.active))
     return start_picture_task(
-        editor, {.label = label,
-                 .scene = views.scene,
-                 .size = size_of_view(editor, views.active),
-                 .camera = [camera = views.body.camera](int) { return camera; },
-                 .prepare = {},
-                 .take = [path](int, const render::Image& image, Progress&) { render::write_png(image, path); },
-                 .finish = done});
+        context, {.label = label,
+                  .scene = views.scene,
+                  .size = size_of_view(context.screen, views.active),
+                  .camera = [camera = views.body.camera](int) { return camera; },
+                  .prepare = {},
+                  .take = [path](int, const render::Image& image, Progress&) { render::write_png(image, path); },
+                  .finish = done});
   auto image = std::make_shared<render::Image>(slice_of(views, views.active).picture->read());
-  start_task(editor, label, [path, image, done](Progress& progress) -> Finish {
+  start_task(context, label, [path, image, done](Progress& progress) -> Finish {
     render::write_png(*image, path);
     return done(progress);
   });
@@ -274,13 +281,13 @@ void export_picture(Editor& editor, const Path& path) {
 
 namespace {
 
-void begin_turntable(Editor& editor, const Path& path, int pictures) {
-  const render::Camera from = editor.views->body.camera;
+void begin_turntable(Context& context, const Path& path, int pictures) {
+  const render::Camera from = context.views->body.camera;
   start_picture_files(
-      editor, path,
+      context, path,
       {.label = "Export turntable",
-       .scene = editor.views->scene,
-       .size = size_of_view(editor, ViewId::Body),
+       .scene = context.views->scene,
+       .size = size_of_view(context.screen, ViewId::Body),
        .pictures = pictures,
        .camera = [from, pictures](int i) { return turned_about(from, 2 * std::numbers::pi * i / pictures); },
        .prepare = {},
@@ -290,9 +297,9 @@ void begin_turntable(Editor& editor, const Path& path, int pictures) {
 
 }  // namespace
 
-void export_turntable(Editor& editor, const Path& path, int pictures) {
+void export_turntable(Context& context, const Path& path, int pictures) {
   const int count = is_video(path) ? kPicturesOfVideo : pictures;
-  agree_on_pictures(editor, path, count, [path, count](Editor& e) { begin_turntable(e, path, count); });
+  agree_on_pictures(context, path, count, [path, count](Context& c) { begin_turntable(c, path, count); });
 }
 
 }  // namespace limber::editor

@@ -5,6 +5,9 @@
 
 #include "core/export/exporter.h"
 #include "core/motion/clip.h"
+#include "editor/context/context.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/files/export.h"
@@ -19,17 +22,17 @@ namespace limber::editor {
 
 namespace {
 
-std::string stem_of(const Editor& editor) {
-  return editor.name.empty() ? "Untitled" : Path(editor.name).stem().string();
+std::string stem_of(const Context& context) {
+  return context.project->name.empty() ? "Untitled" : Path(context.project->name).stem().string();
 }
 
 // Returns the proposed file name for exports of the shown motion: the clip's name, without characters that file names
 // cannot contain.
-std::string motion_stem(const Editor& editor) {
-  const Clip* clip = editor.document().shown_clip();
+std::string motion_stem(const Context& context) {
+  const Clip* clip = context.document().shown_clip();
   std::string name = clip ? clip->name : "";
   std::replace(name.begin(), name.end(), '/', '-');
-  return name.empty() || name[0] == '.' ? stem_of(editor) : name;
+  return name.empty() || name[0] == '.' ? stem_of(context) : name;
 }
 
 struct ExportFacts {
@@ -53,36 +56,36 @@ Operator export_operator(const ExportFacts& facts) {
           icon::kExport,
           "File",
           facts.description,
-          [facts](Editor& e) {
-            browse(e, {.purpose = "export",
+          [facts](Context& c) {
+            browse(c, {.purpose = "export",
                        .title = title_of(facts.label),
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = facts.filters,
-                       .name = (facts.kind == ExportKind::Motion ? motion_stem(e) : stem_of(e)) + facts.suffix +
+                       .name = (facts.kind == ExportKind::Motion ? motion_stem(c) : stem_of(c)) + facts.suffix +
                                facts.filters[0].ends[0],
-                       .folder = e.project_path.parent_path(),
-                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) { export_file(ed, kind, path); }});
+                       .folder = c.project->path.parent_path(),
+                       .chosen = [kind = facts.kind](Context& c, const Path& path) { export_file(c, kind, path); }});
           },
-          [kind = facts.kind](const Editor& e) { return why_not_export(e, kind); }};
+          [kind = facts.kind](const Context& c) { return why_not_export(c.document(), kind); }};
 }
 
 Operator picture_operator(const char* id, const char* label, const char* description,
-                          std::string (*name)(const Editor&), std::vector<FileFilter> filters,
-                          void (*act)(Editor&, const Path&)) {
+                          std::string (*name)(const Context&), std::vector<FileFilter> filters,
+                          void (*act)(Context&, const Path&)) {
   return {id,
           label,
           icon::kCamera,
           "File",
           description,
-          [label, name, filters, act](Editor& e) {
-            browse(e, {.purpose = "picture",
+          [label, name, filters, act](Context& c) {
+            browse(c, {.purpose = "picture",
                        .title = title_of(label),
                        .action = "Export",
                        .kind = FileRequest::Kind::Save,
                        .filters = filters,
-                       .name = name(e) + ".png",
-                       .folder = e.project_path.parent_path(),
+                       .name = name(c) + ".png",
+                       .folder = c.project->path.parent_path(),
                        .chosen = act});
           },
           needs_volume};
@@ -100,8 +103,8 @@ Operator motion_pictures() {
 
 // Returns a file name made of the project's and the result's names: "limb, Forearm, DQ". Replaces "/" by "-", because
 // file names cannot contain it.
-std::string file_name_of(const Editor& editor, const Result& result) {
-  std::string name = stem_of(editor) + ", " + result.name;
+std::string file_name_of(const Context& context, const Result& result) {
+  std::string name = stem_of(context) + ", " + result.name;
   std::replace(name.begin(), name.end(), '/', '-');
   return name;
 }
@@ -109,18 +112,18 @@ std::string file_name_of(const Editor& editor, const Result& result) {
 // Opens the file browser and writes the result that is selected now to the file that the user names. This result is
 // also written if the user selects another result before accepting the file name.
 //   name  proposed file name without its ending
-void browse_for_result(Editor& editor, const std::string& title, const char* purpose, const std::string& name,
+void browse_for_result(Context& context, const std::string& title, const char* purpose, const std::string& name,
                        const std::vector<FileFilter>& filters,
-                       void (*write)(Editor&, const std::shared_ptr<const Result>&, const Path&)) {
-  const auto result = chosen_result(editor);
-  browse(editor, {.purpose = purpose,
-                  .title = title,
-                  .action = "Export",
-                  .kind = FileRequest::Kind::Save,
-                  .filters = filters,
-                  .name = name + filters[0].ends[0],
-                  .folder = editor.project_path.parent_path(),
-                  .chosen = [result, write](Editor& e, const Path& path) { write(e, result, path); }});
+                       void (*write)(Context&, const std::shared_ptr<const Result>&, const Path&)) {
+  const auto result = chosen_result(context);
+  browse(context, {.purpose = purpose,
+                   .title = title,
+                   .action = "Export",
+                   .kind = FileRequest::Kind::Save,
+                   .filters = filters,
+                   .name = name + filters[0].ends[0],
+                   .folder = context.project->path.parent_path(),
+                   .chosen = [result, write](Context& c, const Path& path) { write(c, result, path); }});
 }
 
 std::vector<FileFilter> formats_of(const Result& result) {
@@ -130,15 +133,16 @@ std::vector<FileFilter> formats_of(const Result& result) {
   return formats;
 }
 
-std::string needs_result(const Editor& editor) {
-  return editor.document().results.empty() ? "Resample a pose first" : "";
+std::string needs_result(const Context& context) {
+  return context.document().results.empty() ? "Resample a pose first" : "";
 }
 
-std::string needs_posed_image(const Editor& editor) {
-  if (const std::string reason = needs_result(editor); !reason.empty()) return reason;
-  const auto result = chosen_result(editor);
-  return result && posed_image_of(*editor.views, result->volume) ? ""
-                                                                 : "Show an image (File > Import), then resample again";
+std::string needs_posed_image(const Context& context) {
+  if (const std::string reason = needs_result(context); !reason.empty()) return reason;
+  const auto result = chosen_result(context);
+  return result && posed_image_of(*context.views, result->volume)
+             ? ""
+             : "Show an image (File > Import), then resample again";
 }
 
 }  // namespace
@@ -187,23 +191,23 @@ std::vector<Operator> export_operators() {
                        ""}),
       {"file.export", "Export...", icon::kExport, "Result",
        "Export the selected result as voxels, as surfaces, or as input for openEMS, gprMax and others.",
-       [](Editor& e) {
-         browse_for_result(e, "Export " + chosen_result(e)->name, "export", file_name_of(e, *chosen_result(e)),
-                           formats_of(*chosen_result(e)), export_result);
+       [](Context& c) {
+         browse_for_result(c, "Export " + chosen_result(c)->name, "export", file_name_of(c, *chosen_result(c)),
+                           formats_of(*chosen_result(c)), export_result);
        },
        needs_result},
       {"file.export_image", "Posed image...", icon::kExport, "File",
        "Export the grey image (CT, MR) that was posed together with the selected result.",
-       [](Editor& e) {
-         browse_for_result(e, "Export posed image", "posed image", stem_of(e) + "-image", writable_volumes(),
+       [](Context& c) {
+         browse_for_result(c, "Export posed image", "posed image", stem_of(c) + "-image", writable_volumes(),
                            export_posed_image);
        },
        needs_posed_image},
       {"report.open", "Report...", icon::kReport, "Result",
        "Export a web page of all results with pictures and quality gates and open it, or export the selected result's "
        "report as text or JSON.",
-       [](Editor& e) {
-         browse_for_result(e, "Report", "report", stem_of(e) + "-results",
+       [](Context& c) {
+         browse_for_result(c, "Report", "report", stem_of(c) + "-results",
                            {{"Page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}},
                            export_report);
        },
@@ -213,13 +217,13 @@ std::vector<Operator> export_operators() {
       {"file.export_figure", "Figure...", icon::kCamera, "File",
        "Export the active view for a publication: its size in mm, with a scale bar, a legend and a title, as PNG, TIFF "
        "or SVG.",
-       [last = std::make_shared<FigureOptions>()](Editor& e) { ask_for_figure(e, last); }, needs_volume},
+       [last = std::make_shared<FigureOptions>()](Context& c) { ask_for_figure(c.dialogs, last); }, needs_volume},
       picture_operator(
           "view.turntable", "Turntable...",
           "Export 36 pictures of the body, with the camera turning once around it, or a video of 5 s.",
-          [](const Editor& e) { return stem_of(e) + "-turn"; },
+          [](const Context& c) { return stem_of(c) + "-turn"; },
           {{"PNG pictures", {".png"}}, {"MP4 video", {".mp4"}}, {"WebM video", {".webm"}}},
-          [](Editor& e, const Path& path) { export_turntable(e, path); }),
+          [](Context& c, const Path& path) { export_turntable(c, path); }),
       motion_pictures(),
   };
 }

@@ -4,11 +4,8 @@
 #include <algorithm>
 #include <ctime>
 
-#include <nlohmann/json.hpp>
-
 #include "core/autorig/rig_check.h"
 #include "core/base/error.h"
-#include "core/base/json_text.h"
 #include "core/motion/bvh.h"
 #include "core/motion/motion_edit.h"
 #include "core/motion/up_axis.h"
@@ -20,7 +17,14 @@
 #include "core/volume_io/grey_image.h"
 #include "core/volume_io/volume_files.h"
 #include "core/volume_io/volume_io.h"
+#include "editor/context/arriving_body.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/open_project.h"
+#include "editor/context/recent_files.h"
+#include "editor/context/selection.h"
+#include "editor/context/tissue_bounds.h"
 #include "editor/file_browser/thumbnails.h"
 #include "editor/files/project_session.h"
 #include "editor/motion/motion_clip_edits.h"
@@ -30,6 +34,7 @@
 #include "editor/rig/rig_edits.h"
 #include "editor/shown/frame_all.h"
 #include "editor/skin/weight_layers.h"
+#include "editor/ui/messages.h"
 #include "editor/volume/grey_image_panel.h"
 #include "editor/volume/shown_image.h"
 
@@ -46,21 +51,6 @@ std::string name_of_file(const Path& path) {
   return (has_two && !stem.stem().empty() ? stem.stem() : stem).string();
 }
 
-constexpr std::uint64_t kLargestJson = 64 << 20;  // a larger JSON file of a rig or pose is an error, bytes
-
-std::string extension_of(const Path& path) {
-  std::string end = path.extension().string();
-  std::transform(end.begin(), end.end(), end.begin(), [](unsigned char c) { return std::tolower(c); });
-  return end;
-}
-
-FileKind kind_of_json(const Path& path) {
-  if (is_tissue_table(path)) return FileKind::Tissues;
-  const auto json = nlohmann::json::parse(checked_json(read_file(path, kLargestJson), path.string()), nullptr, false);
-  if (json.is_object() && json.contains("bones")) return json["bones"].is_array() ? FileKind::Rig : FileKind::Pose;
-  throw Error("this JSON file is neither a rig, a pose nor a tissue table", path.string(), "select another file");
-}
-
 template <class T>
 std::shared_ptr<const T> shared(T value) {
   return std::make_shared<const T>(std::move(value));
@@ -68,8 +58,8 @@ std::shared_ptr<const T> shared(T value) {
 
 std::string imported(const Path& path) { return "Import " + path.filename().string(); }
 
-void warn_of(Editor& editor, const Path& path, const std::vector<std::string>& warnings) {
-  for (const std::string& warning : warnings) editor.messages.warn(path.filename().string(), warning);
+void warn_of(Messages& messages, const Path& path, const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) messages.warn(path.filename().string(), warning);
 }
 
 // Returns a new document with the file's tissues and volume type. The new document has no rig and no weights, because
@@ -156,40 +146,40 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
 // Shows an image that was read from `path` with the open body. If no body is open, opens the project `opened` for the
 // image.
 //   agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
-void take_image(Editor& editor, const std::shared_ptr<const GreyLevels>& image, const std::shared_ptr<Opened>& opened,
+void take_image(Context& context, const std::shared_ptr<const GreyLevels>& image, const std::shared_ptr<Opened>& opened,
                 const Path& path, std::int64_t agreed) {
-  if (const auto& tissues = editor.document().tissues; tissues && !tissues->tissues.empty()) {
-    show_image(editor, image, path);
-    editor.messages.ok(path.filename().string(), "The image is shown with the body. Sidebar > Image sets how.");
+  if (const auto& tissues = context.document().tissues; tissues && !tissues->tissues.empty()) {
+    show_image(context, image, path);
+    context.messages->ok(path.filename().string(), "The image is shown with the body. Sidebar > Image sets how.");
     return;
   }
-  opened->then = [image, path](Editor& e) {
-    show_image(e, image, path);
-    e.views->display = render::Display::Image;
-    e.messages.ok(path.filename().string(),
-                  "This is a grey image. To rig it, make labels first: Edit > Prepare volume > Labels from CT.");
+  opened->then = [image, path](Context& c) {
+    show_image(c, image, path);
+    c.views->display = render::Display::Image;
+    c.messages->ok(path.filename().string(),
+                   "This is a grey image. To rig it, make labels first: Edit > Prepare volume > Labels from CT.");
   };
   opened->agreed = agreed;
-  add_recent(editor.recent_files, path, std::time(nullptr));
-  replace_project(editor, opened);
+  add_recent(context.recent_files, path, std::time(nullptr));
+  replace_project(context, opened);
 }
 
 // Opens a label volume by calling `take`. A grey image is shown with the body instead. If the file may be either, first
 // shows the image in a dialog, and calls `take` only if the user agrees to open the image as labels.
 //   agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
-void take_or_show(Editor& editor, const ReadVolume& read, const Path& path, const char* answer, const Finish& take,
+void take_or_show(Context& context, const ReadVolume& read, const Path& path, const char* answer, const Finish& take,
                   std::int64_t agreed) {
-  if (!read.image) return take(editor);
-  const Finish show = [levels = read.levels, opened = read.as_project, path, agreed](Editor& e) {
-    take_image(e, levels, opened, path, agreed);
+  if (!read.image) return take(context);
+  const Finish show = [levels = read.levels, opened = read.as_project, path, agreed](Context& c) {
+    take_image(c, levels, opened, path, agreed);
   };
-  if (read.is_image) return show(editor);
-  show_grey_image(editor, {.image = read.image,
-                           .name = path.filename().string(),
-                           .doubt = read.doubt,
-                           .answer = answer,
-                           .as_labels = take,
-                           .as_image = show});
+  if (read.is_image) return show(context);
+  show_grey_image(context, {.image = read.image,
+                            .name = path.filename().string(),
+                            .doubt = read.doubt,
+                            .answer = answer,
+                            .as_labels = take,
+                            .as_image = show});
 }
 
 using Change = std::function<void(Document&)>;
@@ -307,17 +297,17 @@ bool same_basis(FileKind kind, const Document& then, const Document& now) {
 }
 
 // Opens the files one after another. The next file is opened when the document contains the file before it.
-void open_in_order(Editor& editor, std::vector<std::pair<FileKind, Path>> files, Then then) {
+void open_in_order(Context& context, std::vector<std::pair<FileKind, Path>> files, Then then) {
   if (files.empty()) {
-    if (then) then(editor);
+    if (then) then(context);
     return;
   }
   const auto [kind, path] = files.front();
   files.erase(files.begin());
-  const Then next = [files, then](Editor& e) { open_in_order(e, files, then); };
-  if (kind == FileKind::Project) return open_project(editor, path, next);
-  if (kind == FileKind::Volume) return open_volume(editor, path, next);
-  import_file(editor, kind, path, next);
+  const Then next = [files, then](Context& c) { open_in_order(c, files, then); };
+  if (kind == FileKind::Project) return open_project(context, path, next);
+  if (kind == FileKind::Volume) return open_volume(context, path, next);
+  import_file(context, kind, path, next);
 }
 
 StepOfWork step_of(FileKind kind) {
@@ -332,33 +322,11 @@ StepOfWork step_of(FileKind kind) {
 
 }  // namespace
 
-FileKind kind_of(const Path& path) {
-  std::error_code error;
-  if (!fs::exists(path, error))
-    throw Error("there is no such file", path.string(), "it may have been moved or deleted");
-  if (fs::is_directory(path, error)) {
-    if (is_dicom_folder(path)) return FileKind::Volume;
-    throw Error("this folder holds no DICOM images", path.string(),
-                "select the folder that contains the images themselves");
-  }
-  if (is_project(path)) return FileKind::Project;
-  const std::string end = extension_of(path);
-  if (end == ".limber")
-    throw Error("this is not a Limber project, or its beginning is damaged", path.string(), "select another file");
-  if (end == ".json") return kind_of_json(path);
-  if (end == ".bvh") return FileKind::Motion;
-  if (end == ".vtk" || end == ".arm" || end == ".gltf" || end == ".glb") return FileKind::Rig;
-  if (is_weights_path(path)) return FileKind::Weights;
-  if (is_volume_path(path)) return FileKind::Volume;
-  // A file of an unknown kind is passed to the volume reader, whose error message says what is wrong with the file.
-  return is_tissue_table(path) ? FileKind::Tissues : FileKind::Volume;
-}
-
-void open_files(Editor& editor, std::vector<Path> paths, Then then) {
+void open_files(Context& context, std::vector<Path> paths, Then then) {
   if (paths.empty()) return;
   const std::string label =
       "Open " + (paths.size() == 1 ? paths[0].filename().string() : std::to_string(paths.size()) + " files");
-  start_task(editor, label, [paths = std::move(paths), then](Progress& progress) -> Finish {
+  start_task(context, label, [paths = std::move(paths), then](Progress& progress) -> Finish {
     std::vector<std::pair<FileKind, Path>> files;
     for (const Path& path : paths) {
       progress.update("files", static_cast<double>(files.size()) / static_cast<double>(paths.size()));
@@ -369,17 +337,17 @@ void open_files(Editor& editor, std::vector<Path> paths, Then then) {
       if (files[i].first <= FileKind::Volume)
         throw Error("only one volume or project can be opened at a time", files[i].second.string(),
                     "open one of these files");
-    return [files, then](Editor& e) { open_in_order(e, files, then); };
+    return [files, then](Context& c) { open_in_order(c, files, then); };
   });
 }
 
-void open_volume(Editor& editor, const Path& path, Then then) {
-  ask_about_unsaved(editor, [path, then](Editor& e) {
+void open_volume(Context& context, const Path& path, Then then) {
+  ask_about_unsaved(context, [path, then](Context& c) {
     const int job = start_task(
-        e, "Open " + path.filename().string(),
-        [path, then, agreed = e.history.revision(), make_ready = body_maker(*e.views)](Progress& progress) -> Finish {
+        c, "Open " + path.filename().string(),
+        [path, then, agreed = c.history->revision(), make_ready = body_maker(*c.views)](Progress& progress) -> Finish {
           ReadVolume read = read_labels_or_image(path, progress);
-          if (!read.labels) return [read, path, agreed](Editor& ed) { take_or_show(ed, read, path, "", {}, agreed); };
+          if (!read.labels) return [read, path, agreed](Context& c) { take_or_show(c, read, path, "", {}, agreed); };
           VolumeFile& file = *read.labels;
           auto opened = std::make_shared<Opened>();
           opened->document = with_volume(file);
@@ -390,59 +358,60 @@ void open_volume(Editor& editor, const Path& path, Then then) {
           opened->name = name_of_file(path);
           opened->label = "Open " + path.filename().string();
           opened->agreed = agreed;
-          opened->then = [path, then](Editor& ed) {
-            keep_thumbnail(ed, path);
-            if (then) then(ed);
+          opened->then = [path, then](Context& c) {
+            keep_thumbnail(c, path);
+            if (then) then(c);
           };
-          const Finish take = [opened, path, warnings = file.warnings](Editor& ed) {
-            warn_of(ed, path, warnings);
-            add_recent(ed.recent_files, path, std::time(nullptr));
-            replace_project(ed, opened);
+          const Finish take = [opened, path, warnings = file.warnings](Context& c) {
+            warn_of(c.messages, path, warnings);
+            add_recent(c.recent_files, path, std::time(nullptr));
+            replace_project(c, opened);
           };
-          return [take, path, agreed, read = std::move(read)](Editor& ed) {
-            take_or_show(ed, read, path, "Open as labels", take, agreed);
+          return [take, path, agreed, read = std::move(read)](Context& c) {
+            take_or_show(c, read, path, "Open as labels", take, agreed);
           };
         });
-    e.step_of_job[job] = StepOfWork::Prepare;
+    c.background->step_of_job[job] = StepOfWork::Prepare;
   });
 }
 
-void import_file(Editor& editor, FileKind kind, const Path& path, Then then) {
-  const int job =
-      start_task(editor, imported(path), [kind, path, then, before = editor.document()](Progress& progress) -> Finish {
+void import_file(Context& context, FileKind kind, const Path& path, Then then) {
+  const int job = start_task(
+      context, imported(path), [kind, path, then, before = context.document()](Progress& progress) -> Finish {
         auto import = std::make_shared<Import>(read_import(kind, path, before, progress));
         import->inputs = inputs_of(kind, path);
-        const Finish take = [import, kind, path, then, before](Editor& e) {
-          if (!same_basis(kind, before, e.document()))
+        const Finish take = [import, kind, path, then, before](Context& c) {
+          if (!same_basis(kind, before, c.document()))
             refuse("the project changed while the file was read", path, "import it again");
-          Document next = e.document();
+          Document next = c.document();
           import->change(next);
           if (kind == FileKind::Pose)
-            commit_pose(e, imported(path), pose_of(next), changed_bones(pose_of(e.document()), pose_of(next)));
-          else commit(e, imported(path), std::move(next));
-          e.inputs.insert(e.inputs.end(), import->inputs.begin(), import->inputs.end());
-          warn_of(e, path, import->warnings);
-          if (kind == FileKind::Rig && before.armature) warn_of_moved_targets(e, imported(path), *before.armature);
+            commit_pose(c, imported(path), pose_of(next), changed_bones(pose_of(c.document()), pose_of(next)));
+          else commit(c, imported(path), std::move(next));
+          c.project->inputs.insert(c.project->inputs.end(), import->inputs.begin(), import->inputs.end());
+          warn_of(c.messages, path, import->warnings);
+          if (kind == FileKind::Rig && before.armature) warn_of_moved_targets(c, imported(path), *before.armature);
           if (kind == FileKind::Volume) {
-            e.selection = {};
-            frame_all(e, false);
+            *c.selection = {};
+            frame_all(c, false);
           }
-          if (then) then(e);
-          if (import->inside < kMisplaced) offer_fit(e, path.filename().string(), import->inside);
+          if (then) then(c);
+          if (import->inside < kMisplaced) offer_fit(c, path.filename().string(), import->inside);
         };
-        return [import, path, take](Editor& e) { take_or_show(e, import->read, path, "Replace the labels", take, -1); };
+        return
+            [import, path, take](Context& c) { take_or_show(c, import->read, path, "Replace the labels", take, -1); };
       });
-  editor.step_of_job[job] = step_of(kind);
+  context.background->step_of_job[job] = step_of(kind);
 }
 
-void open_image(Editor& editor, const Path& path) {
-  const int job = start_task(editor, "Open image " + path.filename().string(), [path](Progress& progress) -> Finish {
+void open_image(Context& context, const Path& path) {
+  const int job = start_task(context, "Open image " + path.filename().string(), [path](Progress& progress) -> Finish {
     const auto levels = levels_of(read_grey_volume(path, progress));
-    return [levels, opened = project_for_image(*levels, path), path](Editor& e) {
-      take_image(e, levels, opened, path, -1);
+    return [levels, opened = project_for_image(*levels, path), path](Context& c) {
+      take_image(c, levels, opened, path, -1);
     };
   });
-  editor.step_of_job[job] = StepOfWork::Prepare;
+  context.background->step_of_job[job] = StepOfWork::Prepare;
 }
 
 const SampleFacts& facts_of(Sample sample) {
@@ -453,12 +422,12 @@ const SampleFacts& facts_of(Sample sample) {
   return kFacts[static_cast<int>(sample)];
 }
 
-void open_sample(Editor& editor, Sample sample, Then then) {
-  ask_about_unsaved(editor, [sample, then](Editor& e) {
+void open_sample(Context& context, Sample sample, Then then) {
+  ask_about_unsaved(context, [sample, then](Context& c) {
     const SampleFacts& facts = facts_of(sample);
-    const int job = start_task(e, "Make sample: " + std::string(facts.name),
-                               [sample, then, &facts, agreed = e.history.revision(),
-                                make_ready = body_maker(*e.views)](Progress& progress) -> Finish {
+    const int job = start_task(c, "Make sample: " + std::string(facts.name),
+                               [sample, then, &facts, agreed = c.history->revision(),
+                                make_ready = body_maker(*c.views)](Progress& progress) -> Finish {
                                  const bool arm = sample == Sample::Arm || sample == Sample::ArmXray;
                                  Phantom phantom = arm ? make_arm_phantom(2, progress) : make_body_phantom(4, progress);
                                  auto opened = std::make_shared<Opened>();
@@ -483,18 +452,18 @@ void open_sample(Editor& editor, Sample sample, Then then) {
                                  opened->label = "Open sample: " + opened->name;
                                  opened->agreed = agreed;
                                  opened->then = then;
-                                 return [opened, sample](Editor& ed) {
-                                   ed.views->display =
+                                 return [opened, sample](Context& c) {
+                                   c.views->display =
                                        sample == Sample::ArmXray ? render::Display::XRay : render::Display::Solid;
-                                   replace_project(ed, opened);
+                                   replace_project(c, opened);
                                  };
                                });
-    e.step_of_job[job] = StepOfWork::Prepare;
+    c.background->step_of_job[job] = StepOfWork::Prepare;
   });
 }
 
-void open_waiting_files(Editor& editor) {
-  if (!editor.to_open.empty()) open_files(editor, std::exchange(editor.to_open, {}));
+void open_waiting_files(Context& context) {
+  if (!context.project->to_open.empty()) open_files(context, std::exchange(context.project->to_open, {}));
 }
 
 }  // namespace limber::editor

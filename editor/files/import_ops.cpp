@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators that import files into the open project.
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/files/file_filters.h"
@@ -18,67 +22,67 @@ struct ImportFacts {
   FileFilter filter;
 };
 
-Operator import_operator(const ImportFacts& facts, std::string (*disabled_reason)(const Editor&)) {
+Operator import_operator(const ImportFacts& facts, std::string (*disabled_reason)(const Context&)) {
   return {facts.id,
           facts.label,
           icon::kImport,
           "File",
           facts.description,
-          [facts](Editor& e) {
-            browse(e, {.purpose = facts.id,
+          [facts](Context& c) {
+            browse(c, {.purpose = facts.id,
                        .title = std::string("Import: ") + facts.label,
                        .action = "Import",
                        .filters = {facts.filter},
                        .takes_dicom = facts.kind == FileKind::Volume,
-                       .folder = e.project_path.parent_path(),
-                       .chosen = [kind = facts.kind](Editor& ed, const Path& path) {
-                         kind == FileKind::Motion ? import_motion(ed, path) : import_file(ed, kind, path);
+                       .folder = c.project->path.parent_path(),
+                       .chosen = [kind = facts.kind](Context& c, const Path& path) {
+                         kind == FileKind::Motion ? import_motion(c, path) : import_file(c, kind, path);
                        }});
           },
           disabled_reason};
 }
 
-void import_dicom(Editor& editor) {
-  browse(editor, {.purpose = "dicom",
-                  .title = "Import a folder of DICOM images",
-                  .action = "Open this folder",
-                  .kind = FileRequest::Kind::OpenFolder,
-                  .takes_dicom = true,
-                  .chosen = [](Editor& e, const Path& path) { open_files(e, {path}); }});
+void import_dicom(Context& context) {
+  browse(context, {.purpose = "dicom",
+                   .title = "Import a folder of DICOM images",
+                   .action = "Open this folder",
+                   .kind = FileRequest::Kind::OpenFolder,
+                   .takes_dicom = true,
+                   .chosen = [](Context& c, const Path& path) { open_files(c, {path}); }});
 }
 
-void import_image(Editor& editor) {
-  browse(editor, {.purpose = "image",
-                  .title = "Import a grey image (CT, MR)",
-                  .action = "Import",
-                  .filters = {volume_files()},
-                  .takes_dicom = true,
-                  .chosen = [](Editor& e, const Path& path) { open_image(e, path); }});
+void import_image(Context& context) {
+  browse(context, {.purpose = "image",
+                   .title = "Import a grey image (CT, MR)",
+                   .action = "Import",
+                   .filters = {volume_files()},
+                   .takes_dicom = true,
+                   .chosen = [](Context& c, const Path& path) { open_image(c, path); }});
 }
 
 // Imports a file of any kind. A volume replaces the open volume; any other file is added to the open project.
-void import_any(Editor& editor) {
-  browse(editor, {.purpose = "import",
-                  .title = "Import",
-                  .action = "Import",
-                  .filters = {readable_files()},
-                  .takes_dicom = true,
-                  .chosen = [](Editor& e, const Path& path) {
-                    start_task(e, "Import " + path.filename().string(), [path](Progress&) -> Finish {
-                      const FileKind kind = kind_of(path);
-                      return [kind, path](Editor& ed) {
-                        kind == FileKind::Project  ? open_project(ed, path)
-                        : kind == FileKind::Motion ? import_motion(ed, path)
-                                                   : import_file(ed, kind, path);
-                      };
-                    });
-                  }});
+void import_any(Context& context) {
+  browse(context, {.purpose = "import",
+                   .title = "Import",
+                   .action = "Import",
+                   .filters = {readable_files()},
+                   .takes_dicom = true,
+                   .chosen = [](Context& c, const Path& path) {
+                     start_task(c, "Import " + path.filename().string(), [path](Progress&) -> Finish {
+                       const FileKind kind = kind_of(path);
+                       return [kind, path](Context& c) {
+                         kind == FileKind::Project  ? open_project(c, path)
+                         : kind == FileKind::Motion ? import_motion(c, path)
+                                                    : import_file(c, kind, path);
+                       };
+                     });
+                   }});
 }
 
-std::string needs_rig_and_volume(const Editor& editor) {
-  return !editor.document().volume ? "Open a volume first" : !editor.document().armature ? "Import a rig first" : "";
+std::string needs_rig_and_volume(const Context& context) {
+  return !context.document().volume ? "Open a volume first" : !context.document().armature ? "Import a rig first" : "";
 }
-std::string needs_rig(const Editor& editor) { return editor.document().armature ? "" : "Import a rig first"; }
+std::string needs_rig(const Context& context) { return context.document().armature ? "" : "Import a rig first"; }
 
 }  // namespace
 

@@ -6,6 +6,11 @@
 
 #include "core/base/error.h"
 #include "core/motion/followed_centre.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/preferences.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/figure/video.h"
@@ -16,6 +21,7 @@
 #include "editor/shown/shown_pose.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 #include "render/image_io.h"
 
 namespace limber::editor {
@@ -32,9 +38,9 @@ Path numbered(const Path& path, int number) {
 
 // Returns the frames of the clip that become pictures: every frame, or for a video as many as its fixed number of
 // pictures per second needs. Throws Error if there are too many.
-std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
-  const auto [low, high] = playing_range(editor);
-  const double step = is_video(path) ? frame_rate(editor) / kPicturesPerSecond : 1;
+std::vector<int> frames_of_pictures(const Document& document, const Path& path) {
+  const auto [low, high] = playing_range(document);
+  const double step = is_video(path) ? frame_rate(document) / kPicturesPerSecond : 1;
   const double pictures = std::floor((double(high) - low + 0.5) / step) + 1;
   if (!(pictures <= kMostPictures)) {
     char count[32];
@@ -50,12 +56,12 @@ std::vector<int> frames_of_pictures(const Editor& editor, const Path& path) {
 // Poses the scene for one frame of the clip after another.
 class PosedScenes {
  public:
-  PosedScenes(Editor& editor, std::vector<int> frames)
-      : clip_(editor.document().clips[static_cast<std::size_t>(editor.document().clip)], editor.document().armature),
-        document_(editor.document()),
-        blend_(preview_blend(editor)),
+  PosedScenes(Context& context, std::vector<int> frames)
+      : clip_(context.document().clips[static_cast<std::size_t>(context.document().clip)], context.document().armature),
+        document_(context.document()),
+        blend_(preview_blend(context.resampling)),
         frames_(std::move(frames)),
-        maker_(editor.live->lend()) {
+        maker_(context.live->lend()) {
     if (!clip_.problem().empty()) throw Error("the clip cannot be drawn", clip_.clip()->name, clip_.problem());
   }
 
@@ -95,11 +101,11 @@ glm::dvec3 shown_centre(const Document& document, FollowedCentre& centre) {
 
 // Returns the function that gives the camera of each picture. The camera stands still at the 3D view's position, or
 // moves with the body and keeps its current position relative to the body.
-std::function<render::Camera(int picture)> camera_of_pictures(const Editor& editor, const std::vector<int>& frames,
+std::function<render::Camera(int picture)> camera_of_pictures(const Context& context, const std::vector<int>& frames,
                                                               MotionCamera kind) {
-  const render::Camera still = editor.views->body.camera;
+  const render::Camera still = context.views->body.camera;
   if (kind == MotionCamera::Still) return [still](int) { return still; };
-  const Document& document = editor.document();
+  const Document& document = context.document();
   const auto centre =
       std::make_shared<FollowedCentre>(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
   return [still, frames, centre, shown = shown_centre(document, *centre)](int picture) {
@@ -111,96 +117,97 @@ std::function<render::Camera(int picture)> camera_of_pictures(const Editor& edit
 
 }  // namespace
 
-glm::ivec2 size_of_view(const Editor& editor, ViewId id) {
-  const Rect* place = editor.layout.place_of(id);
+glm::ivec2 size_of_view(const Screen& screen, ViewId id) {
+  const Rect* place = screen.layout.place_of(id);
   return place ? glm::max(glm::ivec2(place->size()), 16) : glm::ivec2(1280, 720);
 }
 
-void agree_on_pictures(Editor& editor, const Path& path, int pictures, std::function<void(Editor&)> begin) {
+void agree_on_pictures(Context& context, const Path& path, int pictures, std::function<void(Context&)> begin) {
   check_place(path);
   if (is_video(path)) {
     require_ffmpeg(path);
-    return begin(editor);
+    return begin(context);
   }
   int there = 0;
   for (int i = 0; i < pictures; ++i) there += std::filesystem::exists(numbered(path, i));
-  if (there == 0) return begin(editor);
+  if (there == 0) return begin(context);
   const std::string first = numbered(path, 0).filename().string(),
                     last = numbered(path, pictures - 1).filename().string();
-  ask(editor, {.title = "Replace pictures?",
-               .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " +
-                             last + " already exist.",
-                         path.parent_path().string()},
-               .icon = icon::kWarning,
-               .answers = {{"Cancel", {}}, {"Replace", std::move(begin)}}});
+  ask(context, {.title = "Replace pictures?",
+                .lines = {std::to_string(there) + (there == 1 ? " picture" : " pictures") + " of " + first + " to " +
+                              last + " already exist.",
+                          path.parent_path().string()},
+                .icon = icon::kWarning,
+                .answers = {{"Cancel", {}}, {"Replace", std::move(begin)}}});
 }
 
-void start_picture_files(Editor& editor, const Path& path, PictureTask task) {
+void start_picture_files(Context& context, const Path& path, PictureTask task) {
   if (is_video(path)) {
     const auto video = std::make_shared<std::unique_ptr<Video>>();
-    task.take = [video, path, size = task.size, scratch = editor.preferences.scratch_folder](
+    task.take = [video, path, size = task.size, scratch = context.preferences->scratch_folder](
                     int i, const render::Image& image, Progress& progress) {
       if (i == 0) *video = std::make_unique<Video>(path, size, scratch, progress);
       (*video)->add(image);
     };
     task.finish = [video, path](Progress&) -> Finish {
       (*video)->finish();
-      return [path](Editor& e) { e.messages.ok("Exported " + path.filename().string(), path.parent_path().string()); };
+      return
+          [path](Context& c) { c.messages->ok("Exported " + path.filename().string(), path.parent_path().string()); };
     };
   } else {
     task.take = [path](int i, const render::Image& image, Progress&) { render::write_png(image, numbered(path, i)); };
     task.finish = [path, pictures = task.pictures](Progress&) -> Finish {
-      return [path, pictures](Editor& e) {
-        e.messages.ok("Exported " + std::to_string(pictures) + (pictures == 1 ? " picture" : " pictures"),
-                      path.parent_path().string());
+      return [path, pictures](Context& c) {
+        c.messages->ok("Exported " + std::to_string(pictures) + (pictures == 1 ? " picture" : " pictures"),
+                       path.parent_path().string());
       };
     };
   }
-  start_picture_task(editor, std::move(task));
+  start_picture_task(context, std::move(task));
 }
 
-std::string why_no_motion_pictures(const Editor& editor) {
-  const Document& document = editor.document();
+std::string why_no_motion_pictures(const Context& context) {
+  const Document& document = context.document();
   if (!document.volume) return "Open a volume first";
   if (!document.armature) return "Import a rig first";
-  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
+  if (!shown_clip(context.document())) return "Import a motion first, or insert a key";
   if (!document.weights) return "Compute the weights first";
-  if (editor.live->is_lent()) return "The pictures of a motion are being drawn";
-  if (watched_solve(editor)) return "The views show a running solve: switch off Watch the solve first";
-  return shown_result(editor) ? "A result is shown: show the volume at rest first" : "";
+  if (context.live->is_lent()) return "The pictures of a motion are being drawn";
+  if (watched_solve(context)) return "The views show a running solve: switch off Watch the solve first";
+  return shown_result(context) ? "A result is shown: show the volume at rest first" : "";
 }
 
-void export_motion_pictures(Editor& editor, const Path& path, MotionCamera camera) {
-  if (const std::string why = why_no_motion_pictures(editor); !why.empty())
+void export_motion_pictures(Context& context, const Path& path, MotionCamera camera) {
+  if (const std::string why = why_no_motion_pictures(context); !why.empty())
     throw Error("the motion cannot be shown", path.filename().string(), why);
-  const std::vector<int> frames = frames_of_pictures(editor, path);
-  agree_on_pictures(editor, path, static_cast<int>(frames.size()), [path, frames, camera](Editor& e) {
-    stop_playing(e);
-    const auto scenes = std::make_shared<PosedScenes>(e, frames);
+  const std::vector<int> frames = frames_of_pictures(context.document(), path);
+  agree_on_pictures(context, path, static_cast<int>(frames.size()), [path, frames, camera](Context& c) {
+    stop_playing(c);
+    const auto scenes = std::make_shared<PosedScenes>(c, frames);
     start_picture_files(
-        e, path,
+        c, path,
         {.label = "Motion pictures",
-         .scene = e.views->scene,
-         .size = size_of_view(e, ViewId::Body),
+         .scene = c.views->scene,
+         .size = size_of_view(c.screen, ViewId::Body),
          .pictures = static_cast<int>(frames.size()),
-         .camera = camera_of_pictures(e, frames, camera),
+         .camera = camera_of_pictures(c, frames, camera),
          .prepare = [scenes](int picture, render::Scene& scene) { return scenes->pose(picture, scene); },
          .take = {},
          .finish = {}});
   });
 }
 
-void ask_motion_pictures(Editor& editor, const Path& path) {
-  if (const std::string why = why_no_motion_pictures(editor); !why.empty())
+void ask_motion_pictures(Context& context, const Path& path) {
+  if (const std::string why = why_no_motion_pictures(context); !why.empty())
     throw Error("the motion cannot be shown", path.filename().string(), why);
-  const auto outcome = [path](const Editor& e, const std::vector<FormField>&) {
-    const std::size_t pictures = frames_of_pictures(e, path).size();
+  const auto outcome = [path](const Context& c, const std::vector<FormField>&) {
+    const std::size_t pictures = frames_of_pictures(c.document(), path).size();
     return std::to_string(pictures) + (pictures == 1 ? " picture" : " pictures") + ", drawn in the background.";
   };
-  const auto act = [path](Editor& e, const std::vector<FormField>& fields) {
-    export_motion_pictures(e, path, static_cast<MotionCamera>(fields[0].chosen));
+  const auto act = [path](Context& c, const std::vector<FormField>& fields) {
+    export_motion_pictures(c, path, static_cast<MotionCamera>(fields[0].chosen));
   };
-  editor.open_dialog(
+  context.dialogs->open(
       make_form({"Motion as pictures",
                  "Draws the body in each frame of the playing range, with the current camera of the 3D view.",
                  "Export",

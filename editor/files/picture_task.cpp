@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/files/picture_task.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+
+#include "editor/context/context.h"
+#include "editor/context/views.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -52,7 +57,7 @@ bool draw_share(Drawing& drawing, const PictureTask& task) {
 }
 
 // Draws a part of the next picture, or passes the complete picture to the task. Returns false after the last picture.
-bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board& board) {
+bool draw_next(Ui& ui, Drawing& drawing, const PictureTask& task, Board& board) {
   const auto taken = [&] {
     const std::lock_guard lock(board.mutex);
     return !board.picture;
@@ -61,7 +66,7 @@ bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board&
   // While the scene is not ready, draw nothing; the task's progress update wakes the editor again.
   if (task.prepare && !drawing.prepared) drawing.prepared = task.prepare(drawing.picture, drawing.scene);
   if (task.prepare && !drawing.prepared) return true;
-  editor.touch();
+  ui.touch();
   if (!drawing.drawn) drawing.drawn = draw_share(drawing, task);
   if (!drawing.drawn || !taken()) return true;
   render::Image image = drawing.view->read();
@@ -74,20 +79,20 @@ bool draw_next(Editor& editor, Drawing& drawing, const PictureTask& task, Board&
 
 }  // namespace
 
-void start_picture_task(Editor& editor, PictureTask wanted) {
+void start_picture_task(Context& context, PictureTask wanted) {
   auto task = std::make_shared<const PictureTask>(std::move(wanted));
   auto board = std::make_shared<Board>();
   auto drawing = std::make_shared<Drawing>();
-  drawing->view = std::make_unique<render::View3D>(editor.views->renderer);
+  drawing->view = std::make_unique<render::View3D>(context.views->renderer);
   drawing->scene = task->scene;
-  const int id = start_task(editor, task->label, [task, board](Progress& progress) -> Finish {
+  const int id = start_task(context, task->label, [task, board](Progress& progress) -> Finish {
     for (int i = 0; i < task->pictures; ++i) task->take(i, next_picture(*board, i, task->pictures, progress), progress);
     return task->finish(progress);
   });
-  editor.each_frame.push_back([id, board, task, drawing](Editor& e) {
-    if (!e.tasks.contains(id)) return false;  // the job has ended, possibly before its first picture
+  context.background->each_frame.push_back([id, board, task, drawing](Context& c) {
+    if (!c.background->tasks.contains(id)) return false;  // the job has ended, possibly before its first picture
     try {
-      return draw_next(e, *drawing, *task, *board);
+      return draw_next(c.ui, *drawing, *task, *board);
     } catch (...) {  // passed to the job's thread, which throws it again and so fails
       const std::lock_guard lock(board->mutex);
       board->failure = std::current_exception();

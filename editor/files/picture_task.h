@@ -4,9 +4,14 @@
 // writes the files.
 #pragma once
 
-#include "editor/context/editor.h"
+#include "editor/context/background_task.h"
+#include "render/image_io.h"
+#include "render/scene/camera.h"
+#include "render/scene/scene.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct PictureTask {
   std::string label;    // label of the job
@@ -21,6 +26,6 @@ struct PictureTask {
   std::function<void(int picture, const render::Image& image, Progress& progress)> take;
   std::function<Finish(Progress& progress)> finish;
 };
-void start_picture_task(Editor& editor, PictureTask task);
+void start_picture_task(Context& context, PictureTask task);
 
 }  // namespace limber::editor

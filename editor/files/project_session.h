@@ -13,11 +13,13 @@
 
 #include "core/base/named_files.h"
 #include "core/project/session.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
 
-using Then = std::function<void(Editor&)>;
+struct Context;
+struct Extents;
+
+using Then = std::function<void(Context&)>;
 
 // A project's state as read from a file, ready to replace the open project.
 struct Opened {
@@ -33,27 +35,27 @@ struct Opened {
   Then then;                               // called after the project is open
   std::vector<NamedFile> inputs;           // files that were read if there is no project file
 };
-void replace_project(Editor& editor, std::shared_ptr<Opened> opened);
+void replace_project(Context& context, std::shared_ptr<Opened> opened);
 
 // Asks whether to save unsaved edits (Save, Don't save, Cancel), then calls `go_on`. Without unsaved edits, calls
 // `go_on` at once.
-void ask_about_unsaved(Editor& editor, Then go_on);
-void new_project(Editor& editor);
+void ask_about_unsaved(Context& context, Then go_on);
+void new_project(Context& context);
 enum class Leftover { Ask, Recover };  // what to do with edits left by a crash
-void open_project(Editor& editor, const Path& path, Then then = {}, Leftover leftover = Leftover::Ask);
+void open_project(Context& context, const Path& path, Then then = {}, Leftover leftover = Leftover::Ask);
 
 // Saves the project; asks for a file name if it has none.
-void save_project(Editor& editor, Then then = {});
-void save_project_as(Editor& editor, const Path& path, Then then = {});
-void save_project_copy(Editor& editor, const Path& path);
-void ask_where_to_save(Editor& editor, Then then = {});
+void save_project(Context& context, Then then = {});
+void save_project_as(Context& context, const Path& path, Then then = {});
+void save_project_copy(Context& context, const Path& path);
+void ask_where_to_save(Context& context, Then then = {});
 
 // Find, recover or discard the edits left by sessions that ended in a crash.
-void look_for_leftovers(Editor& editor);
-void recover(Editor& editor, const Recoverable& leftover);
-void discard_leftover(Editor& editor, const Recoverable& leftover);
+void look_for_leftovers(Context& context);
+void recover(Context& context, const Recoverable& leftover);
+void discard_leftover(Context& context, const Recoverable& leftover);
 
 // Writes new edits to the journal, and shows a message if they cannot be stored. Call once per frame.
-void keep_edits(Editor& editor);
+void keep_edits(Context& context);
 
 }  // namespace limber::editor

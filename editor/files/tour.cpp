@@ -1,72 +1,87 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/files/tour.h"
 
-#include "editor/context/editor.h"
+#include "core/project/history.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/preferences.h"
+#include "editor/context/recent_files.h"
+#include "editor/context/screen.h"
+#include "editor/context/start_screen_state.h"
+#include "editor/context/views.h"
 #include "editor/files/import.h"
 #include "editor/shown/shown_result.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
 namespace {
 
-int hidden_tissues(const Editor& editor) {
+int hidden_tissues(const Document& document) {
   int count = 0;
-  if (editor.document().visibility)
-    for (const auto& [label, look] : editor.document().visibility->looks) count += !look.visible;
+  if (document.visibility)
+    for (const auto& [label, look] : document.visibility->looks) count += !look.visible;
   return count;
 }
 
-int statistics_opened(const Editor& editor) {
-  const auto count = editor.preferences.command_counts.find("prepare.statistics");
-  return count == editor.preferences.command_counts.end() ? 0 : count->second;
+int statistics_opened(const Preferences& preferences) {
+  const auto count = preferences.command_counts.find("prepare.statistics");
+  return count == preferences.command_counts.end() ? 0 : count->second;
 }
 
-bool turned(const Editor& editor, const TourStart& start) {
-  return std::abs(glm::dot(editor.views->body.camera.world_from_view, start.turn)) < 0.999 && !editor.drag;
+bool turned(const Context& context, const TourStart& start) {
+  return std::abs(glm::dot(context.views->body.camera.world_from_view, start.turn)) < 0.999 &&
+         !context.interaction->drag;
 }
-bool sees_through(const Editor& editor, const TourStart&) { return editor.views->display == render::Display::XRay; }
-bool clipped(const Editor& editor, const TourStart&) {
-  return editor.document().visibility && editor.document().visibility->clip_box.enabled;
+bool sees_through(const Context& context, const TourStart&) { return context.views->display == render::Display::XRay; }
+bool clipped(const Context& context, const TourStart&) {
+  return context.document().visibility && context.document().visibility->clip_box.enabled;
 }
-bool hid_one(const Editor& editor, const TourStart& start) { return hidden_tissues(editor) > start.hidden; }
-bool undid(const Editor& editor, const TourStart& start) { return editor.history.position() < start.position; }
-bool sees_slices(const Editor& editor, const TourStart&) { return editor.arrangement().views == ViewLayout::Four; }
-bool moved_cross_hair(const Editor& editor, const TourStart& start) {
-  return glm::distance(editor.views->cross_hair, start.cross_hair) > 1 && !editor.drag;
+bool hid_one(const Context& context, const TourStart& start) {
+  return hidden_tissues(context.document()) > start.hidden;
+}
+bool undid(const Context& context, const TourStart& start) { return context.history->position() < start.position; }
+bool sees_slices(const Context& context, const TourStart&) {
+  return context.screen->arrangement().views == ViewLayout::Four;
+}
+bool moved_cross_hair(const Context& context, const TourStart& start) {
+  return glm::distance(context.views->cross_hair, start.cross_hair) > 1 && !context.interaction->drag;
 }
 
-bool counted(const Editor& editor, const TourStart& start) {
-  return statistics_opened(editor) > start.statistics && !editor.dialog;
+bool counted(const Context& context, const TourStart& start) {
+  return statistics_opened(context.preferences) > start.statistics && !context.dialogs->shown;
 }
-bool weighted(const Editor& editor, const TourStart&) { return editor.document().weights != nullptr; }
-bool bent(const Editor& editor, const TourStart&) {
-  const Document& document = editor.document();
+bool weighted(const Context& context, const TourStart&) { return context.document().weights != nullptr; }
+bool bent(const Context& context, const TourStart&) {
+  const Document& document = context.document();
   return document.armature && document.pose && *document.pose != rest_pose(*document.armature);
 }
-bool resampled(const Editor& editor, const TourStart& start) {
-  return editor.document().results.size() > start.results;
+bool resampled(const Context& context, const TourStart& start) {
+  return context.document().results.size() > start.results;
 }
 
-bool in_skin(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Skin; }
-bool in_pose(const Editor& editor, const TourStart&) { return editor.workspace == Workspace::Pose; }
-bool sees_result(const Editor& editor, const TourStart&) {
-  return editor.workspace == Workspace::Resample && (shown_result(editor) || editor.document().results.empty());
+bool in_skin(const Context& context, const TourStart&) { return context.workspace() == Workspace::Skin; }
+bool in_pose(const Context& context, const TourStart&) { return context.workspace() == Workspace::Pose; }
+bool sees_result(const Context& context, const TourStart&) {
+  return context.workspace() == Workspace::Resample && (shown_result(context) || context.document().results.empty());
 }
 
-TourStart start_of(const Editor& editor) {
-  return {editor.views->body.camera.world_from_view,
-          editor.views->cross_hair,
-          editor.history.position(),
-          hidden_tissues(editor),
-          editor.document().results.size(),
-          statistics_opened(editor)};
+TourStart start_of(const Context& context) {
+  return {context.views->body.camera.world_from_view,
+          context.views->cross_hair,
+          context.history->position(),
+          hidden_tissues(context.document()),
+          context.document().results.size(),
+          statistics_opened(context.preferences)};
 }
 
-void show_tour(Editor& editor) {
-  editor.start_screen = false;
-  editor.tour.shown = true;
-  const int kept = editor.recent_files.tour_step;
-  go_to_step(editor, kept < std::ssize(tour_steps()) ? kept : 0);
+void show_tour(Context& context) {
+  context.start_screen->shown = false;
+  context.tour->shown = true;
+  const int kept = context.recent_files->tour_step;
+  go_to_step(context, kept < std::ssize(tour_steps()) ? kept : 0);
 }
 
 }  // namespace
@@ -108,32 +123,32 @@ const std::vector<TourStep>& tour_steps() {
   return steps;
 }
 
-void start_tour(Editor& editor) {
-  if (editor.document().volume) return show_tour(editor);
-  open_sample(editor, Sample::Arm, show_tour);
+void start_tour(Context& context) {
+  if (context.document().volume) return show_tour(context);
+  open_sample(context, Sample::Arm, show_tour);
 }
 
-void go_to_step(Editor& editor, int step) {
-  editor.recent_files.tour_step = step;
+void go_to_step(Context& context, int step) {
+  context.recent_files->tour_step = step;
   if (step >= std::ssize(tour_steps())) {
-    editor.tour.shown = false;
-    editor.recent_files.tour_step = 0;
-    editor.messages.ok("The tour is finished", "Help > Tour starts it again");
+    context.tour->shown = false;
+    context.recent_files->tour_step = 0;
+    context.messages->ok("The tour is finished", "Help > Tour starts it again");
     return;
   }
-  editor.tour.step = step;
-  editor.tour.start = start_of(editor);
-  editor.touch();
+  context.tour->step = step;
+  context.tour->start = start_of(context);
+  context.ui->touch();
 }
 
-void end_tour(Editor& editor) {
-  editor.tour.shown = false;
-  editor.touch();
+void end_tour(Context& context) {
+  context.tour->shown = false;
+  context.ui->touch();
 }
 
-void follow_tour(Editor& editor) {
-  if (!editor.tour.shown || !editor.document().volume) return;
-  if (tour_steps()[editor.tour.step].done(editor, editor.tour.start)) go_to_step(editor, editor.tour.step + 1);
+void follow_tour(Context& context) {
+  if (!context.tour->shown || !context.document().volume) return;
+  if (tour_steps()[context.tour->step].done(context, context.tour->start)) go_to_step(context, context.tour->step + 1);
 }
 
 }  // namespace limber::editor

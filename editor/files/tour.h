@@ -10,19 +10,19 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 
 struct TourStep {
   // Title and text of the bubble, the widget at which it points, the operator whose shortcut it shows.
   const char *title, *text, *widget, *operator_id;
-  bool (*done)(const Editor&, const TourStart&);
+  bool (*done)(const Context&, const TourStart&);
 };
 const std::vector<TourStep>& tour_steps();
 
-void start_tour(Editor& editor);
-void go_to_step(Editor& editor, int step);  // a step beyond the last ends the tour
-void end_tour(Editor& editor);
+void start_tour(Context& context);
+void go_to_step(Context& context, int step);  // a step beyond the last ends the tour
+void end_tour(Context& context);
 // Goes to the tour's next step when the current step is done. Call once per frame.
-void follow_tour(Editor& editor);
+void follow_tour(Context& context);
 
 }  // namespace limber::editor

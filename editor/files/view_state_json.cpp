@@ -6,10 +6,16 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "editor/context/context.h"
 #include "editor/context/layout_json.h"
+#include "editor/context/open_project.h"
+#include "editor/context/resampling_settings.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/motion/constrained_pose.h"
 #include "editor/shown/shown_pose.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/shown_image.h"
 
 namespace limber::editor {
@@ -82,7 +88,7 @@ void restore(const Json& json, render::Camera& camera) {
 }
 
 // Starts to read the image with which the project was saved. If its file is gone, looks beside the project's file.
-void restore_image(Editor& editor, const Json& json) {
+void restore_image(Context& context, const Json& json) {
   const Json path = json.value("path", Json());
   if (!path.is_string() || path.get<std::string>().empty()) return;
   render::ShownGrey shown;
@@ -92,23 +98,23 @@ void restore_image(Editor& editor, const Json& json) {
   take_choice(json, "rendering", 5, shown.rendering);
   Path file = path.get<std::string>();
   std::error_code error;
-  if (const Path beside = editor.project_path.parent_path() / file.filename();
+  if (const Path beside = context.project->path.parent_path() / file.filename();
       !std::filesystem::exists(file, error) && std::filesystem::exists(beside, error))
     file = beside;
-  reopen_image(editor, file, json.contains("level") ? std::optional(shown) : std::nullopt);
+  reopen_image(context, file, json.contains("level") ? std::optional(shown) : std::nullopt);
 }
 
 // Stores the free pose (the pose before constraints are applied) if the user made it by hand. The document contains
 // only the pose after the constraints.
-void add_free_pose(Json& json, const Editor& editor) {
-  const auto free = free_pose_by_hand(editor);
+void add_free_pose(Json& json, const Context& context) {
+  const auto free = free_pose_by_hand(context);
   if (!free) return;
   Json& stored = json["free_pose"] = {{"root", json_of(free->root_translation)}, {"rotations", Json::array()}};
   for (const glm::dquat& q : free->rotation) stored["rotations"].push_back(Json::array({q.w, q.x, q.y, q.z}));
 }
 
-void restore_free_pose(Editor& editor, const Json& json) {
-  const Document& document = editor.document();
+void restore_free_pose(Context& context, const Json& json) {
+  const Document& document = context.document();
   const auto stored = json.find("free_pose");
   if (!is_constrained(document) || stored == json.end() || !stored->is_object()) return;
   Pose free = rest_pose(*document.armature);
@@ -120,15 +126,15 @@ void restore_free_pose(Editor& editor, const Json& json) {
     if (!take_vector(Json{{"q", (*rotations)[bone]}}, "q", q) || std::abs(glm::length(q) - 1) > 1e-6) return;
     free.rotation[bone] = glm::dquat(q[0], q[1], q[2], q[3]);
   }
-  remember_free_pose(editor, document, pose_of(document), free);
+  remember_free_pose(context.timeline, document, pose_of(document), free);
 }
 
 }  // namespace
 
-std::string editor_state(const Editor& editor) {
-  const Views& views = *editor.views;
+std::string editor_state(const Context& context) {
+  const Views& views = *context.views;
   Json json{{"schema", kSchema},
-            {"workspace", static_cast<int>(editor.workspace)},
+            {"workspace", static_cast<int>(context.workspace())},
             {"display", static_cast<int>(views.display)},
             {"slices", static_cast<int>(views.slice_display)},
             {"cross_hair", json_of(views.cross_hair)},
@@ -144,11 +150,11 @@ std::string editor_state(const Editor& editor) {
             {"bone_names", views.bone_names},
             {"bone_axes", views.bone_axes},
             {"bones_in_front", views.bones_in_front}};
-  json["weights"] = {{"display", editor.skin->display ? static_cast<int>(*editor.skin->display) : 4},
-                     {"contours", editor.skin->contours}};
-  json["arrangements"] = Json::parse(json_text(editor.arrangements));
-  json["method"] = editor.resampling.method;
-  json["finite_elements"] = {{"quality", editor.resampling.quality}, {"contact", editor.resampling.contact}};
+  json["weights"] = {{"display", context.skin->display ? static_cast<int>(*context.skin->display) : 4},
+                     {"contours", context.skin->contours}};
+  json["arrangements"] = Json::parse(json_text(context.screen->arrangements));
+  json["method"] = context.resampling->method;
+  json["finite_elements"] = {{"quality", context.resampling->quality}, {"contact", context.resampling->contact}};
   for (const SliceState& slice : views.slices)
     json["slice_cameras"].push_back(
         {{"centre", json_of(slice.camera.centre)}, {"millimetres_per_pixel", slice.camera.millimetres_per_pixel}});
@@ -160,33 +166,33 @@ std::string editor_state(const Editor& editor) {
                      {"rendering", static_cast<int>(views.image->rendering)}};
   // The image's file was not found, but its path is kept.
   else if (!views.image_path.empty()) json["image"] = {{"path", views.image_path.string()}};
-  add_free_pose(json, editor);
-  if (editor.selection.tissue) json["tissue"] = *editor.selection.tissue;
+  add_free_pose(json, context);
+  if (context.selection->tissue) json["tissue"] = *context.selection->tissue;
   // The path may contain bytes that are not valid UTF-8. They are replaced, so that the state is stored in any case.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-void restore_editor_state(Editor& editor, const std::string& text) {
+void restore_editor_state(Context& context, const std::string& text) {
   const Json json = Json::parse(checked_json(text, "the state of the editor in the project"), nullptr, false);
   if (!json.is_object() || json.value("schema", Json()) != kSchema) return;
-  Views& views = *editor.views;
-  take_choice(json, "workspace", 4, editor.workspace);
+  Views& views = *context.views;
+  take_choice(json, "workspace", 4, context.screen->workspace);
   take_choice(json, "display", 4, views.display);
-  if (const auto image = json.find("image"); image != json.end() && image->is_object()) restore_image(editor, *image);
+  if (const auto image = json.find("image"); image != json.end() && image->is_object()) restore_image(context, *image);
   take_choice(json, "slices", 2, views.slice_display);
   if (const Json method = json.value("method", Json()); method.is_string() && find_method(method.get<std::string>()))
-    editor.resampling.method = method;
+    context.resampling->method = method;
   if (const auto fem = json.find("finite_elements"); fem != json.end() && fem->is_object()) {
     if (const Json quality = fem->value("quality", Json());
         quality == "draft" || quality == "normal" || quality == "fine")
-      editor.resampling.quality = quality;
-    take(*fem, "contact", editor.resampling.contact);
+      context.resampling->quality = quality;
+    take(*fem, "contact", context.resampling->contact);
   }
   if (const auto weights = json.find("weights"); weights != json.end() && weights->is_object()) {
-    int display = editor.skin->display ? static_cast<int>(*editor.skin->display) : 4;
+    int display = context.skin->display ? static_cast<int>(*context.skin->display) : 4;
     take(*weights, "display", 0, 4, display);
-    editor.skin->display = display == 4 ? std::nullopt : std::optional(static_cast<render::WeightDisplay>(display));
-    take(*weights, "contours", editor.skin->contours);
+    context.skin->display = display == 4 ? std::nullopt : std::optional(static_cast<render::WeightDisplay>(display));
+    take(*weights, "contours", context.skin->contours);
   }
   take_vector(json, "cross_hair", views.cross_hair);
   take(json, "grid", views.grid);
@@ -203,21 +209,21 @@ void restore_editor_state(Editor& editor, const std::string& text) {
   if (const auto camera = json.find("camera"); camera != json.end() && camera->is_object())
     restore(*camera, views.body.camera);
   views.body.name.clear();
-  if (json.contains("arrangements")) restore(json["arrangements"].dump(), editor.arrangements);
+  if (json.contains("arrangements")) restore(json["arrangements"].dump(), context.screen->arrangements);
   if (const auto all = json.find("slice_cameras"); all != json.end() && all->is_array())
     for (std::size_t i = 0; i < std::min(all->size(), views.slices.size()); ++i) {
       if (!(*all)[i].is_object()) continue;
       take_vector((*all)[i], "centre", views.slices[i].camera.centre);
       take((*all)[i], "millimetres_per_pixel", 1e-6, 1e4, views.slices[i].camera.millimetres_per_pixel);
     }
-  restore_free_pose(editor, json);
+  restore_free_pose(context, json);
   int tissue = -1;
   take(json, "tissue", 0, 65535, tissue);
-  if (tissue >= 0 && editor.document().tissues && editor.document().tissues->find(static_cast<Label>(tissue))) {
-    editor.selection.tissue = static_cast<Label>(tissue);
-    editor.selection.tissues = {static_cast<Label>(tissue)};
+  if (tissue >= 0 && context.document().tissues && context.document().tissues->find(static_cast<Label>(tissue))) {
+    context.selection->tissue = static_cast<Label>(tissue);
+    context.selection->tissues = {static_cast<Label>(tissue)};
   }
-  editor.touch();
+  context.ui->touch();
 }
 
 }  // namespace limber::editor

@@ -6,11 +6,11 @@
 
 #include <string>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
 
-std::string editor_state(const Editor& editor);
-void restore_editor_state(Editor& editor, const std::string& json);
+struct Context;
+
+std::string editor_state(const Context& context);
+void restore_editor_state(Context& context, const std::string& json);
 
 }  // namespace limber::editor

@@ -5,13 +5,15 @@
 
 #include <memory>
 
-#include "editor/context/editor.h"
 #include "editor/guide/book.h"
 
 namespace limber::editor {
 
+class Dialog;
+struct Context;
+
 // Reads the guide, with the keys that the editor has now. Throws Error when a page of the guide is missing.
-Book read_guide(const Editor& editor);
+Book read_guide(const Context& context);
 // Makes the dialog.
 //   page, block  where it is opened: an index into the book's pages, and the block of this page that is marked; 0: none
 std::unique_ptr<Dialog> open_guide(Book book, int page = 0, int block = 0);

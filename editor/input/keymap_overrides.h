@@ -4,17 +4,13 @@
 // reports both operators.
 #pragma once
 
-#include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "editor/input/key_changes.h"
 #include "editor/input/keymap.h"
 
 namespace limber::editor {
-
-// The user's changes, by context and operator id: the chords that replace the operator's original chords.
-using KeyChanges = std::map<std::pair<std::string, std::string>, std::vector<std::string>>;
 
 // Returns the key map after the changes. Keys that cannot be read are left out.
 Keymap changed(Keymap keymap, const KeyChanges& changes);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "editor/context/views.h"
 #include "render/passes/pass_resources.h"
 
 namespace limber::editor {

@@ -9,10 +9,12 @@
 #include <string>
 
 #include "core/label_edit/label_stroke.h"
-#include "editor/context/layout.h"
-#include "editor/context/views.h"
+#include "core/tissue/tissue_table.h"
+#include "editor/context/view_place.h"
 
 namespace limber::editor {
+
+struct Views;
 
 // The voxels that a stroke may paint over.
 enum class PaintOver {

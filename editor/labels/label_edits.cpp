@@ -5,8 +5,15 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "editor/context/arriving_body.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
 #include "editor/seams/seam_view.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/tissue_edits.h"
 #include "editor/volume/volume_edits.h"
 
@@ -23,29 +30,31 @@ Document with_labels(const Document& now, const std::shared_ptr<const LabelVolum
 
 }  // namespace
 
-std::string needs_edited_tissue(const Editor& editor) {
-  const Document& document = editor.document();
+std::string needs_edited_tissue(const Context& context) {
+  const Document& document = context.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
-  return editor.selection.tissue && document.tissues->find(*editor.selection.tissue)
+  return context.selection->tissue && document.tissues->find(*context.selection->tissue)
              ? ""
              : "Select a tissue in the list of tissues first";
 }
 
-const Tissue& edited_tissue(const Editor& editor) { return *editor.document().tissues->find(*editor.selection.tissue); }
-
-void commit_labels(Editor& editor, const std::string& label, std::shared_ptr<const LabelVolume> after,
-                   const LabelChange& change, std::shared_ptr<const TissueTable> tissues) {
-  note_weights_source(editor);
-  std::string removed;
-  commit(editor, label, with_labels(editor.document(), after, keeps_tissue_voxels(change), tissues, removed));
-  if (!removed.empty()) editor.messages.warn(label, removed + ". Undo brings them back");
+const Tissue& edited_tissue(const Context& context) {
+  return *context.document().tissues->find(*context.selection->tissue);
 }
 
-void start_label_edit(Editor& editor, LabelEdit edit) {
-  note_weights_source(editor);
-  const auto before = editor.document().volume;
-  const auto tissues = editor.document().tissues;
-  const auto table = edit.tissues ? edit.tissues : editor.document().tissues;
+void commit_labels(Context& context, const std::string& label, std::shared_ptr<const LabelVolume> after,
+                   const LabelChange& change, std::shared_ptr<const TissueTable> tissues) {
+  note_weights_source(context);
+  std::string removed;
+  commit(context, label, with_labels(context.document(), after, keeps_tissue_voxels(change), tissues, removed));
+  if (!removed.empty()) context.messages->warn(label, removed + ". Undo brings them back");
+}
+
+void start_label_edit(Context& context, LabelEdit edit) {
+  note_weights_source(context);
+  const auto before = context.document().volume;
+  const auto tissues = context.document().tissues;
+  const auto table = edit.tissues ? edit.tissues : context.document().tissues;
   const std::string label = edit.label;
   struct Outcome {
     std::string note, removed;
@@ -53,35 +62,35 @@ void start_label_edit(Editor& editor, LabelEdit edit) {
   };
   const auto outcome = std::make_shared<Outcome>();
   const int id =
-      editor.jobs.start(label,
-                        [before, tissues, table, edit, outcome, visibility = editor.document().visibility,
-                         make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
-                          progress.update("labels", 0);
-                          const FoundLabelEdit found = edit.find(*before, progress);
-                          outcome->note = found.note;
-                          outcome->changed = !found.change.empty();
-                          if (!outcome->changed) return [](const Document& now) { return now; };
-                          auto changed = std::make_shared<LabelVolume>(*before);
-                          apply_change(found.change, *changed);
-                          const std::shared_ptr<const LabelVolume> after = std::move(changed);
-                          make_ready({.volume = after, .tissues = table, .visibility = visibility}, progress);
-                          return [before, after, tissues, wanted = edit.tissues,
-                                  same = keeps_tissue_voxels(found.change), outcome](const Document& now) {
-                            if (now.volume != before)
-                              throw Error("the labels were changed meanwhile", "the edit", "start it again");
-                            if (wanted && now.tissues != tissues)
-                              throw Error("the list of tissues was changed meanwhile", "the edit", "start it again");
-                            return with_labels(now, after, same, wanted, outcome->removed);
-                          };
-                        });
-  editor.step_of_job[id] = StepOfWork::Prepare;
-  editor.after_job[id] = [label, outcome, select = edit.select](Editor& e, const JobStatus& job) {
+      context.jobs->start(label,
+                          [before, tissues, table, edit, outcome, visibility = context.document().visibility,
+                           make_ready = body_maker(*context.views)](Progress& progress) -> Edit {
+                            progress.update("labels", 0);
+                            const FoundLabelEdit found = edit.find(*before, progress);
+                            outcome->note = found.note;
+                            outcome->changed = !found.change.empty();
+                            if (!outcome->changed) return [](const Document& now) { return now; };
+                            auto changed = std::make_shared<LabelVolume>(*before);
+                            apply_change(found.change, *changed);
+                            const std::shared_ptr<const LabelVolume> after = std::move(changed);
+                            make_ready({.volume = after, .tissues = table, .visibility = visibility}, progress);
+                            return [before, after, tissues, wanted = edit.tissues,
+                                    same = keeps_tissue_voxels(found.change), outcome](const Document& now) {
+                              if (now.volume != before)
+                                throw Error("the labels were changed meanwhile", "the edit", "start it again");
+                              if (wanted && now.tissues != tissues)
+                                throw Error("the list of tissues was changed meanwhile", "the edit", "start it again");
+                              return with_labels(now, after, same, wanted, outcome->removed);
+                            };
+                          });
+  context.background->step_of_job[id] = StepOfWork::Prepare;
+  context.background->after_job[id] = [label, outcome, select = edit.select](Context& c, const JobStatus& job) {
     if (job.state != JobState::Done) return;
-    if (outcome->changed && select) select_tissue(e, *select, false);
-    if (!outcome->removed.empty()) e.messages.warn(label, outcome->removed + ". Undo brings them back");
-    else outcome->changed ? e.messages.ok(label, outcome->note) : e.messages.info(label, outcome->note);
+    if (outcome->changed && select) select_tissue(c, *select, false);
+    if (!outcome->removed.empty()) c.messages->warn(label, outcome->removed + ". Undo brings them back");
+    else outcome->changed ? c.messages->ok(label, outcome->note) : c.messages->info(label, outcome->note);
   };
-  editor.touch();
+  context.ui->touch();
 }
 
 Tissue new_tissue_like(const TissueTable& tissues, const Tissue* like) {

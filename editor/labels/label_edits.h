@@ -9,19 +9,21 @@
 #include <string>
 
 #include "core/label_edit/label_change.h"
-#include "editor/context/editor.h"
+#include "core/tissue/tissue_table.h"
 
 namespace limber::editor {
 
+struct Context;
+
 // Returns why no tissue's labels can be edited now; "" if the labels of the active tissue can be edited.
-std::string needs_edited_tissue(const Editor& editor);
+std::string needs_edited_tissue(const Context& context);
 // Returns the active tissue, whose labels are edited. Call it only if needs_edited_tissue() returns "".
-const Tissue& edited_tissue(const Editor& editor);
+const Tissue& edited_tissue(const Context& context);
 
 // Replaces the document's labels as one edit.
 //   change   the differences between the document's volume and `after`
 //   tissues  the new tissue table; null: the table does not change
-void commit_labels(Editor& editor, const std::string& label, std::shared_ptr<const LabelVolume> after,
+void commit_labels(Context& context, const std::string& label, std::shared_ptr<const LabelVolume> after,
                    const LabelChange& change, std::shared_ptr<const TissueTable> tissues = nullptr);
 
 // The result of a job that edits labels.
@@ -36,7 +38,7 @@ struct LabelEdit {
   std::optional<Label> select;                 // the tissue that is selected when the edit is done
 };
 // Starts a job that edits the labels. The document must have a volume.
-void start_label_edit(Editor& editor, LabelEdit edit);
+void start_label_edit(Context& context, LabelEdit edit);
 
 // Returns a new tissue with a label and a file value that the table does not use yet, and with a colour of its own. It
 // has the other properties of `like` and the name of `like` with a number appended. If `like` is null, its kind is

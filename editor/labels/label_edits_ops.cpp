@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators that edit the labels of the selected tissue: fill its holes, grow and shrink it, remove its islands, split
 // it by a cut, and make a new tissue to paint with.
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/modal_tool.h"
+#include "editor/context/operator.h"
+#include "editor/context/views.h"
 #include "editor/labels/label_edits.h"
 
 #include <cmath>
@@ -37,21 +43,21 @@ Erased erased_of(const FormField& field) { return field.chosen == 1 ? Erased::Ai
 
 // Opens a form for an edit of the selected tissue. The form edits this tissue even if the user selects another one
 // before confirming.
-void ask(Editor& editor, const std::string& title, const std::string& description, const std::string& action,
+void ask(Context& context, const std::string& title, const std::string& description, const std::string& action,
          Fields fields, std::function<FoundLabelEdit(const LabelVolume&, Label, const Fields&, Progress&)> find) {
-  const Tissue tissue = edited_tissue(editor);
+  const Tissue tissue = edited_tissue(context);
   const std::string name = title + " " + shown_name(tissue);
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {name, description, action, std::move(fields), nullptr,
-       [name, label = tissue.label, find](Editor& e, const Fields& answers) {
+       [name, label = tissue.label, find](Context& c, const Fields& answers) {
          start_label_edit(
-             e, {name, [label, find, answers](const LabelVolume& v, Progress& p) { return find(v, label, answers, p); },
+             c, {name, [label, find, answers](const LabelVolume& v, Progress& p) { return find(v, label, answers, p); },
                  nullptr, std::nullopt});
        }}));
 }
 
-void ask_holes(Editor& editor) {
-  ask(editor, "Fill holes of", "Give the tissue the voxels that it encloses.", "Fill",
+void ask_holes(Context& context) {
+  ask(context, "Fill holes of", "Give the tissue the voxels that it encloses.", "Fill",
       {choice_of(
            "Hole content",
            "What the holes to fill contain. Air keeps holes that contain tissue, such as the marrow inside a bone.",
@@ -70,10 +76,10 @@ void ask_holes(Editor& editor) {
       });
 }
 
-void ask_grow(Editor& editor) {
-  const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
-                                editor.document().volume->grid.spacing.z});
-  ask(editor, "Grow", "Extend the tissue by a distance in all directions.", "Grow",
+void ask_grow(Context& context) {
+  const double step = std::max({context.document().volume->grid.spacing.x, context.document().volume->grid.spacing.y,
+                                context.document().volume->grid.spacing.z});
+  ask(context, "Grow", "Extend the tissue by a distance in all directions.", "Grow",
       {number_of("Distance", "How far the tissue's border moves. A distance shorter than a voxel changes nothing.",
                  step, 0.1, 100, "%.3g", "mm"),
        choice_of("Grow over", "The voxels that the tissue may grow over: all, only air, or only other tissue.",
@@ -91,10 +97,10 @@ void ask_grow(Editor& editor) {
       });
 }
 
-void ask_shrink(Editor& editor) {
-  const double step = std::max({editor.document().volume->grid.spacing.x, editor.document().volume->grid.spacing.y,
-                                editor.document().volume->grid.spacing.z});
-  ask(editor, "Shrink", "Shrink the tissue by a distance from all sides.", "Shrink",
+void ask_shrink(Context& context) {
+  const double step = std::max({context.document().volume->grid.spacing.x, context.document().volume->grid.spacing.y,
+                                context.document().volume->grid.spacing.z});
+  ask(context, "Shrink", "Shrink the tissue by a distance from all sides.", "Shrink",
       {number_of("Distance", "How far the tissue's border moves. A distance shorter than a voxel changes nothing.",
                  step, 0.1, 100, "%.3g", "mm"),
        erased_choice()},
@@ -106,8 +112,8 @@ void ask_shrink(Editor& editor) {
       });
 }
 
-void ask_islands(Editor& editor) {
-  ask(editor, "Remove islands of", "Remove pieces of the tissue that are not connected to its largest pieces.",
+void ask_islands(Context& context) {
+  ask(context, "Remove islands of", "Remove pieces of the tissue that are not connected to its largest pieces.",
       "Remove",
       {number_of("Pieces kept",
                  "Number of pieces to keep, the largest ones. 0 = keep all pieces of at least the smallest size.", 1, 0,
@@ -127,17 +133,17 @@ void ask_islands(Editor& editor) {
       });
 }
 
-void add_tissue(Editor& editor) {
-  const Document& now = editor.document();
+void add_tissue(Context& context) {
+  const Document& now = context.document();
   const Tissue tissue = new_tissue_like(*now.tissues, nullptr);
   Document next = now;
   next.tissues = with_tissue(*now.tissues, tissue);
-  commit(editor, "New tissue", std::move(next));
-  select_tissue(editor, tissue.label, false);
+  commit(context, "New tissue", std::move(next));
+  select_tissue(context, tissue.label, false);
 }
 
-std::string needs_table(const Editor& editor) {
-  return editor.document().volume && editor.document().tissues ? "" : "Open a volume first";
+std::string needs_table(const Context& context) {
+  return context.document().volume && context.document().tissues ? "" : "Open a volume first";
 }
 
 }  // namespace
@@ -159,13 +165,13 @@ std::vector<Operator> label_edit_operators() {
       {"labels.split", "Split by a cut", icon::kCut, "Labels",
        "Cut the selected tissue along a line that you draw, in the direction of view. The smaller part becomes a new "
        "tissue.",
-       [](Editor& e) {
-         e.modal = begin_split(e);
-         e.modal_wrap = {};
+       [](Context& c) {
+         c.interaction->modal = begin_split(c);
+         c.interaction->modal_wrap = {};
        },
-       [](const Editor& e) {
-         const std::string why = needs_edited_tissue(e);
-         return why.empty() && e.views->scene.pose ? std::string("Show the body at rest first") : why;
+       [](const Context& c) {
+         const std::string why = needs_edited_tissue(c);
+         return why.empty() && c.views->scene.pose ? std::string("Show the body at rest first") : why;
        }},
   };
 }

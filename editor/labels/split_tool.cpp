@@ -2,8 +2,11 @@
 #include "editor/labels/split_tool.h"
 
 #include "core/label_edit/split_label.h"
+#include "editor/context/context.h"
 #include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/views.h"
 #include "editor/labels/label_edits.h"
 #include "editor/ui/draw.h"
 #include "editor/viewport/gizmo_draw.h"
@@ -18,68 +21,70 @@ constexpr double kLeast = 4;  // a shorter line is ignored as a slip of the hand
 
 class SplitTool final : public Modal {
  public:
-  explicit SplitTool(Editor& editor) : pointer_(editor.input.pointer), name_(shown_name(edited_tissue(editor))) {}
+  explicit SplitTool(Context& context)
+      : pointer_(context.ui->input.pointer),
+        name_(shown_name(edited_tissue(context))) {}
 
-  bool moved(Editor& editor, const glm::vec2&) override {
-    pointer_ = editor.input.pointer;
-    editor.touch();
+  bool moved(Context& context, const glm::vec2&) override {
+    pointer_ = context.ui->input.pointer;
+    context.ui->touch();
     return true;
   }
-  bool key(Editor&, const KeyChanged& event) override { return !(event.down && event.key == Key::Escape); }
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool key(Context&, const KeyChanged& event) override { return !(event.down && event.key == Key::Escape); }
+  bool button(Context& context, const ButtonChanged& event) override {
     if (event.button == MouseButton::Right && event.down) return false;
     if (event.button != MouseButton::Left) return true;
     if (event.down) {
-      const ViewPlace* place = editor.layout.view_at(pointer_);
+      const ViewPlace* place = context.screen->layout.view_at(pointer_);
       if (!place) return false;
-      view_.emplace(editor, *place);
+      view_.emplace(context, *place);
       begun_ = pointer_;
       return true;
     }
     if (!view_) return true;
-    if (glm::distance(begun_, pointer_) >= kLeast * editor.look.scale)
-      attempt(editor, title(), [this](Editor& e) { split(e); });
+    if (glm::distance(begun_, pointer_) >= kLeast * context.ui->look.scale)
+      attempt(context, title(), [this](Context& c) { split(c); });
     return false;
   }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (!view_ || place.id != view_->place.id) return;
     ImDrawList& canvas = *ImGui::GetWindowDrawList();
-    const float line = 2 * editor.look.scale;
+    const float line = 2 * context.ui->look.scale;
     canvas.AddLine(im(begun_), im(pointer_), with_alpha(0xFF000000, 0.55f), 2 * line);
-    canvas.AddLine(im(begun_), im(pointer_), editor.look.theme.select, line);
+    canvas.AddLine(im(begun_), im(pointer_), context.ui->look.theme.select, line);
     for (const glm::vec2& end : {begun_, pointer_}) {
       canvas.AddCircleFilled(im(end), 2.2f * line, with_alpha(0xFF000000, 0.55f));
-      canvas.AddCircleFilled(im(end), 1.6f * line, editor.look.theme.select);
+      canvas.AddCircleFilled(im(end), 1.6f * line, context.ui->look.theme.select);
     }
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"LMB"}, "Draw a line across the tissue"}, {{"Esc"}, "Cancel"}};
   }
   std::string title() const override { return "Split " + name_; }
 
  private:
-  void split(Editor& editor) {
-    if (!needs_edited_tissue(editor).empty()) return;
+  void split(Context& context) {
+    if (!needs_edited_tissue(context).empty()) return;
     // In the 3D view, the cut lies in the plane through the line and the eye; its width is measured at the depth of the
     // camera's centre.
     const glm::dvec3 depth =
-        view_->place.id == ViewId::Body ? editor.views->body.camera.centre : editor.views->cross_hair;
+        view_->place.id == ViewId::Body ? context.views->body.camera.centre : context.views->cross_hair;
     const auto from = view_->in_plane(begun_, depth, view_->towards_eye),
                to = view_->in_plane(pointer_, depth, view_->towards_eye);
     if (!from || !to) return;
     const LabelCut cut{*from, *to, view_->direction_to_eye((*from + *to) / 2.0)};
-    const Tissue tissue = edited_tissue(editor);
-    const Tissue part = new_tissue_like(*editor.document().tissues, &tissue);
-    start_label_edit(editor, {"Split " + shown_name(tissue),
-                              [cut, label = tissue.label, into = part.label, name = shown_name(part)](
-                                  const LabelVolume& volume, Progress&) -> FoundLabelEdit {
-                                LabelChange change = split_label(volume, label, cut, into);
-                                const std::string note = "The smaller part is now " + name;
-                                return {std::move(change), note};
-                              },
-                              with_tissue(*editor.document().tissues, part), part.label});
+    const Tissue tissue = edited_tissue(context);
+    const Tissue part = new_tissue_like(*context.document().tissues, &tissue);
+    start_label_edit(context, {"Split " + shown_name(tissue),
+                               [cut, label = tissue.label, into = part.label, name = shown_name(part)](
+                                   const LabelVolume& volume, Progress&) -> FoundLabelEdit {
+                                 LabelChange change = split_label(volume, label, cut, into);
+                                 const std::string note = "The smaller part is now " + name;
+                                 return {std::move(change), note};
+                               },
+                               with_tissue(*context.document().tissues, part), part.label});
   }
 
   glm::vec2 pointer_, begun_{0};
@@ -89,6 +94,6 @@ class SplitTool final : public Modal {
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_split(Editor& editor) { return std::make_unique<SplitTool>(editor); }
+std::unique_ptr<Modal> begin_split(Context& context) { return std::make_unique<SplitTool>(context); }
 
 }  // namespace limber::editor

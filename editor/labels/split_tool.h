@@ -6,10 +6,11 @@
 
 #include <memory>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
 
-std::unique_ptr<Modal> begin_split(Editor& editor);
+class Modal;
+struct Context;
+
+std::unique_ptr<Modal> begin_split(Context& context);
 
 }  // namespace limber::editor

@@ -4,6 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/screen.h"
+#include "editor/context/view_projection.h"
+#include "editor/context/views.h"
 #include "editor/measure/measure_view.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/ui/draw.h"
@@ -30,8 +35,8 @@ glm::dvec3 middle_of(const std::vector<glm::dvec3>& points) {
 
 class MeasurePainter {
  public:
-  MeasurePainter(Editor& editor, const ViewProjection& view, Colour colour)
-      : editor_(editor),
+  MeasurePainter(Context& context, const ViewProjection& view, Colour colour)
+      : context_(context),
         view_(view),
         colour_(colour) {}
 
@@ -40,13 +45,13 @@ class MeasurePainter {
     const auto a = view_.pixel_of(from), b = view_.pixel_of(to);
     if (!a || !b) return;
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const float width = editor_.look.px(kLine);
-    list->AddLine(im(glm::vec2(*a)), im(glm::vec2(*b)), with_alpha(editor_.look.theme.view_plate, 0.6f * alpha),
-                  width + editor_.look.px(2));
+    const float width = context_.ui->look.px(kLine);
+    list->AddLine(im(glm::vec2(*a)), im(glm::vec2(*b)), with_alpha(context_.ui->look.theme.view_plate, 0.6f * alpha),
+                  width + context_.ui->look.px(2));
     list->AddLine(im(glm::vec2(*a)), im(glm::vec2(*b)), with_alpha(colour_, alpha), width);
   }
   void dot(const glm::dvec3& at) const {
-    GizmoPainter(editor_, view_).dot(at, colour_, editor_.look.theme.view_plate, kDot);
+    GizmoPainter(context_, view_).dot(at, colour_, context_.ui->look.theme.view_plate, kDot);
   }
   void tape(const std::vector<glm::dvec3>& corners) const {
     const glm::dvec3 middle = middle_of(corners);
@@ -74,7 +79,7 @@ class MeasurePainter {
   }
 
  private:
-  Editor& editor_;
+  Context& context_;
   const ViewProjection& view_;
   Colour colour_;
 };
@@ -103,9 +108,7 @@ Rect place_of_plate(const Look& look, const Rect& view, const glm::vec2& at, con
   return first;
 }
 
-Colour colour_of_measure(const Editor& editor, bool is_chosen) {
-  return is_chosen ? kGizmoActive : editor.look.theme.view_text;
-}
+Colour colour_of_measure(const Ui& ui, bool is_chosen) { return is_chosen ? kGizmoActive : ui.look.theme.view_text; }
 
 // Returns the point beside which a measurement's label lies: the right end of a girth's tape, the corner of an angle,
 // otherwise the middle of the points.
@@ -119,20 +122,19 @@ glm::dvec3 place_beside(const ViewProjection& view, MeasureKind kind, const std:
 
 }  // namespace
 
-void draw_measure_lines(Editor& editor, const ViewProjection& view, MeasureKind kind,
+void draw_measure_lines(Context& context, const ViewProjection& view, MeasureKind kind,
                         const std::vector<glm::dvec3>& points, bool is_chosen) {
-  const MeasurePainter painter(editor, view, colour_of_measure(editor, is_chosen));
+  const MeasurePainter painter(context, view, colour_of_measure(context.ui, is_chosen));
   if (kind == MeasureKind::Girth) return painter.tape(points);
   for (std::size_t i = 1; i < points.size(); ++i) painter.line(points[i - 1], points[i]);
   if (kind == MeasureKind::Angle && points.size() == 3) painter.angle(points);
   for (const glm::dvec3& point : points) painter.dot(point);
 }
 
-void draw_measure_label(Editor& editor, const ViewProjection& view, MeasureKind kind,
-                        const std::vector<glm::dvec3>& points, const std::vector<std::string>& words, bool is_chosen,
-                        std::vector<Rect>& taken) {
+void draw_measure_label(Ui& ui, const ViewProjection& view, MeasureKind kind, const std::vector<glm::dvec3>& points,
+                        const std::vector<std::string>& words, bool is_chosen, std::vector<Rect>& taken) {
   if (points.empty() || words.empty()) return;
-  const Look& look = editor.look;
+  const Look& look = ui.look;
   const auto at = view.pixel_of(place_beside(view, kind, points));
   if (!at) return;
   float width = 0;
@@ -142,31 +144,31 @@ void draw_measure_label(Editor& editor, const ViewProjection& view, MeasureKind 
   const Rect plate = place_of_plate(look, view.place.rect, glm::vec2(*at), size, taken);
   taken.push_back(plate);
   fill(plate, with_alpha(look.theme.view_plate, 0.85f), look.px(4));
-  if (is_chosen) outline(plate, colour_of_measure(editor, true), look.px(4), look.line());
+  if (is_chosen) outline(plate, colour_of_measure(ui, true), look.px(4), look.line());
   for (std::size_t i = 0; i < words.size(); ++i) {
     const float y = plate.low.y + look.px(3 + kRow * static_cast<float>(i));
-    put_text(editor, i ? look.fonts.small : look.fonts.semibold, i ? look.theme.view_text2 : look.theme.view_text,
+    put_text(ui, i ? look.fonts.small : look.fonts.semibold, i ? look.theme.view_text2 : look.theme.view_text,
              Rect{{plate.low.x + look.px(kPad), y}, {plate.high.x - look.px(kPad) + 1, y + look.px(kRow)}}, words[i]);
   }
 }
 
 namespace {
 // Draws the measurements of one scene's body into a part of the view.
-void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& scene, const Rect& part) {
+void draw_on_scene(Context& context, const ViewPlace& place, const render::Scene& scene, const Rect& part) {
   if (!scene.volume) return;
-  const Measurements& all = *editor.document().measurements;
-  const ViewProjection view(editor, place);
-  const auto placed = placed_measurements(editor, scene);
+  const Measurements& all = *context.document().measurements;
+  const ViewProjection view(context, place);
+  const auto placed = placed_measurements(context, scene);
   std::vector<Rect> taken;
   ImGui::PushClipRect(im(part.low), im(part.high), true);
   // All lines are drawn before the first label, so that no line crosses another measurement's label.
   for (std::size_t i = 0; i < all.size(); ++i)
     if (is_near(view, placed[i]))
-      draw_measure_lines(editor, view, all[i].kind, placed[i], all[i].name == editor.measures->chosen);
+      draw_measure_lines(context, view, all[i].kind, placed[i], all[i].name == context.measures->chosen);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Measurement& one = all[i];
     if (!is_near(view, placed[i])) continue;
-    const bool is_chosen = one.name == editor.measures->chosen;
+    const bool is_chosen = one.name == context.measures->chosen;
     const double now = measure(one.kind, placed[i]), rest = measure(one.kind, one.points);
     std::vector<std::string> words{text_of_measure(one.kind, now)};
     if (is_chosen) {
@@ -174,27 +176,27 @@ void draw_on_scene(Editor& editor, const ViewPlace& place, const render::Scene& 
       if (std::abs(now - rest) >= 0.05) words.push_back("at rest " + text_of_measure(one.kind, rest));
     }
     const std::size_t before = taken.size();
-    draw_measure_label(editor, view, one.kind, placed[i], words, is_chosen, taken);
+    draw_measure_label(context.ui, view, one.kind, placed[i], words, is_chosen, taken);
     // While a modal tool is active, labels ignore clicks, so that the tool gets them.
-    if (!editor.modal && taken.size() > before && part.contains(taken.back()) &&
-        press_area(editor, "measurement " + one.name, taken.back()).clicked)
-      editor.measures->chosen = one.name;
+    if (!context.interaction->modal && taken.size() > before && part.contains(taken.back()) &&
+        press_area(context.ui, "measurement " + one.name, taken.back()).clicked)
+      context.measures->chosen = one.name;
   }
   ImGui::PopClipRect();
 }
 }  // namespace
 
-void draw_measurements_over(Editor& editor, const ViewPlace& place) {
-  const auto& all = editor.document().measurements;
-  if (!all || all->empty() || !editor.measures->shown) return;
-  const bool is_wiped = editor.views->other_scene && !editor.layout.by_sides;
-  if (!is_wiped) return draw_on_scene(editor, place, scene_of(editor, place), place.rect);
-  const float line = std::clamp(wipe_line(editor, place.rect), place.rect.low.x, place.rect.high.x);
+void draw_measurements_over(Context& context, const ViewPlace& place) {
+  const auto& all = context.document().measurements;
+  if (!all || all->empty() || !context.measures->shown) return;
+  const bool is_wiped = context.views->other_scene && !context.screen->layout.by_sides;
+  if (!is_wiped) return draw_on_scene(context, place, scene_of(context, place), place.rect);
+  const float line = std::clamp(wipe_line(context.comparison, place.rect), place.rect.low.x, place.rect.high.x);
   {
-    const PathScope side(editor, "A");
-    draw_on_scene(editor, place, *editor.views->other_scene, {place.rect.low, {line, place.rect.high.y}});
+    const PathScope side(context.ui, "A");
+    draw_on_scene(context, place, *context.views->other_scene, {place.rect.low, {line, place.rect.high.y}});
   }
-  draw_on_scene(editor, place, editor.views->scene, {{line, place.rect.low.y}, place.rect.high});
+  draw_on_scene(context, place, context.views->scene, {{line, place.rect.low.y}, place.rect.high});
 }
 
 }  // namespace limber::editor

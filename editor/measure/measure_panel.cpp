@@ -3,8 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/views.h"
 #include "editor/measure/measure_view.h"
 
 namespace limber::editor {
@@ -15,57 +18,57 @@ constexpr std::array<std::array<const char*, 2>, 2> kTools = {
     {{"measure.distance", "measure.angle"}, {"measure.girth", "measure.thickness"}}};
 
 // Draws the buttons of two operators side by side over the width of a row.
-void draw_buttons(Editor& editor, const Rect& row, const std::array<const char*, 2>& ids,
+void draw_buttons(Context& context, const Rect& row, const std::array<const char*, 2>& ids,
                   const std::array<const char*, 2>& labels) {
-  const float middle = std::round(row.centre().x), gap = editor.look.px(3), side = editor.look.px(10);
-  operator_button(editor, ids[0], {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}}, labels[0]);
-  operator_button(editor, ids[1], {{middle + gap, row.low.y}, {row.high.x - side, row.high.y}}, labels[1]);
+  const float middle = std::round(row.centre().x), gap = context.ui->look.px(3), side = context.ui->look.px(10);
+  operator_button(context, ids[0], {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}}, labels[0]);
+  operator_button(context, ids[1], {{middle + gap, row.low.y}, {row.high.x - side, row.high.y}}, labels[1]);
 }
 
-void draw_list(Editor& editor, Column& column, const Measurements& all) {
-  const Look& look = editor.look;
-  const auto placed = placed_measurements(editor, editor.views->scene);
+void draw_list(Context& context, Column& column, const Measurements& all) {
+  const Look& look = context.ui->look;
+  const auto placed = placed_measurements(context, context.views->scene);
   for (std::size_t i = 0; i < all.size(); ++i) {
     const Measurement& one = all[i];
     Rect row;
-    const bool is_chosen = one.name == editor.measures->chosen;
+    const bool is_chosen = one.name == context.measures->chosen;
     if (!column.list_row(row, static_cast<int>(i), is_chosen)) continue;
-    const Pressed pressed = press_area(editor, one.name, row);
+    const Pressed pressed = press_area(context.ui, one.name, row);
     const std::string value = text_of_measure(one.kind, measure(one.kind, placed[i]));
     const float width = text_size(look.fonts.mono, value).x;
-    put_text(editor, look.fonts.regular, look.theme.text,
+    put_text(context.ui, look.fonts.regular, look.theme.text,
              Rect{{row.low.x + look.px(12), row.low.y}, {row.high.x - width - look.px(20), row.high.y}}, one.name);
-    put_text(editor, look.fonts.mono, look.theme.text2, Rect{row.low, {row.high.x - look.px(10), row.high.y}}, value,
-             Align::Right);
+    put_text(context.ui, look.fonts.mono, look.theme.text2, Rect{row.low, {row.high.x - look.px(10), row.high.y}},
+             value, Align::Right);
     if (pressed.hovered)
-      tooltip(editor, row, one.name, "At rest " + text_of_measure(one.kind, measure(one.kind, one.points)) + ".");
+      tooltip(context.ui, row, one.name, "At rest " + text_of_measure(one.kind, measure(one.kind, one.points)) + ".");
     if (pressed.clicked) {
-      editor.measures->chosen = one.name;
+      context.measures->chosen = one.name;
       // Move the slices to the middle of the measurement.
       glm::dvec3 sum(0);
       for (const glm::dvec3& point : placed[i]) sum += point;
-      editor.views->cross_hair = sum / double(placed[i].size());
+      context.views->cross_hair = sum / double(placed[i].size());
     }
-    if (pressed.double_clicked) run(editor, "measure.rename");
+    if (pressed.double_clicked) run(context, "measure.rename");
   }
 }
 
 }  // namespace
 
-void draw_measurements(Editor& editor, Column& column) {
-  if (!editor.document().volume) return;
-  const auto& all = editor.document().measurements;
+void draw_measurements(Context& context, Column& column) {
+  if (!context.document().volume) return;
+  const auto& all = context.document().measurements;
   const std::size_t count = all ? all->size() : 0;
   if (column.begin_section("Measurements", count ? std::to_string(count) : "", false)) {
     column.space(4);
-    draw_buttons(editor, column.row(26), kTools[0], {"Distance", "Angle"});
+    draw_buttons(context, column.row(26), kTools[0], {"Distance", "Angle"});
     column.space(4);
-    draw_buttons(editor, column.row(26), kTools[1], {"Girth", "Thickness"});
+    draw_buttons(context, column.row(26), kTools[1], {"Girth", "Thickness"});
     column.space(4);
     if (count) {
-      draw_list(editor, column, *all);
+      draw_list(context, column, *all);
       column.space(4);
-      draw_buttons(editor, column.row(26), {"measure.delete", "measure.copy"}, {"Delete", "Copy as table"});
+      draw_buttons(context, column.row(26), {"measure.delete", "measure.copy"}, {"Delete", "Copy as table"});
     }
     column.space(6);
   }

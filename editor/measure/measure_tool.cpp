@@ -10,11 +10,18 @@
 #include "core/base/error.h"
 #include "core/measure/body_girth.h"
 #include "core/measure/tissue_thickness.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/view_projection.h"
+#include "editor/input/keymap.h"
 #include "editor/measure/measure_overlay.h"
 #include "editor/measure/measure_view.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/ui/keyboard.h"
+#include "editor/ui/messages.h"
 #include "editor/volume/shown_image.h"
 
 namespace limber::editor {
@@ -30,24 +37,24 @@ struct PointOnBody {
 
 // Returns the point of the body under the pointer, in any view; nothing if there is none. In a slice, the point may
 // lie in air, up to two voxels from tissue, or anywhere in the grey image that the slice shows.
-std::optional<PointOnBody> point_under_pointer(Editor& editor) {
-  const ViewPlace* place = hovered_view(editor);
-  if (!place || !editor.document().volume) return std::nullopt;
-  const render::Scene& scene = scene_at_pointer(editor, *place);
-  const glm::vec2 pixel = editor.input.pointer - place->rect.low;
+std::optional<PointOnBody> point_under_pointer(Context& context) {
+  const ViewPlace* place = hovered_view(context);
+  if (!place || !context.document().volume) return std::nullopt;
+  const render::Scene& scene = scene_at_pointer(context, *place);
+  const glm::vec2 pixel = context.ui->input.pointer - place->rect.low;
   std::optional<render::Hit> hit;
   std::optional<glm::dvec3> shown;
   if (place->id == ViewId::Body) {
-    if (hit = body_at_pointer(editor, *place).pick(glm::ivec2(pixel)); hit) shown = hit->point;
+    if (hit = body_at_pointer(context, *place).pick(glm::ivec2(pixel)); hit) shown = hit->point;
   } else {
-    shown = world_of(slice_of(*editor.views, place->id).camera, pixel, place->rect.size());
+    shown = world_of(slice_of(*context.views, place->id).camera, pixel, place->rect.size());
   }
   if (!shown || !scene.volume) return std::nullopt;
-  const bool is_result = scene.volume != editor.document().volume;
+  const bool is_result = scene.volume != context.document().volume;
   const auto at_rest = is_result ? std::nullopt : point_at_rest(scene, *shown);
   if (!at_rest) return std::nullopt;
   const bool on_image = place->id != ViewId::Body && scene.grey && image_value_at(*scene.grey->image, *at_rest);
-  if (!on_image && !is_at_tissue(*editor.document().volume, *at_rest)) return std::nullopt;
+  if (!on_image && !is_at_tissue(*context.document().volume, *at_rest)) return std::nullopt;
   // In the 3D view, the point lies on the surface between body and air, so the voxel that was hit is used. In a slice,
   // the nearest voxel is used.
   const glm::ivec3 nearest(glm::floor(voxel_from_world(scene.volume->grid) * *at_rest + 0.5));
@@ -56,23 +63,23 @@ std::optional<PointOnBody> point_under_pointer(Editor& editor) {
 
 // Runs the operator that is bound to a chord, if the operator only changes the view. Returns true if it ran. So the
 // user can turn the body and move slices between two clicks of the tool.
-bool navigate(Editor& editor, const Chord& chord) {
+bool navigate(Context& context, const Chord& chord) {
   constexpr const char* kNavigation[] = {"view.orbit", "view.pan",    "view.zoom",  "view.front",    "view.back",
                                          "view.left",  "view.right",  "view.top",   "view.bottom",   "view.opposite",
                                          "view.ortho", "view.frame_", "slice.next", "slice.previous"};
-  if (!hovered_view(editor)) return false;
-  const std::string* id = editor.keymap.find(chord, contexts(editor));
+  if (!hovered_view(context)) return false;
+  const std::string* id = context.keymap->find(chord, contexts(context));
   if (!id || std::none_of(std::begin(kNavigation), std::end(kNavigation),
                           [&](const char* name) { return id->starts_with(name); }))
     return false;
-  run(editor, *id);
+  run(context, *id);
   return true;
 }
 
 // Returns true if a dialog, an error message, a text field or a popup is open. It then gets the input instead of the
 // tool.
-bool is_busy(const Editor& editor) {
-  return editor.dialog || !editor.messages.errors.empty() || is_typing(editor) ||
+bool is_busy(const Context& context) {
+  return context.dialogs->shown || !context.messages->errors.empty() || is_typing(context.ui) ||
          ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
@@ -91,100 +98,102 @@ std::optional<glm::dvec3> along_nearest_bone(const Document& document, const glm
 
 class MeasureTool final : public Modal {
  public:
-  MeasureTool(const Editor& editor, MeasureKind kind) : kind_(kind), volume_(editor.document().volume) {}
+  MeasureTool(const Context& context, MeasureKind kind) : kind_(kind), volume_(context.document().volume) {}
 
-  bool moved(Editor& editor, const glm::vec2& pixels) override {
-    if (editor.drag && editor.drag->moved) editor.drag->moved(editor, pixels);
-    editor.touch();
+  bool moved(Context& context, const glm::vec2& pixels) override {
+    if (context.interaction->drag && context.interaction->drag->moved)
+      context.interaction->drag->moved(context, pixels);
+    context.ui->touch();
     return true;
   }
-  bool wheel(Editor& editor, float steps) override {
-    editor.input.wheel = steps;
-    navigate(editor, {Chord::Kind::Wheel, editor.input.modifiers()});
+  bool wheel(Context& context, float steps) override {
+    context.ui->input.wheel = steps;
+    navigate(context, {Chord::Kind::Wheel, context.ui->input.modifiers()});
     return true;
   }
-  void cancel(Editor& editor) override { end_drag(editor); }
+  void cancel(Context& context) override { end_drag(context); }
   // Ends the tool if a menu, dialog or text field opens, or if the volume changes. The menu from which the tool was
   // started may be open in the tool's first frames; it does not end the tool.
-  bool frame(Editor& editor, double) override {
-    if (!is_busy(editor)) was_free_ = true;
-    if (!(was_free_ && is_busy(editor)) && editor.document().volume == volume_) return true;
-    end_drag(editor);
+  bool frame(Context& context, double) override {
+    if (!is_busy(context)) was_free_ = true;
+    if (!(was_free_ && is_busy(context)) && context.document().volume == volume_) return true;
+    end_drag(context);
     return false;
   }
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool button(Context& context, const ButtonChanged& event) override {
     if (event.button == MouseButton::Middle) {
-      end_drag(editor);
-      if (!event.down || is_busy(editor)) return true;
-      const Modifiers modifiers = editor.input.modifiers();
-      if (!navigate(editor, {Chord::Kind::Drag, modifiers, Key::None, event.button}))
-        navigate(editor, {Chord::Kind::Press, modifiers, Key::None, event.button});
+      end_drag(context);
+      if (!event.down || is_busy(context)) return true;
+      const Modifiers modifiers = context.ui->input.modifiers();
+      if (!navigate(context, {Chord::Kind::Drag, modifiers, Key::None, event.button}))
+        navigate(context, {Chord::Kind::Press, modifiers, Key::None, event.button});
       return true;
     }
-    if (editor.drag) return true;
+    if (context.interaction->drag) return true;
     if (event.button == MouseButton::Right && event.down) return false;
-    const ViewPlace* place = hovered_view(editor);
-    if (event.button != MouseButton::Left || !event.down || !place || over_widget(editor)) return true;
-    const auto point = point_under_pointer(editor);
+    const ViewPlace* place = hovered_view(context);
+    if (event.button != MouseButton::Left || !event.down || !place || over_widget(context.ui)) return true;
+    const auto point = point_under_pointer(context);
     const bool needs_tissue = kind_ == MeasureKind::Girth || kind_ == MeasureKind::Thickness;
-    const auto& tissues = editor.document().tissues;
+    const auto& tissues = context.document().tissues;
     if (point && needs_tissue && (!tissues || tissues->tissues.empty())) {
-      editor.messages.info("A girth or a thickness needs labels",
-                           "Make labels from the image, or measure a distance or an angle.");
+      context.messages->info("A girth or a thickness needs labels",
+                             "Make labels from the image, or measure a distance or an angle.");
       return true;
     }
-    if (!point || (needs_tissue && editor.document().volume->at_or_air(point->voxel) == 0)) {
-      const bool is_result = scene_at_pointer(editor, *place).volume != editor.document().volume;
-      editor.messages.info("The pointer is not on the body",
-                           is_result ? "Points cannot be set on a result. Set them on the body at rest or in the pose."
-                                     : "Click on the body, in 3D or in a slice.");
+    if (!point || (needs_tissue && context.document().volume->at_or_air(point->voxel) == 0)) {
+      const bool is_result = scene_at_pointer(context, *place).volume != context.document().volume;
+      context.messages->info("The pointer is not on the body",
+                             is_result
+                                 ? "Points cannot be set on a result. Set them on the body at rest or in the pose."
+                                 : "Click on the body, in 3D or in a slice.");
       return true;
     }
     try {
-      take(editor, *point);
+      take(context, *point);
     } catch (const Error& error) {
       const ErrorMessage message = parts_of(error.what());
-      editor.messages.warn(message.what, message.what_to_do);
+      context.messages->warn(message.what, message.what_to_do);
     }
-    editor.touch();
+    context.ui->touch();
     return true;
   }
-  bool key(Editor& editor, const KeyChanged& event) override {
+  bool key(Context& context, const KeyChanged& event) override {
     if (!event.down) return true;
-    editor.touch();
+    context.ui->touch();
     if (event.key == Key::Backspace) {
       if (!points_.empty()) points_.pop_back();
       return true;
     }
-    const Chord chord{Chord::Kind::Key, editor.input.modifiers(), event.key};
-    if (navigate(editor, chord)) return true;
-    const std::string* id = editor.keymap.find(chord, {"global"});
+    const Chord chord{Chord::Kind::Key, context.ui->input.modifiers(), event.key};
+    if (navigate(context, chord)) return true;
+    const std::string* id = context.keymap->find(chord, {"global"});
     if (id && points_.empty() && (*id == "edit.undo" || *id == "edit.redo")) {
-      run(editor, *id);
+      run(context, *id);
       return true;
     }
     if (event.key != Key::Escape && event.key != Key::Return && event.key != Key::NumEnter) return true;
-    end_drag(editor);
+    end_drag(context);
     return false;
   }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (points_.empty()) return;
-    const render::Scene& scene = scene_of(editor, place);
-    if (scene.volume != editor.document().volume) return;
-    const ViewProjection view(editor, place);
-    std::vector<glm::dvec3> points = points_on_scene(editor, scene, points_);
+    const render::Scene& scene = scene_of(context, place);
+    if (scene.volume != context.document().volume) return;
+    const ViewProjection view(context, place);
+    std::vector<glm::dvec3> points = points_on_scene(context, scene, points_);
     std::vector<std::string> words;
-    if (const auto pointer = point_under_pointer(editor)) {
+    if (const auto pointer = point_under_pointer(context)) {
       points.push_back(pointer->shown);
       if (is_complete(kind_, points.size())) words.push_back(text_of_measure(kind_, measure(kind_, points)));
     }
     std::vector<Rect> taken;
-    draw_measure_lines(editor, view, kind_, points, true);
-    draw_measure_label(editor, view, kind_, points, words, true, taken);
+    draw_measure_lines(context, view, kind_, points, true);
+    draw_measure_label(context.ui, view, kind_, points, words, true, taken);
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     const char* click = kind_ == MeasureKind::Girth       ? "Measure the girth"
                         : kind_ == MeasureKind::Thickness ? "Measure the tissue"
                                                           : "Set a point";
@@ -198,34 +207,34 @@ class MeasureTool final : public Modal {
 
  private:
   // Ends a running drag that turns or shifts a view.
-  static void end_drag(Editor& editor) {
-    if (!editor.drag) return;
-    const Drag ended = std::move(*editor.drag);
-    editor.drag.reset();
-    if (ended.ended) ended.ended(editor);
+  static void end_drag(Context& context) {
+    if (!context.interaction->drag) return;
+    const Drag ended = std::move(*context.interaction->drag);
+    context.interaction->drag.reset();
+    if (ended.ended) ended.ended(context);
   }
-  void take(Editor& editor, const PointOnBody& point) {
-    const LabelVolume& volume = *editor.document().volume;
+  void take(Context& context, const PointOnBody& point) {
+    const LabelVolume& volume = *context.document().volume;
     if (kind_ == MeasureKind::Girth) {
-      add_measurement(editor, kind_, girth_tape(volume, point.at_rest, normal_at(editor, point)));
+      add_measurement(context, kind_, girth_tape(volume, point.at_rest, normal_at(context, point)));
     } else if (kind_ == MeasureKind::Thickness) {
       const auto ends = thickness_line(volume, point.voxel);
-      add_measurement(editor, kind_, {ends[0], ends[1]});
+      add_measurement(context, kind_, {ends[0], ends[1]});
     } else {
       points_.push_back(point.at_rest);
-      if (is_complete(kind_, points_.size())) add_measurement(editor, kind_, std::exchange(points_, {}));
+      if (is_complete(kind_, points_.size())) add_measurement(context, kind_, std::exchange(points_, {}));
     }
   }
   // Returns the normal of the plane in which a girth is measured. If the user clicked a slice of the body at rest,
   // this is the slice's normal. Otherwise it is the direction of the nearest bone, or without a rig the normal with
   // the smallest girth.
-  static glm::dvec3 normal_at(const Editor& editor, const PointOnBody& point) {
-    const bool is_posed = scene_of(editor, point.place).pose != nullptr;
+  static glm::dvec3 normal_at(const Context& context, const PointOnBody& point) {
+    const bool is_posed = scene_of(context, point.place).pose != nullptr;
     if (point.place.id != ViewId::Body && !is_posed) return render::frame_of(axis_of(point.place.id)).normal;
-    if (const auto along = along_nearest_bone(editor.document(), point.at_rest)) return *along;
-    const ViewProjection view(editor, point.place);
-    const glm::dvec3 inward = view.ray(glm::dvec2(editor.input.pointer)).direction;
-    const LabelVolume& volume = *editor.document().volume;
+    if (const auto along = along_nearest_bone(context.document(), point.at_rest)) return *along;
+    const ViewProjection view(context, point.place);
+    const glm::dvec3 inward = view.ray(glm::dvec2(context.ui->input.pointer)).direction;
+    const LabelVolume& volume = *context.document().volume;
     return least_girth_normal(volume, middle_along(volume, point.at_rest, inward));
   }
 
@@ -237,8 +246,8 @@ class MeasureTool final : public Modal {
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_measuring(const Editor& editor, MeasureKind kind) {
-  return std::make_unique<MeasureTool>(editor, kind);
+std::unique_ptr<Modal> begin_measuring(const Context& context, MeasureKind kind) {
+  return std::make_unique<MeasureTool>(context, kind);
 }
 
 }  // namespace limber::editor

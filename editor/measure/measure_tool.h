@@ -10,6 +10,8 @@
 
 namespace limber::editor {
 
-std::unique_ptr<Modal> begin_measuring(const Editor& editor, MeasureKind kind);
+struct Context;
+
+std::unique_ptr<Modal> begin_measuring(const Context& context, MeasureKind kind);
 
 }  // namespace limber::editor

@@ -10,7 +10,9 @@
 #include "core/resample/fem_steps.h"
 #include "core/resample/posed_points.h"
 #include "core/skin/weight_at.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/views.h"
 #include "editor/shown/preview_blend.h"
 
 namespace limber::editor {
@@ -23,8 +25,9 @@ constexpr double kBesideMesh = 10;
 
 // Returns the positions of points of the rest body in the pose that a scene previews. Each point moves with the tissue
 // around it.
-std::vector<glm::dvec3> previewed(Editor& editor, const render::Scene& scene, const std::vector<glm::dvec3>& at_rest) {
-  const Document& document = editor.document();
+std::vector<glm::dvec3> previewed(Context& context, const render::Scene& scene,
+                                  const std::vector<glm::dvec3>& at_rest) {
+  const Document& document = context.document();
   const SkinWeights& weights = *document.weights;
   std::vector<RigidTransform> motions;
   for (const std::string& name : weights.bones()) {
@@ -33,8 +36,8 @@ std::vector<glm::dvec3> previewed(Editor& editor, const render::Scene& scene, co
     motions.push_back(is_posed ? scene.posed_from_rest[static_cast<std::size_t>(*bone)] : RigidTransform{});
   }
   const std::vector<SkinTransform> transforms = skin_transforms(motions);
-  const Blend blend = preview_blend(editor);
-  const auto skin = skin_at(*document.volume, *tissue_voxels(*editor.views, document), weights, at_rest);
+  const Blend blend = preview_blend(context.resampling);
+  const auto skin = skin_at(*document.volume, *tissue_voxels(*context.views, document), weights, at_rest);
   std::vector<glm::dvec3> posed;
   for (std::size_t i = 0; i < at_rest.size(); ++i) {
     std::vector<limber::BoneWeight> influences;
@@ -47,12 +50,12 @@ std::vector<glm::dvec3> previewed(Editor& editor, const render::Scene& scene, co
 }
 
 // Returns the positions of points of the rest body in the posed body of a result.
-std::vector<glm::dvec3> in_result(Editor& editor, const Result& result, const std::vector<glm::dvec3>& at_rest) {
+std::vector<glm::dvec3> in_result(Context& context, const Result& result, const std::vector<glm::dvec3>& at_rest) {
   if (!result.from_volume || !result.from_weights || !result.from_armature || !result.from_pose || !result.from_tissues)
     return at_rest;
   if (result.from_pose->rotation.size() != result.from_armature->bones.size()) return at_rest;
-  const Document& document = editor.document();
-  const auto tissue = result.from_volume == document.volume ? tissue_voxels(*editor.views, document)
+  const Document& document = context.document();
+  const auto tissue = result.from_volume == document.volume ? tissue_voxels(*context.views, document)
                                                             : std::make_shared<const TissueVoxels>(*result.from_volume);
   // In a damaged project, the weights may not match the rig or the volume. The points then stay at rest.
   const auto& bones = result.from_weights->bones();
@@ -105,9 +108,9 @@ bool is_at_tissue(const LabelVolume& volume, const glm::dvec3& at_rest) {
   return false;
 }
 
-std::vector<glm::dvec3> points_on_scene(Editor& editor, const render::Scene& scene,
+std::vector<glm::dvec3> points_on_scene(Context& context, const render::Scene& scene,
                                         const std::vector<glm::dvec3>& at_rest) {
-  const Document& document = editor.document();
+  const Document& document = context.document();
   const bool is_preview = is_previewed(document, scene);
   const Result* result = is_preview ? nullptr : result_of(document, scene);
   const LabelVolume* volume = is_preview ? document.volume.get() : result ? result->from_volume.get() : nullptr;
@@ -117,7 +120,7 @@ std::vector<glm::dvec3> points_on_scene(Editor& editor, const render::Scene& sce
   for (std::size_t i = 0; i < at_rest.size(); ++i)
     if (is_at_tissue(*volume, at_rest[i])) moving.push_back(at_rest[i]), which.push_back(i);
   if (moving.empty()) return at_rest;
-  moving = is_preview ? previewed(editor, scene, moving) : in_result(editor, *result, moving);
+  moving = is_preview ? previewed(context, scene, moving) : in_result(context, *result, moving);
   std::vector<glm::dvec3> posed = at_rest;
   for (std::size_t k = 0; k < which.size(); ++k) posed[which[k]] = moving[k];
   return posed;
@@ -131,16 +134,16 @@ std::optional<glm::dvec3> point_at_rest(const render::Scene& scene, const glm::d
   return world_from_voxel(scene.volume->grid) * *rest;
 }
 
-std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const render::Scene& scene) {
-  const Measurements& measurements = *editor.document().measurements;
+std::vector<std::vector<glm::dvec3>> placed_measurements(Context& context, const render::Scene& scene) {
+  const Measurements& measurements = *context.document().measurements;
   std::vector<glm::dvec3> at_rest;
   for (const Measurement& one : measurements) at_rest.insert(at_rest.end(), one.points.begin(), one.points.end());
   // Points of a previewed pose are computed in every frame: this is fast, and a drag changes the pose in every frame.
   // Points of results are cached.
-  std::vector<MeasureView::Placed>& placed = editor.measures->placed;
+  std::vector<MeasureView::Placed>& placed = context.measures->placed;
   std::vector<glm::dvec3> posed;
-  if (!result_of(editor.document(), scene)) {
-    posed = points_on_scene(editor, scene, at_rest);
+  if (!result_of(context.document(), scene)) {
+    posed = points_on_scene(context, scene, at_rest);
   } else if (const auto known = std::find_if(placed.begin(), placed.end(),
                                              [&](const MeasureView::Placed& one) {
                                                return one.volume.lock() == scene.volume && one.at_rest == at_rest;
@@ -148,7 +151,7 @@ std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const r
              known != placed.end()) {
     posed = known->posed;
   } else {
-    posed = points_on_scene(editor, scene, at_rest);
+    posed = points_on_scene(context, scene, at_rest);
     if (placed.size() >= kRemembered) placed.erase(placed.begin());
     placed.push_back({scene.volume, at_rest, posed});
   }
@@ -162,8 +165,8 @@ std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const r
   return points;
 }
 
-void add_measurement(Editor& editor, MeasureKind kind, std::vector<glm::dvec3> points) {
-  Document next = editor.document();
+void add_measurement(Context& context, MeasureKind kind, std::vector<glm::dvec3> points) {
+  Document next = context.document();
   Measurements all = next.measurements ? *next.measurements : Measurements{};
   std::string word(word_of(kind));
   word[0] = static_cast<char>(std::toupper(word[0]));
@@ -175,24 +178,24 @@ void add_measurement(Editor& editor, MeasureKind kind, std::vector<glm::dvec3> p
   const std::string name = word + " " + std::to_string(number);
   all.push_back({name, kind, std::move(points)});
   next.measurements = std::make_shared<const Measurements>(std::move(all));
-  commit(editor, "Measure " + std::string(word_of(kind)), std::move(next));
-  editor.measures->chosen = name;
-  editor.measures->shown = true;
+  commit(context, "Measure " + std::string(word_of(kind)), std::move(next));
+  context.measures->chosen = name;
+  context.measures->shown = true;
 }
 
-std::optional<std::size_t> chosen_measurement(const Editor& editor) {
-  const auto& all = editor.document().measurements;
+std::optional<std::size_t> chosen_measurement(const Context& context) {
+  const auto& all = context.document().measurements;
   if (!all) return std::nullopt;
   for (std::size_t i = 0; i < all->size(); ++i)
-    if ((*all)[i].name == editor.measures->chosen) return i;
+    if ((*all)[i].name == context.measures->chosen) return i;
   return std::nullopt;
 }
 
-std::string table_of_measurements(Editor& editor) {
+std::string table_of_measurements(Context& context) {
   std::string table = "name\tkind\tat rest\tas shown\tunit\n";
-  const auto& all = editor.document().measurements;
+  const auto& all = context.document().measurements;
   if (!all) return table;
-  const auto placed = placed_measurements(editor, editor.views->scene);
+  const auto placed = placed_measurements(context, context.views->scene);
   for (std::size_t i = 0; i < all->size(); ++i) {
     const Measurement& one = (*all)[i];
     char values[80];

@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
+#include "core/measure/measurement.h"
 #include "render/scene/scene.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // The state of the measurements' display. It is not part of the document.
 struct MeasureView {
@@ -28,10 +30,10 @@ struct MeasureView {
 };
 
 // Returns, for each measurement of the document, its points on the body that a scene shows, world, mm.
-std::vector<std::vector<glm::dvec3>> placed_measurements(Editor& editor, const render::Scene& scene);
+std::vector<std::vector<glm::dvec3>> placed_measurements(Context& context, const render::Scene& scene);
 // Converts points of the rest body to their positions on the body that a scene shows, world, mm. A point that is not
 // in or near tissue does not move.
-std::vector<glm::dvec3> points_on_scene(Editor& editor, const render::Scene& scene,
+std::vector<glm::dvec3> points_on_scene(Context& context, const render::Scene& scene,
                                         const std::vector<glm::dvec3>& at_rest);
 // Returns true if a point of the rest body lies in tissue or at most two voxels from it.
 bool is_at_tissue(const LabelVolume& volume, const glm::dvec3& at_rest);
@@ -40,11 +42,11 @@ bool is_at_tissue(const LabelVolume& volume, const glm::dvec3& at_rest);
 std::optional<glm::dvec3> point_at_rest(const render::Scene& scene, const glm::dvec3& world);
 
 // Adds a measurement to the document, with a name such as "Distance 2", and selects it.
-void add_measurement(Editor& editor, MeasureKind kind, std::vector<glm::dvec3> points);
+void add_measurement(Context& context, MeasureKind kind, std::vector<glm::dvec3> points);
 // Returns the index of the selected measurement; nothing when none is selected.
-std::optional<std::size_t> chosen_measurement(const Editor& editor);
+std::optional<std::size_t> chosen_measurement(const Context& context);
 
 // Returns all measurements as a table of tab-separated columns: name, kind, value at rest, value as shown, unit.
-std::string table_of_measurements(Editor& editor);
+std::string table_of_measurements(Context& context);
 
 }  // namespace limber::editor

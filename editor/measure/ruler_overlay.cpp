@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/view_projection.h"
+#include "editor/context/views.h"
 #include "editor/ui/draw.h"
 
 namespace limber::editor {
@@ -28,8 +30,8 @@ std::string number_text(double value, double step) {
 //   from, to   ends of the edge, pixels; the numbers are on the inner side of the edge
 //   first      world coordinate at `from`, mm
 //   per_pixel  change of the world coordinate along the edge, mm per pixel; may be negative
-void draw_ruler(Editor& editor, const glm::vec2& from, const glm::vec2& to, double first, double per_pixel) {
-  const Look& look = editor.look;
+void draw_ruler(Context& context, const glm::vec2& from, const glm::vec2& to, double first, double per_pixel) {
+  const Look& look = context.ui->look;
   const bool is_level = from.y == to.y;
   const float length = glm::distance(from, to);
   if (length < look.px(2 * kApart) || per_pixel == 0) return;
@@ -50,7 +52,7 @@ void draw_ruler(Editor& editor, const glm::vec2& from, const glm::vec2& to, doub
     const glm::vec2 middle = is_level ? glm::vec2(from.x + at, from.y - tick - size.y / 2)
                                       : glm::vec2(from.x + tick + look.px(3) + size.x / 2, from.y + at);
     if (at < size.x || at > length - size.x) continue;
-    put_text(editor, look.fonts.small, look.theme.view_text2, glm::round(middle - size * 0.5f), text);
+    put_text(context.ui, look.fonts.small, look.theme.view_text2, glm::round(middle - size * 0.5f), text);
   }
 }
 
@@ -63,16 +65,17 @@ double ruler_step(double least) {
   return 10 * power;
 }
 
-Rect beside_rulers(const Editor& editor, const Rect& slice) {
-  if (!editor.views->rulers) return slice;
-  return {{slice.low.x + editor.look.px(kWidth), slice.low.y}, {slice.high.x, slice.high.y - editor.look.px(kHeight)}};
+Rect beside_rulers(const Context& context, const Rect& slice) {
+  if (!context.views->rulers) return slice;
+  return {{slice.low.x + context.ui->look.px(kWidth), slice.low.y},
+          {slice.high.x, slice.high.y - context.ui->look.px(kHeight)}};
 }
 
-void draw_rulers(Editor& editor, const ViewPlace& place) {
-  if (!editor.views->rulers || place.id == ViewId::Body) return;
-  const ViewProjection view(editor, place);
+void draw_rulers(Context& context, const ViewPlace& place) {
+  if (!context.views->rulers || place.id == ViewId::Body) return;
+  const ViewProjection view(context, place);
   const Rect& rect = place.rect;
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const auto axis_of = [](const glm::dvec3& v) { return std::abs(v.x) > 0.5 ? 0 : std::abs(v.y) > 0.5 ? 1 : 2; };
   const int across = axis_of(view.right), upright = axis_of(view.up);
   const double scale = view.slice.millimetres_per_pixel;
@@ -81,8 +84,8 @@ void draw_rulers(Editor& editor, const ViewPlace& place) {
   const Colour plate = with_alpha(look.theme.view_plate, 0.5f);
   fill({{rect.low.x, rect.high.y - look.px(kHeight)}, rect.high}, plate);
   fill({rect.low, {rect.low.x + look.px(kWidth), rect.high.y - look.px(kHeight)}}, plate);
-  draw_ruler(editor, {rect.low.x, rect.high.y}, rect.high, corner[across], view.right[across] * scale);
-  draw_ruler(editor, rect.low, {rect.low.x, rect.high.y - look.px(kHeight)}, top[upright], -view.up[upright] * scale);
+  draw_ruler(context, {rect.low.x, rect.high.y}, rect.high, corner[across], view.right[across] * scale);
+  draw_ruler(context, rect.low, {rect.low.x, rect.high.y - look.px(kHeight)}, top[upright], -view.up[upright] * scale);
 }
 
 }  // namespace limber::editor

@@ -3,13 +3,16 @@
 // mm.
 #pragma once
 
-#include "editor/context/view_projection.h"
+#include "editor/ui/rect.h"
 
 namespace limber::editor {
 
-void draw_rulers(Editor& editor, const ViewPlace& place);
+struct Context;
+struct ViewPlace;
+
+void draw_rulers(Context& context, const ViewPlace& place);
 // Returns the part of a slice's rectangle that the rulers do not cover.
-Rect beside_rulers(const Editor& editor, const Rect& slice);
+Rect beside_rulers(const Context& context, const Rect& slice);
 
 // Returns the distance between two numbered ticks, mm: 1, 2 or 5 times a power of ten, at least `least` mm.
 double ruler_step(double least);

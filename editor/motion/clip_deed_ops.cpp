@@ -15,10 +15,15 @@
 #include "core/motion/strip_edits.h"
 #include "core/study/text.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/operator.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -31,60 +36,60 @@ constexpr double kFewFrames = 2000;
 // factor.
 constexpr double kHasty = 1.5;
 
-std::string needs_clip(const Editor& editor) {
-  return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
+std::string needs_clip(const Context& context) {
+  return shown_clip(context.document()) ? "" : "Import a motion first, or insert a key";
 }
-std::string needs_clip_and_rig(const Editor& editor) {
-  if (const std::string why = needs_clip(editor); !why.empty()) return why;
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_clip_and_rig(const Context& context) {
+  if (const std::string why = needs_clip(context); !why.empty()) return why;
+  return context.document().armature ? "" : "Import a rig first";
 }
-std::string needs_three_frames(const Editor& editor) {
-  if (const std::string why = needs_clip_and_rig(editor); !why.empty()) return why;
-  const auto [low, high] = playing_range(editor);
+std::string needs_three_frames(const Context& context) {
+  if (const std::string why = needs_clip_and_rig(context); !why.empty()) return why;
+  const auto [low, high] = playing_range(context.document());
   return high - low < 2 ? "Set a range of at least three frames first" : "";
 }
 
-std::shared_ptr<const Clip> shared_clip(const Editor& editor) {
-  return editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+std::shared_ptr<const Clip> shared_clip(const Document& document) {
+  return document.clips[static_cast<std::size_t>(document.clip)];
 }
 
 std::string frames_text(int frames) { return grouped(frames) + (frames == 1 ? " frame" : " frames"); }
 
 // Throws Error if no clip or rig is left, or if the playing range has too many frames.
-void require_frames(const Editor& editor) {
-  if (!needs_clip_and_rig(editor).empty())
+void require_frames(const Context& context) {
+  if (!needs_clip_and_rig(context).empty())
     throw Error("the clip was deleted meanwhile", "clip", "select a clip and open the dialog again");
-  const auto [first, last] = playing_range(editor);
+  const auto [first, last] = playing_range(context.document());
   if (std::int64_t{last} - first >= kMostFrames)
     throw Error("the playing range has too many frames",
                 "frames " + std::to_string(first) + " to " + std::to_string(last), "set a shorter range");
 }
 
-void mirror_shown(Editor& editor) {
-  stop_playing(editor);
-  const auto source = shared_clip(editor);
-  edit_clip(editor, "Mirror clip", PoseThen::FromClip,
-            [&](Clip& clip) { clip = mirrored_clip(source, editor.document().armature); });
+void mirror_shown(Context& context) {
+  stop_playing(context);
+  const auto source = shared_clip(context.document());
+  edit_clip(context, "Mirror clip", PoseThen::FromClip,
+            [&](Clip& clip) { clip = mirrored_clip(source, context.document().armature); });
 }
 
-void bake(Editor& editor) {
-  stop_playing(editor);
-  require_frames(editor);
-  const auto source = shared_clip(editor);
-  start_task(editor, "Bake clip", [source, rig = editor.document().armature](Progress& progress) -> Finish {
+void bake(Context& context) {
+  stop_playing(context);
+  require_frames(context);
+  const auto source = shared_clip(context.document());
+  start_task(context, "Bake clip", [source, rig = context.document().armature](Progress& progress) -> Finish {
     const auto baked = std::make_shared<const Clip>(baked_clip(source, rig, progress));
-    return [=](Editor& e) {
-      take_in_clip(e, source, rig, "Bake clip", *baked, false);
-      e.messages.ok(frames_text(baked->motion->frame_count) + " baked",
-                    "The motion now contains the keys and the retargeting, for this rig's bones");
+    return [=](Context& c) {
+      take_in_clip(c, source, rig, "Bake clip", *baked, false);
+      c.messages->ok(frames_text(baked->motion->frame_count) + " baked",
+                     "The motion now contains the keys and the retargeting, for this rig's bones");
     };
   });
 }
 
 // ---- Speed
 
-const Clip& require_clip(const Editor& editor) {
-  const Clip* clip = shown_clip(editor);
+const Clip& require_clip(const Document& document) {
+  const Clip* clip = shown_clip(document);
   if (!clip) throw Error("the clip was deleted meanwhile", "speed", "select a clip and open the dialog again");
   return *clip;
 }
@@ -98,8 +103,8 @@ double factor_of(const Clip& clip, const std::vector<FormField>& fields) {
   return double(steps) / wanted;
 }
 
-std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fields) {
-  const Clip* clip = &require_clip(editor);
+std::string speed_outcome(const Context& context, const std::vector<FormField>& fields) {
+  const Clip* clip = &require_clip(context.document());
   const double factor = factor_of(*clip, fields);
   if (factor == 1) throw NotYet{"The clip has this speed already."};
   const double steps = double(clip->range_end) - clip->range_start;
@@ -124,34 +129,34 @@ std::string speed_outcome(const Editor& editor, const std::vector<FormField>& fi
 
 // Replaces the shown clip by the clip with the changed speed. The play head moves to the frame that shows the same
 // moment of the motion.
-void take_in_speed(Editor& editor, const std::shared_ptr<const Clip>& source,
+void take_in_speed(Context& context, const std::shared_ptr<const Clip>& source,
                    const std::shared_ptr<const Armature>& rig, const Clip& changed, double factor) {
-  settle_frame(editor);
+  settle_frame(context);
   std::optional<double> moment;
-  if (editor.document().shown_clip() == source.get())
-    moment = changed.start + std::round((double(editor.document().frame) - changed.start) / factor);
-  take_in_clip(editor, source, rig, "Change speed", changed, false, moment, 1 / factor);
+  if (context.document().shown_clip() == source.get())
+    moment = changed.start + std::round((double(context.document().frame) - changed.start) / factor);
+  take_in_clip(context, source, rig, "Change speed", changed, false, moment, 1 / factor);
 }
 
 // Changes the speed of a short clip at once, so that the user can adjust the speed afterwards. Changes a long clip in
 // a background task, which the user can cancel.
-void change_speed(Editor& editor, double factor) {
-  const auto source = shared_clip(editor);
-  const auto rig = editor.document().armature;
+void change_speed(Context& context, double factor) {
+  const auto source = shared_clip(context.document());
+  const auto rig = context.document().armature;
   const std::int64_t recorded = source->motion ? source->motion->frame_count : 0;
   const double steps = std::max<double>(double(recorded), double(source->range_end) - source->range_start);
   if (std::max(steps, steps / factor) < kFewFrames)
-    return take_in_speed(editor, source, rig, at_speed(*source, factor), factor);
-  start_task(editor, "Change speed", [=](Progress& progress) -> Finish {
+    return take_in_speed(context, source, rig, at_speed(*source, factor), factor);
+  start_task(context, "Change speed", [=](Progress& progress) -> Finish {
     const auto changed = std::make_shared<const Clip>(at_speed(*source, factor, progress));
-    return [=](Editor& e) { take_in_speed(e, source, rig, *changed, factor); };
+    return [=](Context& c) { take_in_speed(c, source, rig, *changed, factor); };
   });
 }
 
-void ask_speed(Editor& editor) {
-  stop_playing(editor);
-  const auto [low, high] = playing_range(editor);
-  editor.open_dialog(make_form(
+void ask_speed(Context& context) {
+  stop_playing(context);
+  const auto [low, high] = playing_range(context.document());
+  context.dialogs->open(make_form(
       {"Change speed",
        "Makes the clip longer or shorter at the same frame rate. Keys, markers and range are stretched with it.",
        "Change",
@@ -160,33 +165,33 @@ void ask_speed(Editor& editor) {
         number_of("Length", "Number of frames in the playing range afterwards.",
                   std::clamp<double>(double(high) - low + 1, 2, 1e6), 2, 1e6, "%.0f", "frames")},
        speed_outcome,
-       [](Editor& e, const std::vector<FormField>& fields) {
-         stop_playing(e);
-         change_speed(e, factor_of(require_clip(e), fields));
+       [](Context& c, const std::vector<FormField>& fields) {
+         stop_playing(c);
+         change_speed(c, factor_of(require_clip(c.document()), fields));
        }}));
 }
 
 // ---- Loop
 
-void tell_of_loop(Editor& editor, const LoopedPoses& loop, int repeats) {
+void tell_of_loop(Messages& messages, const LoopedPoses& loop, int repeats) {
   char text[160];
   std::snprintf(text, sizeof text, "Where repeats meet, poses differ by up to %.1f\u00b0%s%.40s", loop.gap_degrees,
                 loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str());
   const std::string detail = text;
   const std::string line = std::to_string(repeats) + (repeats == 1 ? " repeat, " : " repeats, ") +
                            frames_text(static_cast<int>(loop.poses.size()));
-  if (loop.haste <= kHasty) return editor.messages.ok(line, detail);
+  if (loop.haste <= kHasty) return messages.ok(line, detail);
   std::snprintf(text, sizeof text,
                 "; blending them turns bones %.1f times as fast: loop a whole cycle, or blend over more frames",
                 loop.haste);
-  editor.messages.warn(line, detail + text);
+  messages.warn(line, detail + text);
 }
 
-void start_looping(Editor& editor, const LoopSettings& settings, bool is_new) {
-  stop_playing(editor);
-  const auto [first, last] = playing_range(editor);
-  const auto source = shared_clip(editor);
-  start_task(editor, "Loop clip", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+void start_looping(Context& context, const LoopSettings& settings, bool is_new) {
+  stop_playing(context);
+  const auto [first, last] = playing_range(context.document());
+  const auto source = shared_clip(context.document());
+  start_task(context, "Loop clip", [=, rig = context.document().armature](Progress& progress) -> Finish {
     const ClipOnRig clip(source, rig);
     if (!clip.problem().empty()) throw Error("the clip cannot be repeated", source->name, clip.problem());
     std::vector<Pose> poses;
@@ -197,9 +202,9 @@ void start_looping(Editor& editor, const LoopSettings& settings, bool is_new) {
     const auto loop = std::make_shared<const LoopedPoses>(looped(*rig, poses, settings));
     auto made = std::make_shared<Clip>(clip_of_poses(*source, *rig, loop->poses, first));
     if (is_new) made->name += " loop";
-    return [=](Editor& e) {
-      take_in_clip(e, source, rig, "Loop clip", *made, is_new);
-      tell_of_loop(e, *loop, settings.repeats);
+    return [=](Context& c) {
+      take_in_clip(c, source, rig, "Loop clip", *made, is_new);
+      tell_of_loop(c.messages, *loop, settings.repeats);
     };
   });
 }
@@ -210,11 +215,11 @@ LoopSettings loop_of(const std::vector<FormField>& fields) {
           .stays = fields[2].chosen == 1};
 }
 
-void ask_loop(Editor& editor) {
-  const auto [low, high] = playing_range(editor);
+void ask_loop(Context& context) {
+  const auto [low, high] = playing_range(context.document());
   const int steps = high - low;
-  const double usual = std::min<double>(steps, std::round(0.3 * shown_clip(editor)->rate));
-  editor.open_dialog(make_form(
+  const double usual = std::min<double>(steps, std::round(0.3 * shown_clip(context.document())->rate));
+  context.dialogs->open(make_form(
       {"Loop clip",
        "Repeats the playing range. Each repeat begins where the one before ended, in the pose of the first frame.",
        "Loop",
@@ -225,22 +230,23 @@ void ask_loop(Editor& editor) {
         choice_of("Body", "Let each repeat continue from the body's position and heading, or keep the body in place.",
                   {"Travels", "In place"}),
         choice_of("Result", "Store the repeats in a new clip, or replace the shown clip.", {"New clip", "Same clip"})},
-       [](const Editor& e, const std::vector<FormField>& fields) {
-         require_frames(e);
-         const auto [first, last] = playing_range(e);
+       [](const Context& c, const std::vector<FormField>& fields) {
+         require_frames(c);
+         const auto [first, last] = playing_range(c.document());
          const LoopSettings settings = loop_of(fields);
          const std::int64_t frames = std::int64_t{last - first} * settings.repeats + 1;
          if (frames > kMostFrames)
            throw Error("these repeats have too many frames", grouped(frames) + " frames", "enter fewer repeats");
-         const bool is_locked = shown_clip(e)->motion && shown_clip(e)->retarget.travel == Travel::Locked;
+         const bool is_locked =
+             shown_clip(c.document())->motion && shown_clip(c.document())->retarget.travel == Travel::Locked;
          return frames_text(last - first + 1) + " become " + frames_text(static_cast<int>(frames)) +
                 ", keys included." +
                 (is_locked && !settings.stays
                      ? " Root motion keeps the body in place. To let it travel, set Root motion to Free first."
                      : "");
        },
-       [](Editor& e, const std::vector<FormField>& fields) {
-         start_looping(e, loop_of(fields), fields[3].chosen == 0);
+       [](Context& c, const std::vector<FormField>& fields) {
+         start_looping(c, loop_of(fields), fields[3].chosen == 0);
        }}));
 }
 

@@ -11,9 +11,15 @@
 #include "core/motion/up_axis.h"
 #include "core/study/text.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -35,9 +41,9 @@ struct JoinWish {
   bool is_new = true;
 };
 
-std::string needs_clip_and_rig(const Editor& editor) {
-  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_clip_and_rig(const Context& context) {
+  if (!shown_clip(context.document())) return "Import a motion first, or insert a key";
+  return context.document().armature ? "" : "Import a rig first";
 }
 
 // Returns true if the take has the clip's frame rate, to within 0.001 frames per second.
@@ -121,16 +127,16 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
   return result;
 }
 
-void start_joining(Editor& editor, const NextTake& next, const JoinWish& wish) {
-  stop_playing(editor);
-  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
-  start_task(editor, "Join clip", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+void start_joining(Context& context, const NextTake& next, const JoinWish& wish) {
+  stop_playing(context);
+  const auto source = context.document().clips[static_cast<std::size_t>(context.document().clip)];
+  start_task(context, "Join clip", [=, rig = context.document().armature](Progress& progress) -> Finish {
     auto result = std::make_shared<JoinResult>(join(source, rig, next, wish, progress));
     if (wish.is_new) result->clip.name += " + " + next.name;
-    return [=](Editor& e) {
-      take_in_clip(e, source, rig, "Join clip", result->clip, wish.is_new);
-      if (result->is_doubtful) e.messages.warn(result->line, result->detail);
-      else e.messages.ok(result->line, result->detail);
+    return [=](Context& c) {
+      take_in_clip(c, source, rig, "Join clip", result->clip, wish.is_new);
+      if (result->is_doubtful) c.messages->warn(result->line, result->detail);
+      else c.messages->ok(result->line, result->detail);
     };
   });
 }
@@ -144,37 +150,38 @@ JoinWish wish_of(const std::vector<FormField>& fields) {
   return wish;
 }
 
-std::string join_outcome(const Editor& editor, const NextTake& next, const std::vector<FormField>& fields) {
-  if (!needs_clip_and_rig(editor).empty())
+std::string join_outcome(const Context& context, const NextTake& next, const std::vector<FormField>& fields) {
+  if (!needs_clip_and_rig(context).empty())
     throw Error("the clip was deleted meanwhile", "join", "select a clip and open the dialog again");
-  const auto [low, high] = playing_range(editor);
+  const auto [low, high] = playing_range(context.document());
   const std::int64_t here = std::int64_t{high} - low + 1,
-                     there = frames_at_rate(*next.motion, shown_clip(editor)->rate);
+                     there = frames_at_rate(*next.motion, shown_clip(context.document())->rate);
   const JoinWish wish = wish_of(fields);
   if (wish.settings.fade > std::min(here, there))
     throw Error("the cross-fade is longer than a motion", std::to_string(wish.settings.fade) + " frames",
                 "enter 1 to " + std::to_string(std::min(here, there)));
   if (here + there > kMostFrames)
     throw Error("the joined clip has too many frames", grouped(here + there) + " frames", "set a shorter range");
-  const auto limbs = planted_limbs(*editor.document().armature);
+  const auto limbs = planted_limbs(*context.document().armature);
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
   if (wish.settings.keeps_feet && !has_legs)
     throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
-  const bool is_locked = shown_clip(editor)->motion && shown_clip(editor)->retarget.travel == Travel::Locked;
+  const bool is_locked =
+      shown_clip(context.document())->motion && shown_clip(context.document())->retarget.travel == Travel::Locked;
   return grouped(here) + " frames and " + grouped(there) + " of " + next.name + " become " +
          grouped(here + there - wish.settings.fade) + ", keys included." +
          (is_locked ? " Root motion keeps the body in place. To let it travel, set Root motion to Free first." : "");
 }
 
-void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {
-  if (const std::string why = needs_clip_and_rig(editor); !why.empty())
+void ask_join(Context& context, const std::shared_ptr<const NextTake>& next) {
+  if (const std::string why = needs_clip_and_rig(context); !why.empty())
     throw Error("the clip was deleted meanwhile", next->name, "import or make one first");
-  const auto [low, high] = playing_range(editor);
-  const double rate = shown_clip(editor)->rate;
+  const auto [low, high] = playing_range(context.document());
+  const double rate = shown_clip(context.document())->rate;
   const double most = double(std::min(std::int64_t{high} - low + 1, frames_at_rate(*next->motion, rate)));
-  const auto limbs = planted_limbs(*editor.document().armature);
+  const auto limbs = planted_limbs(*context.document().armature);
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Join " + next->name + ".bvh",
        "Appends this motion to the playing range. It starts with the body's position and heading at the range's end.",
        "Join",
@@ -185,19 +192,19 @@ void ask_join(Editor& editor, const std::shared_ptr<const NextTake>& next) {
         choice_of("Up axis", "The axis that points up in the file.", {"Y", "Z"}, next->up == UpAxis::Z ? 1 : 0),
         choice_of("Result", "Store the joined motion in a new clip, or replace the shown clip.",
                   {"New clip", "Same clip"})},
-       [next](const Editor& e, const std::vector<FormField>& fields) { return join_outcome(e, *next, fields); },
-       [next](Editor& e, const std::vector<FormField>& fields) { start_joining(e, *next, wish_of(fields)); }}));
+       [next](const Context& c, const std::vector<FormField>& fields) { return join_outcome(c, *next, fields); },
+       [next](Context& c, const std::vector<FormField>& fields) { start_joining(c, *next, wish_of(fields)); }}));
 }
 
-void read_next(Editor& editor, const Path& path) {
-  start_task(editor, "Read " + path.filename().string(), [path](Progress&) -> Finish {
+void read_next(Context& context, const Path& path) {
+  start_task(context, "Read " + path.filename().string(), [path](Progress&) -> Finish {
     auto next = std::make_shared<NextTake>();
     next->motion = std::make_shared<const Motion>(read_bvh(path));
     next->name = path.stem().string();
     if (next->motion->frame_count == 0)
       throw Error("this motion has no frames", path.string(), "select a file with a motion");
     next->up = up_axis_of(*next->motion).axis;
-    return [next](Editor& e) { ask_join(e, next); };
+    return [next](Context& c) { ask_join(c, next); };
   });
 }
 
@@ -207,13 +214,13 @@ std::vector<Operator> clip_join_operators() {
   return {
       {"motion.join_clip", "Join clip...", "", "Motion",
        "Append a motion from a BVH file to the clip, with a cross-fade from the body's position and pose at its end.",
-       [](Editor& editor) {
-         browse(editor, {.purpose = "file.import_motion",
-                         .title = "Join a motion to the clip",
-                         .action = "Join",
-                         .filters = {{"Motions", {".bvh"}}},
-                         .folder = editor.project_path.parent_path(),
-                         .chosen = read_next});
+       [](Context& context) {
+         browse(context, {.purpose = "file.import_motion",
+                          .title = "Join a motion to the clip",
+                          .action = "Join",
+                          .filters = {{"Motions", {".bvh"}}},
+                          .folder = context.project->path.parent_path(),
+                          .chosen = read_next});
        },
        needs_clip_and_rig}};
 }

@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "core/motion/constraint_stack.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/shown/shown_pose.h"
 
 namespace limber::editor {
@@ -19,9 +21,9 @@ bool is_constrained(const Document& document) {
   return document.armature && document.shown_clip() && document.shown_clip()->constraints;
 }
 
-std::optional<Pose> free_pose_by_hand(const Editor& editor) {
-  const Document& document = editor.document();
-  const auto& by_hand = editor.timeline->by_hand;
+std::optional<Pose> free_pose_by_hand(const Context& context) {
+  const Document& document = context.document();
+  const auto& by_hand = context.timeline->by_hand;
   if (!by_hand || !is_constrained(document)) return std::nullopt;
   const auto& clip = document.clips[static_cast<std::size_t>(document.clip)];
   const Pose pose = pose_of(document);
@@ -30,22 +32,22 @@ std::optional<Pose> free_pose_by_hand(const Editor& editor) {
   return std::nullopt;
 }
 
-Pose unconstrained_pose(Editor& editor) {
-  Pose pose = pose_of(editor.document());
-  const ClipOnRig* clip = clip_on_rig(editor);
+Pose unconstrained_pose(Context& context) {
+  Pose pose = pose_of(context.document());
+  const ClipOnRig* clip = clip_on_rig(context);
   if (!clip || !clip->constraints()) return pose;
-  if (auto free = free_pose_by_hand(editor)) return *free;
-  const int frame = editor.document().frame;
+  if (auto free = free_pose_by_hand(context)) return *free;
+  const int frame = context.document().frame;
   const Pose made = clip->at(frame), free = clip->unconstrained_at(frame);
   for (std::size_t bone = 0; bone < pose.rotation.size(); ++bone)
     if (pose.rotation[bone] == made.rotation[bone]) pose.rotation[bone] = free.rotation[bone];
   return pose;
 }
 
-Pose unconstrained_pose(Editor& editor, const Pose& changed, const std::vector<int>& set) {
-  if (!is_constrained(editor.document())) return changed;
-  const Pose before = pose_of(editor.document());
-  Pose free = unconstrained_pose(editor);
+Pose unconstrained_pose(Context& context, const Pose& changed, const std::vector<int>& set) {
+  if (!is_constrained(context.document())) return changed;
+  const Pose before = pose_of(context.document());
+  Pose free = unconstrained_pose(context);
   free.root_translation = changed.root_translation;
   const auto is_set = [&](std::size_t bone) { return std::find(set.begin(), set.end(), bone) != set.end(); };
   for (std::size_t bone = 0; bone < free.rotation.size(); ++bone) {
@@ -62,27 +64,27 @@ Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame) {
   return clip.constraints() ? clip.constraints()->constrained(free, clip.clip()->keys, frame) : free;
 }
 
-Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set) {
-  if (!is_constrained(editor.document())) return changed;
-  const Pose free = unconstrained_pose(editor, changed, set);
-  return constrained_pose(*clip_on_rig(editor), free, editor.document().frame);
+Pose held_by_constraints(Context& context, const Pose& changed, const std::vector<int>& set) {
+  if (!is_constrained(context.document())) return changed;
+  const Pose free = unconstrained_pose(context, changed, set);
+  return constrained_pose(*clip_on_rig(context), free, context.document().frame);
 }
 
-void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free) {
-  auto& by_hand = editor.timeline->by_hand;
+void remember_free_pose(Timeline& timeline, const Document& document, const Pose& shown, const Pose& free) {
+  auto& by_hand = timeline.by_hand;
   if (!by_hand) by_hand = std::make_shared<HandPoses>();
   by_hand->poses.push_front({document.clips[static_cast<std::size_t>(document.clip)], document.frame, shown, free});
   if (by_hand->poses.size() > kMostPoses) by_hand->poses.pop_back();
 }
 
-void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change) {
-  stop_playing(editor);
-  settle_frame(editor);
-  Document next = editor.document();
-  const Pose free = unconstrained_pose(editor), rest = rest_pose(*next.armature);
+void change_free_clip(Context& context, const std::string& label, const std::function<void(Clip&)>& change) {
+  stop_playing(context);
+  settle_frame(context);
+  Document next = context.document();
+  const Pose free = unconstrained_pose(context), rest = rest_pose(*next.armature);
   // The clip has no effect on the rig if it has no keys, no constraints, and no motion that can be retargeted. The
   // pose is then all the user's own work, so it is keyed: otherwise it would be lost.
-  const ClipOnRig* before = clip_on_rig(editor);
+  const ClipOnRig* before = clip_on_rig(context);
   const bool is_bare = !before || (!before->has_base() && before->clip()->keys.empty() && !before->clip()->constraints);
   if (is_bare && free != rest) key_changes(next, rest, free);
   if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
@@ -91,11 +93,11 @@ void change_free_clip(Editor& editor, const std::string& label, const std::funct
   change(clip);
   if (clip.constraints && clip.constraints->list.empty()) clip.constraints = nullptr;
   shown = std::make_shared<const Clip>(std::move(clip));
-  const Pose held = constrained_pose(ClipOnRig(shown, next.armature, clip_on_rig(editor)), free, next.frame);
+  const Pose held = constrained_pose(ClipOnRig(shown, next.armature, clip_on_rig(context)), free, next.frame);
   next.pose = held == rest ? nullptr : std::make_shared<const Pose>(held);
-  remember_free_pose(editor, next, held, free);
-  drop_shown_pose(editor);
-  if (next != editor.document()) commit(editor, label, std::move(next));
+  remember_free_pose(context.timeline, next, held, free);
+  drop_shown_pose(context);
+  if (next != context.document()) commit(context, label, std::move(next));
 }
 
 }  // namespace limber::editor

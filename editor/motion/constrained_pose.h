@@ -13,9 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "editor/motion/timeline.h"
+#include "core/project/document.h"
 
 namespace limber::editor {
+
+struct Context;
+struct Timeline;
 
 // The free poses of the poses that the user last made by hand, each at a frame of a clip. Undo looks up the free pose
 // of a restored pose here.
@@ -31,26 +34,26 @@ struct HandPoses {
 // Returns whether the shown clip has constraints that change the poses of motion and keys.
 bool is_constrained(const Document& document);
 // Returns the document's free pose: the pose before constraints are applied.
-Pose unconstrained_pose(Editor& editor);
+Pose unconstrained_pose(Context& context);
 // Returns the new free pose after the user has changed the document's pose to `changed`. A bone that constraints have
 // turned is turned by the same rotation as in the document's pose. Other bones get their rotation in `changed`.
 //   set  bones whose rotations the user has set to a value. They also get their rotation in `changed`: otherwise,
 //   setting the same value again would turn them further.
-Pose unconstrained_pose(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
+Pose unconstrained_pose(Context& context, const Pose& changed, const std::vector<int>& set = {});
 // Applies the clip's constraints to the pose `free` and returns the result. Returns `free` if the clip has no
 // constraints.
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 // Returns the pose to show after the user has changed the document's pose to `changed`: the new free pose, with the
 // constraints applied again.
 //   set  bones whose rotations the user has set to a value; the free pose gets exactly these rotations
-Pose held_by_constraints(Editor& editor, const Pose& changed, const std::vector<int>& set = {});
+Pose held_by_constraints(Context& context, const Pose& changed, const std::vector<int>& set = {});
 // Stores the free pose that belongs to the pose `shown` at the frame of the document's shown clip.
-void remember_free_pose(Editor& editor, const Document& document, const Pose& shown, const Pose& free);
+void remember_free_pose(Timeline& timeline, const Document& document, const Pose& shown, const Pose& free);
 // Returns the stored free pose of the document's pose if the user made that pose by hand. Returns nothing if the pose
 // comes from the clip.
-std::optional<Pose> free_pose_by_hand(const Editor& editor);
+std::optional<Pose> free_pose_by_hand(const Context& context);
 // Changes the shown clip as one edit. The free pose does not change, so the user's changes are kept. The document's
 // pose becomes the free pose with the constraints of the changed clip applied.
-void change_free_clip(Editor& editor, const std::string& label, const std::function<void(Clip&)>& change);
+void change_free_clip(Context& context, const std::string& label, const std::function<void(Clip&)>& change);
 
 }  // namespace limber::editor

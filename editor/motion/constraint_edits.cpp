@@ -8,10 +8,16 @@
 #include "core/motion/apply_constraints.h"
 #include "core/motion/body_frame.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/input/keymap_overrides.h"
 #include "editor/motion/constrained_pose.h"
 #include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/shown/shown_pose.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -34,8 +40,8 @@ Constraint& named(Constraints& constraints, const std::string& name) {
 }
 
 // Throws Error if the constraint cannot be applied together with the other constraints.
-void require_applicable(const Editor& editor, const Constraints& constraints, const std::string& name) {
-  const ConstraintStack stack(std::make_shared<const Constraints>(constraints), editor.document().armature);
+void require_applicable(const Document& document, const Constraints& constraints, const std::string& name) {
+  const ConstraintStack stack(std::make_shared<const Constraints>(constraints), document.armature);
   for (std::size_t i = 0; i < constraints.list.size(); ++i)
     if (constraints.list[i].name == name) stack.require_applied(i);
 }
@@ -80,25 +86,25 @@ BoneAxis looking_axis(const Armature& armature, int bone) {
   return static_cast<BoneAxis>(2 * axis + (front[axis] < 0 ? 1 : 0));
 }
 
-std::optional<int> other_bone(const Editor& editor) {
+std::optional<int> other_bone(const Selection& selection) {
   std::optional<int> other;
-  for (const int bone : editor.selection.bones)
-    if (bone != editor.selection.bone) {
+  for (const int bone : selection.bones)
+    if (bone != selection.bone) {
       if (other) return std::nullopt;
       other = bone;
     }
   return other;
 }
 
-void show_changed(Editor& editor, const std::function<void(Clip&)>& change) {
-  stop_playing(editor);
-  settle_frame(editor);
-  const ClipOnRig* on_rig = clip_on_rig(editor);
+void show_changed(Context& context, const std::function<void(Clip&)>& change) {
+  stop_playing(context);
+  settle_frame(context);
+  const ClipOnRig* on_rig = clip_on_rig(context);
   if (!on_rig) return;
   Clip clip = *on_rig->clip();
   change(clip);
   const ClipOnRig changed(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig);
-  show_pose(editor, constrained_pose(changed, unconstrained_pose(editor), editor.document().frame));
+  show_pose(context, constrained_pose(changed, unconstrained_pose(context), context.document().frame));
 }
 
 // Moves the constraint at index `from` to index `to`. The constraints between them move by one index.
@@ -161,44 +167,44 @@ const Constraint* find_constraint(const Document& document, const std::string& n
   return nullptr;
 }
 
-const Constraint* active_constraint(const Editor& editor) {
-  const Document& document = editor.document();
-  const auto bone = editor.selection.bone;
+const Constraint* active_constraint(const Context& context) {
+  const Document& document = context.document();
+  const auto bone = context.selection->bone;
   if (!document.armature || !bone || *bone >= std::ssize(document.armature->bones)) return nullptr;
   const Constraint* first = nullptr;
   for (const std::size_t index : constraints_of_bone(document, *bone)) {
     const Constraint& constraint = constraints_of(document).list[index];
-    if (constraint.name == editor.timeline->constraint) return &constraint;
+    if (constraint.name == context.timeline->constraint) return &constraint;
     if (!first) first = &constraint;
   }
   return first;
 }
 
-void add_constraint(Editor& editor, ConstraintKind kind) {
-  stop_playing(editor);
-  settle_frame(editor);
-  const Armature& armature = *editor.document().armature;
+void add_constraint(Context& context, ConstraintKind kind) {
+  stop_playing(context);
+  settle_frame(context);
+  const Armature& armature = *context.document().armature;
   const ConstraintRule& rule = constraint_rule(kind);
-  if (constraints_of(editor.document()).list.size() >= kMostConstraints)
+  if (constraints_of(context.document()).list.size() >= kMostConstraints)
     throw Error("the clip has too many constraints", rule.name, "remove one first");
-  Constraint added{.kind = kind, .bone = armature.bones[*editor.selection.bone].name};
-  if (const auto other = other_bone(editor); other && rule.target != ConstraintTarget::None)
+  Constraint added{.kind = kind, .bone = armature.bones[*context.selection->bone].name};
+  if (const auto other = other_bone(context.selection); other && rule.target != ConstraintTarget::None)
     added.target = armature.bones[*other].name;
   if (rule.target == ConstraintTarget::Bone && added.target.empty())
     throw Error("the constraint needs a target", rule.name, "select the target bone, then with Shift the bone");
-  if (kind == ConstraintKind::Aim) added.aim = looking_axis(armature, *editor.selection.bone);
-  added.name = unique_constraint_name(constraints_of(editor.document()), rule.name + " " + added.bone);
-  place_target(added, armature, pose_of(editor.document()));
-  Constraints next = constraints_of(editor.document());
+  if (kind == ConstraintKind::Aim) added.aim = looking_axis(armature, *context.selection->bone);
+  added.name = unique_constraint_name(constraints_of(context.document()), rule.name + " " + added.bone);
+  place_target(added, armature, pose_of(context.document()));
+  Constraints next = constraints_of(context.document());
   next.list.push_back(added);
-  require_applicable(editor, next, added.name);
-  change_free_clip(editor, rule.name,
+  require_applicable(context.document(), next, added.name);
+  change_free_clip(context, rule.name,
                    [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
-  editor.timeline->constraint = added.name;
+  context.timeline->constraint = added.name;
 }
 
-void remove_constraint(Editor& editor, const std::string& name) {
-  change_free_clip(editor, "Remove constraint", [&](Clip& clip) {
+void remove_constraint(Context& context, const std::string& name) {
+  change_free_clip(context, "Remove constraint", [&](Clip& clip) {
     change_list(clip, [&](Constraints& constraints) {
       std::erase_if(constraints.list, [&](const Constraint& constraint) { return constraint.name == name; });
     });
@@ -207,13 +213,13 @@ void remove_constraint(Editor& editor, const std::string& name) {
   });
 }
 
-const Constraint* order_neighbour(const Editor& editor, const std::string& name, InOrder where) {
-  const auto& list = constraints_of(editor.document()).list;
-  const auto& armature = editor.document().armature;
+const Constraint* order_neighbour(const Context& context, const std::string& name, InOrder where) {
+  const auto& list = constraints_of(context.document()).list;
+  const auto& armature = context.document().armature;
   const auto place = std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == name; });
   if (place == list.end() || !armature) return nullptr;
-  const ClipOnRig* clip = editor.timeline->prepared.get();
-  const bool is_shown = clip && clip->clip().get() == editor.document().shown_clip();
+  const ClipOnRig* clip = context.timeline->prepared.get();
+  const bool is_shown = clip && clip->clip().get() == context.document().shown_clip();
   const ConstraintStack* shown = is_shown ? clip->constraints() : nullptr;
   const auto own = static_cast<std::size_t>(place - list.begin());
   const auto is_changed_by_move_to = [&](std::size_t other) {
@@ -234,13 +240,13 @@ const Constraint* order_neighbour(const Editor& editor, const std::string& name,
   return nullptr;
 }
 
-void move_constraint(Editor& editor, const std::string& name, InOrder where) {
-  clip_on_rig(editor);  // retargets the clip to the rig if needed; order_neighbour() uses the result
-  const Constraint* found = order_neighbour(editor, name, where);
+void move_constraint(Context& context, const std::string& name, InOrder where) {
+  clip_on_rig(context);  // retargets the clip to the rig if needed; order_neighbour() uses the result
+  const Constraint* found = order_neighbour(context, name, where);
   if (!found) return;
   const std::string neighbour = found->name;
   const bool earlier = where == InOrder::Earlier;
-  change_free_clip(editor, earlier ? "Move constraint up" : "Move constraint down", [&](Clip& clip) {
+  change_free_clip(context, earlier ? "Move constraint up" : "Move constraint down", [&](Clip& clip) {
     change_list(clip, [&](Constraints& constraints) {
       auto& list = constraints.list;
       const auto at = [&](const std::string& wanted) {
@@ -252,83 +258,83 @@ void move_constraint(Editor& editor, const std::string& name, InOrder where) {
   });
 }
 
-void change_constraint(Editor& editor, const std::string& name, const std::string& label,
+void change_constraint(Context& context, const std::string& name, const std::string& label,
                        const std::function<void(Constraint&)>& change) {
-  Constraints next = constraints_of(editor.document());
+  Constraints next = constraints_of(context.document());
   change(named(next, name));
-  if (next == constraints_of(editor.document())) return drop_shown_pose(editor);
-  require_applicable(editor, next, name);
-  change_free_clip(editor, label, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
+  if (next == constraints_of(context.document())) return drop_shown_pose(context);
+  require_applicable(context.document(), next, name);
+  change_free_clip(context, label, [&](Clip& clip) { clip.constraints = std::make_shared<const Constraints>(next); });
 }
 
-void preview_constraint(Editor& editor, const std::string& name, const std::function<void(Constraint&)>& change) {
-  show_changed(editor, [&](Clip& clip) {
+void preview_constraint(Context& context, const std::string& name, const std::function<void(Constraint&)>& change) {
+  show_changed(context, [&](Clip& clip) {
     change_list(clip, [&](Constraints& constraints) { change(named(constraints, name)); });
   });
 }
 
-void set_target(Editor& editor, const std::string& name, const std::string& bone) {
-  settle_frame(editor);
-  change_constraint(editor, name, "Set target", [&](Constraint& constraint) {
+void set_target(Context& context, const std::string& name, const std::string& bone) {
+  settle_frame(context);
+  change_constraint(context, name, "Set target", [&](Constraint& constraint) {
     constraint.target = bone;
-    place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+    place_target(constraint, *context.document().armature, pose_of(context.document()));
   });
 }
 
-void set_planted_point(Editor& editor, const std::string& name, PlantPoint point) {
-  settle_frame(editor);
-  change_constraint(editor, name, "Set planted point", [&](Constraint& constraint) {
+void set_planted_point(Context& context, const std::string& name, PlantPoint point) {
+  settle_frame(context);
+  change_constraint(context, name, "Set planted point", [&](Constraint& constraint) {
     constraint.point = point;
-    place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+    place_target(constraint, *context.document().armature, pose_of(context.document()));
   });
 }
 
-void keep_direction(Editor& editor, const std::string& name, bool keeps) {
-  settle_frame(editor);
-  change_constraint(editor, name, "Keep direction", [&](Constraint& constraint) {
+void keep_direction(Context& context, const std::string& name, bool keeps) {
+  settle_frame(context);
+  change_constraint(context, name, "Keep direction", [&](Constraint& constraint) {
     constraint.keeps_rotation = keeps;
-    if (keeps) place_target(constraint, *editor.document().armature, pose_of(editor.document()));
+    if (keeps) place_target(constraint, *context.document().armature, pose_of(context.document()));
   });
 }
 
-void aim_at_cross_hair(Editor& editor, const std::string& name) {
-  settle_frame(editor);
-  change_constraint(editor, name, "Target at cross-hair", [&](Constraint& constraint) {
-    const PosedRig rig(*editor.document().armature, pose_of(editor.document()));
-    const glm::dvec3 place = editor.views->cross_hair;
+void aim_at_cross_hair(Context& context, const std::string& name) {
+  settle_frame(context);
+  change_constraint(context, name, "Target at cross-hair", [&](Constraint& constraint) {
+    const PosedRig rig(*context.document().armature, pose_of(context.document()));
+    const glm::dvec3 place = context.views->cross_hair;
     constraint.place =
         constraint.target.empty() ? place : inverse(rig.posed(require_bone(rig.armature(), constraint.target))) * place;
   });
 }
 
-bool has_weight_key(const Editor& editor, const Constraint& constraint, int frame) {
-  const Clip* clip = shown_clip(editor);
+bool has_weight_key(const Document& document, const Constraint& constraint, int frame) {
+  const Clip* clip = shown_clip(document);
   const auto track = clip->keys.weights.find(constraint.name);
   return track != clip->keys.weights.end() && track->second.contains(frame);
 }
 
-double shown_weight(const Editor& editor, const Constraint& constraint) {
-  return weight_at(constraint, shown_clip(editor)->keys, shown_frame(editor));
+double shown_weight(const Context& context, const Constraint& constraint) {
+  return weight_at(constraint, shown_clip(context.document())->keys, shown_frame(context));
 }
 
-void set_weight(Editor& editor, const std::string& name, double weight) {
-  settle_frame(editor);
-  const int frame = editor.document().frame;
-  change_free_clip(editor, "Set weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
+void set_weight(Context& context, const std::string& name, double weight) {
+  settle_frame(context);
+  const int frame = context.document().frame;
+  change_free_clip(context, "Set weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
 }
 
-void preview_weight(Editor& editor, const std::string& name, double weight) {
-  show_changed(editor, [&](Clip& clip) { put_weight(clip, name, editor.document().frame, weight); });
+void preview_weight(Context& context, const std::string& name, double weight) {
+  show_changed(context, [&](Clip& clip) { put_weight(clip, name, context.document().frame, weight); });
 }
 
-void toggle_weight_key(Editor& editor, const std::string& name) {
-  settle_frame(editor);
-  const Constraint* constraint = find_constraint(editor.document(), name);
+void toggle_weight_key(Context& context, const std::string& name) {
+  settle_frame(context);
+  const Constraint* constraint = find_constraint(context.document(), name);
   if (!constraint) return;
-  const int frame = editor.document().frame;
-  const double weight = shown_weight(editor, *constraint);
-  const bool is_keyed = has_weight_key(editor, *constraint, frame);
-  change_free_clip(editor, is_keyed ? "Delete weight key" : "Insert weight key", [&](Clip& clip) {
+  const int frame = context.document().frame;
+  const double weight = shown_weight(context, *constraint);
+  const bool is_keyed = has_weight_key(context.document(), *constraint, frame);
+  change_free_clip(context, is_keyed ? "Delete weight key" : "Insert weight key", [&](Clip& clip) {
     if (is_keyed) delete_weight_key(clip.keys, name, frame);
     else insert_weight_key(clip.keys, name, frame, weight);
     // If the last weight key was deleted, the constraint keeps that key's weight.
@@ -337,42 +343,43 @@ void toggle_weight_key(Editor& editor, const std::string& name) {
   });
 }
 
-void switch_weight(Editor& editor, const std::string& name) {
-  settle_frame(editor);
-  const Constraint* constraint = find_constraint(editor.document(), name);
+void switch_weight(Context& context, const std::string& name) {
+  settle_frame(context);
+  const Constraint* constraint = find_constraint(context.document(), name);
   if (!constraint) return;
-  const int frame = editor.document().frame;
-  const int later = frame + std::max(1, static_cast<int>(std::lround(frame_rate(editor) / 3)));
-  const double weight = shown_weight(editor, *constraint);
-  change_free_clip(editor, "Switch weight", [&](Clip& clip) {
+  const int frame = context.document().frame;
+  const int later = frame + std::max(1, static_cast<int>(std::lround(frame_rate(context.document()) / 3)));
+  const double weight = shown_weight(context, *constraint);
+  change_free_clip(context, "Switch weight", [&](Clip& clip) {
     insert_weight_key(clip.keys, name, frame, weight);
     insert_weight_key(clip.keys, name, later, weight > 0.5 ? 0 : 1);
     for (int between = frame + 1; between < later; ++between) delete_weight_key(clip.keys, name, between);
   });
-  editor.messages.info(weight > 0.5 ? "The constraint fades out" : "The constraint fades in",
-                       "From frame " + std::to_string(frame) + " to " + std::to_string(later));
+  context.messages->info(weight > 0.5 ? "The constraint fades out" : "The constraint fades in",
+                         "From frame " + std::to_string(frame) + " to " + std::to_string(later));
 }
 
-void set_weight_steps(Editor& editor, const std::string& name, Interpolation next) {
-  change_free_clip(editor, "Set weight interpolation",
+void set_weight_steps(Context& context, const std::string& name, Interpolation next) {
+  change_free_clip(context, "Set weight interpolation",
                    [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
 }
 
-void apply_constraints(Editor& editor) {
-  stop_playing(editor);
-  settle_frame(editor);
-  const std::shared_ptr<const Clip> source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+void apply_constraints(Context& context) {
+  stop_playing(context);
+  settle_frame(context);
+  const std::shared_ptr<const Clip> source =
+      context.document().clips[static_cast<std::size_t>(context.document().clip)];
   const auto [first, last] = all_frames(*source);
   if (std::int64_t{last} - first >= kMostFrames)
     throw Error("the clip is too long to be baked", source->name, "trim it, or set a shorter range");
-  start_task(editor, "Apply constraints",
-             [source, rig = editor.document().armature, first = first, last = last](Progress& progress) -> Finish {
+  start_task(context, "Apply constraints",
+             [source, rig = context.document().armature, first = first, last = last](Progress& progress) -> Finish {
                const auto made =
                    std::make_shared<const Clip>(with_constraints_as_keys(source, rig, first, last, progress));
-               return [=](Editor& e) {
-                 take_in_clip(e, source, rig, "Apply constraints", *made, false);
-                 e.messages.ok("Constraints applied", "Each turned bone has a key in frames " + std::to_string(first) +
-                                                          " to " + std::to_string(last));
+               return [=](Context& c) {
+                 take_in_clip(c, source, rig, "Apply constraints", *made, false);
+                 c.messages->ok("Constraints applied", "Each turned bone has a key in frames " + std::to_string(first) +
+                                                           " to " + std::to_string(last));
                };
              });
 }

@@ -1,34 +1,40 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators of constraints: one for each kind that adds a constraint, and those that change the active bone's
 // constraint.
+#include "core/project/job.h"
+#include "editor/context/context.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
+#include "editor/context/workspace.h"
 #include "editor/motion/constraint_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
 
 namespace {
 
-std::string needs_pose_bone(const Editor& editor) {
-  if (editor.workspace != Workspace::Pose) return "Switch to the Pose workspace first";
-  return needs_bone(editor);
+std::string needs_pose_bone(const Context& context) {
+  if (context.workspace() != Workspace::Pose) return "Switch to the Pose workspace first";
+  return needs_bone(context);
 }
 
-std::string needs_constraint(const Editor& editor) {
-  if (const std::string why = needs_pose_bone(editor); !why.empty()) return why;
-  return active_constraint(editor) ? "" : "The active bone has no constraint";
+std::string needs_constraint(const Context& context) {
+  if (const std::string why = needs_pose_bone(context); !why.empty()) return why;
+  return active_constraint(context) ? "" : "The active bone has no constraint";
 }
 
-std::string needs_place(const Editor& editor) {
-  if (const std::string why = needs_constraint(editor); !why.empty()) return why;
-  return constraint_rule(active_constraint(editor)->kind).target == ConstraintTarget::Place
+std::string needs_place(const Context& context) {
+  if (const std::string why = needs_constraint(context); !why.empty()) return why;
+  return constraint_rule(active_constraint(context)->kind).target == ConstraintTarget::Place
              ? ""
              : "The constraint's target is not a position";
 }
 
-std::string needs_any_constraint(const Editor& editor) {
-  if (!editor.document().armature) return "Import a rig first";
-  return constraints_of(editor.document()).list.empty() ? "The clip has no constraints" : "";
+std::string needs_any_constraint(const Context& context) {
+  if (!context.document().armature) return "Import a rig first";
+  return constraints_of(context.document()).list.empty() ? "The clip has no constraints" : "";
 }
 
 // Returns the label of the operator that adds a constraint of a kind: "Add copy rotation".
@@ -38,10 +44,10 @@ std::string adding(const ConstraintRule& rule) {
   return "Add " + name;
 }
 
-std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
-  return [where](const Editor& editor) -> std::string {
-    if (std::string why = needs_constraint(editor); !why.empty()) return why;
-    if (order_neighbour(editor, active_constraint(editor)->name, where)) return "";
+std::function<std::string(const Context&)> needs_neighbour(InOrder where) {
+  return [where](const Context& context) -> std::string {
+    if (std::string why = needs_constraint(context); !why.empty()) return why;
+    if (order_neighbour(context, active_constraint(context)->name, where)) return "";
     return std::string("The constraint cannot move ") + (where == InOrder::Earlier ? "up" : "down") +
            ": this would not change the order in which constraints turn the same bones";
   };
@@ -49,15 +55,15 @@ std::function<std::string(const Editor&)> needs_neighbour(InOrder where) {
 
 // Returns an operator's function that applies `edit` to the active bone's constraint.
 template <class Edit>
-std::function<void(Editor&)> of_active(Edit edit) {
-  return [edit](Editor& editor) {
-    if (const Constraint* constraint = active_constraint(editor)) edit(editor, std::string(constraint->name));
+std::function<void(Context&)> of_active(Edit edit) {
+  return [edit](Context& context) {
+    if (const Constraint* constraint = active_constraint(context)) edit(context, std::string(constraint->name));
   };
 }
 
-void toggle(Editor& editor, const std::string& name) {
-  const bool on = find_constraint(editor.document(), name)->on;
-  change_constraint(editor, name, on ? "Switch constraint off" : "Switch constraint on",
+void toggle(Context& context, const std::string& name) {
+  const bool on = find_constraint(context.document(), name)->on;
+  change_constraint(context, name, on ? "Switch constraint off" : "Switch constraint on",
                     [on](Constraint& constraint) { constraint.on = !on; });
 }
 
@@ -67,13 +73,13 @@ std::vector<Operator> constraint_operators() {
   std::vector<Operator> operators = {
       {"constraint.add", "Add constraint", icon::kAdd, "Motion",
        "Open a menu of constraints for the active bone. A second selected bone is the target.",
-       [](Editor& e) { e.open_popup = "Add constraint"; }, needs_pose_bone},
+       [](Context& c) { c.menus->open_popup = "Add constraint"; }, needs_pose_bone},
   };
   for (const ConstraintRule& rule : constraint_rules()) {
     const bool has_target = rule.target != ConstraintTarget::None;
     operators.push_back({"constraint.add_" + rule.id, adding(rule), "", "Motion",
                          rule.description + (has_target ? " A second selected bone is the target." : ""),
-                         [kind = rule.kind](Editor& e) { add_constraint(e, kind); }, needs_pose_bone});
+                         [kind = rule.kind](Context& c) { add_constraint(c, kind); }, needs_pose_bone});
   }
   const std::vector<Operator> others = {
       {"constraint.remove", "Remove constraint", "", "Motion",
@@ -81,23 +87,23 @@ std::vector<Operator> constraint_operators() {
        needs_constraint},
       {"constraint.toggle", "Toggle constraint", "", "Motion", "Switch the active bone's constraint on or off.",
        of_active(toggle), needs_constraint,
-       [](const Editor& e) { return active_constraint(e) && active_constraint(e)->on; }},
+       [](const Context& c) { return active_constraint(c) && active_constraint(c)->on; }},
       {"constraint.up", "Move constraint up", icon::kUp, "Motion",
        "Move the active bone's constraint before the previous one that turns the same bones. The constraint applied "
        "last decides the rotation.",
-       of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Earlier); }),
+       of_active([](Context& c, const std::string& name) { move_constraint(c, name, InOrder::Earlier); }),
        needs_neighbour(InOrder::Earlier)},
       {"constraint.down", "Move constraint down", icon::kDown, "Motion",
        "Move the active bone's constraint after the next one that turns the same bones. The constraint applied last "
        "decides the rotation.",
-       of_active([](Editor& e, const std::string& name) { move_constraint(e, name, InOrder::Later); }),
+       of_active([](Context& c, const std::string& name) { move_constraint(c, name, InOrder::Later); }),
        needs_neighbour(InOrder::Later)},
       {"constraint.key_weight", "Key constraint weight", icon::kKey, "Motion",
        "Insert or delete a key of the constraint's weight at this frame.", of_active(toggle_weight_key),
        needs_constraint,
-       [](const Editor& e) {
-         const Constraint* constraint = active_constraint(e);
-         return constraint && has_weight_key(e, *constraint, shown_frame(e));
+       [](const Context& c) {
+         const Constraint* constraint = active_constraint(c);
+         return constraint && has_weight_key(c.document(), *constraint, shown_frame(c));
        }},
       {"constraint.switch", "Switch IK and FK", "", "Motion",
        "Key the weight at this frame, and the opposite weight a third of a second later, to fade the constraint in or "

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/motion/constraint_overlay.h"
 
+#include "editor/context/context.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/workspace.h"
 #include "editor/motion/constraint_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/shown/shown_pose.h"
 #include "editor/viewport/gizmo_draw.h"
 
@@ -38,18 +42,18 @@ void draw_line(const GizmoPainter& painter, const ConstraintOnRig& found, const 
 
 }  // namespace
 
-void draw_constraint_lines(Editor& editor) {
-  if (editor.workspace != Workspace::Pose || !editor.document().armature) return;
-  const ClipOnRig* clip = clip_on_rig(editor);
-  const std::optional<ViewProjection> view = clip && clip->constraints() ? body_seen(editor) : std::nullopt;
+void draw_constraint_lines(Context& context) {
+  if (context.workspace() != Workspace::Pose || !context.document().armature) return;
+  const ClipOnRig* clip = clip_on_rig(context);
+  const std::optional<ViewProjection> view = clip && clip->constraints() ? body_seen(context) : std::nullopt;
   if (!view) return;
-  const PosedRig rig(*clip->armature(), shown_pose(editor));
-  const GizmoPainter painter(editor, *view);
+  const PosedRig rig(*clip->armature(), shown_pose(context));
+  const GizmoPainter painter(context, *view);
   for (const std::size_t index : clip->constraints()->order()) {
     const Constraint& constraint = clip->constraints()->constraints()->list[index];
     if (!constraint.on || constraint_rule(constraint.kind).target == ConstraintTarget::None) continue;
     const ConstraintOnRig& found = *clip->constraints()->found(index);
-    draw_line(painter, found, rig, editor.selection.bones.contains(found.bone) ? kViewAccent : kQuiet);
+    draw_line(painter, found, rig, context.selection->bones.contains(found.bone) ? kViewAccent : kQuiet);
   }
 }
 

@@ -3,10 +3,10 @@
 // target, and a small diamond at the target position. The lines of selected bones are brighter.
 #pragma once
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
 
-void draw_constraint_lines(Editor& editor);
+struct Context;
+
+void draw_constraint_lines(Context& context);
 
 }  // namespace limber::editor

@@ -3,11 +3,12 @@
 // and has a weight with a key button, a target and settings.
 #pragma once
 
-#include "editor/context/editor.h"
 #include "editor/ui/section.h"
 
 namespace limber::editor {
 
-void draw_constraints(Editor& editor, Column& column);
+struct Context;
+
+void draw_constraints(Context& context, Column& column);
 
 }  // namespace limber::editor

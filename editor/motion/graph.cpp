@@ -8,6 +8,10 @@
 
 #include "core/motion/euler_channels.h"
 #include "core/motion/key_curve.h"
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -128,23 +132,23 @@ std::shared_ptr<std::vector<Pose>> known_motion(const GraphCurves& curves, const
 
 // Discards the curves if the clip's motion, the rig or the range of frames has changed. Keeps the sampled poses that
 // are still valid.
-void meet_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
-  FrameRange range = range_of(*on_rig.clip(), graph_keys(editor));
+void meet_motion(Context& context, GraphCurves& curves, const ClipOnRig& on_rig) {
+  FrameRange range = range_of(*on_rig.clip(), graph_keys(context));
   const bool same = curves.clip && curves.rig == on_rig.armature() && same_motion(*curves.clip, *on_rig.clip());
   // While keys are dragged, the range only grows at its end. Otherwise each step of the drag could sample the motion
   // again.
-  if (same && graph_of(editor).preview) range = {curves.range.low, std::max(range.high, curves.range.high)};
+  if (same && graph_of(context).preview) range = {curves.range.low, std::max(range.high, curves.range.high)};
   range.high = std::min(range.high, range.low + kMostFrames - 1);
   if (same && curves.range.low == range.low && curves.range.high == range.high) return;
   std::shared_ptr<std::vector<Pose>> known = same ? known_motion(curves, range) : std::make_shared<std::vector<Pose>>();
   curves = {on_rig.clip(), on_rig.armature(), on_rig.has_base(), range, std::move(known), {}};
 }
 
-void sample_motion(Editor& editor, GraphCurves& curves, const ClipOnRig& on_rig) {
+void sample_motion(Ui& ui, GraphCurves& curves, const ClipOnRig& on_rig) {
   const auto began = std::chrono::steady_clock::now();
   while (!curves.complete() && std::chrono::steady_clock::now() - began < kTime)
     curves.motion->push_back(on_rig.base_at(curves.range.low + static_cast<int>(curves.motion->size())));
-  if (!curves.complete()) editor.touch();
+  if (!curves.complete()) ui.touch();
 }
 
 // Returns the motion's pose at a frame. Uses the sampled pose if there is one, because retargeting a frame takes long.
@@ -198,23 +202,23 @@ double span_frames(const std::map<int, Value>& keys, int frame, KeySide side) {
 
 }  // namespace
 
-Graph& graph_of(Editor& editor) {
-  if (!editor.timeline->graph) editor.timeline->graph = std::make_shared<Graph>();
-  return *editor.timeline->graph;
+Graph& graph_of(Context& context) {
+  if (!context.timeline->graph) context.timeline->graph = std::make_shared<Graph>();
+  return *context.timeline->graph;
 }
 
-const Keys& graph_keys(const Editor& editor) {
-  const auto& graph = editor.timeline->graph;
-  const Clip* clip = shown_clip(editor);
+const Keys& graph_keys(const Context& context) {
+  const auto& graph = context.timeline->graph;
+  const Clip* clip = shown_clip(context.document());
   return graph && graph->preview && graph->previewed.get() == clip ? *graph->preview : clip->keys;
 }
 
-bool graph_is_shown(const Editor& editor) {
-  return editor.timeline->shows_graph && editor.arrangement().timeline && !editor.arrangement().console;
+bool graph_is_shown(const Context& context) {
+  return context.timeline->shows_graph && context.screen->arrangement().timeline &&
+         !context.screen->arrangement().console;
 }
 
-std::shared_ptr<const Clip> graph_clip(const Editor& editor) {
-  const Document& document = editor.document();
+std::shared_ptr<const Clip> graph_clip(const Document& document) {
   return document.clips.empty() ? nullptr : document.clips[static_cast<std::size_t>(document.clip)];
 }
 
@@ -225,17 +229,17 @@ void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, cons
   graph.met_clip = clip;
 }
 
-GraphTracks graph_tracks(const Editor& editor) {
+GraphTracks graph_tracks(const Context& context) {
   GraphTracks found;
-  const auto& rig = editor.document().armature;
-  const Clip* clip = shown_clip(editor);
+  const auto& rig = context.document().armature;
+  const Clip* clip = shown_clip(context.document());
   if (!rig || !clip) return found;
   std::size_t bones = 0;
   bool shift_listed = false;
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
     const Bone& b = rig->bones[bone];
     const bool wanted =
-        editor.selection.bones.empty() ? clip->keys.bones.contains(b.name) : editor.selection.bones.contains(bone);
+        context.selection->bones.empty() ? clip->keys.bones.contains(b.name) : context.selection->bones.contains(bone);
     if (!wanted) continue;
     if (++bones > kMostBones) {
       ++found.left_out;
@@ -268,20 +272,20 @@ bool is_shown(const Graph& graph, const GraphChannel& channel) {
   return graph.curves.tracks.contains(channel.track) && !graph.hidden.contains(channel);
 }
 
-void update_curves(Editor& editor) {
-  GraphCurves& curves = graph_of(editor).curves;
-  const ClipOnRig* on_rig = clip_on_rig(editor);
+void update_curves(Context& context) {
+  GraphCurves& curves = graph_of(context).curves;
+  const ClipOnRig* on_rig = clip_on_rig(context);
   if (!on_rig) return;
-  meet_clip(graph_of(editor), on_rig->clip());
-  meet_motion(editor, curves, *on_rig);
-  sample_motion(editor, curves, *on_rig);
-  const Keys& keys = graph_keys(editor);
+  meet_clip(graph_of(context), on_rig->clip());
+  meet_motion(context, curves, *on_rig);
+  sample_motion(context.ui, curves, *on_rig);
+  const Keys& keys = graph_keys(context);
   std::map<GraphTrack, GraphCurve> tracks;
-  for (const GraphTrack& track : graph_tracks(editor).tracks) {
+  for (const GraphTrack& track : graph_tracks(context).tracks) {
     // A walk of several metres would make the curves of angles look flat. So the shift's curves are hidden until the
     // user shows them.
-    if (track.is_shift && graph_of(editor).met_shifts.insert(track).second)
-      for (int axis = 0; axis < 3; ++axis) graph_of(editor).hidden.insert({track, axis});
+    if (track.is_shift && graph_of(context).met_shifts.insert(track).second)
+      for (int axis = 0; axis < 3; ++axis) graph_of(context).hidden.insert({track, axis});
     const auto before = curves.tracks.find(track);
     const bool same = before != curves.tracks.end() && is_of(before->second, keys, track);
     GraphCurve curve = same ? std::move(before->second) : keyed(curves, *on_rig, keys, track);
@@ -327,32 +331,32 @@ std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack&
   return track.is_shift ? frames(curve.shifts) : frames(curve.turns);
 }
 
-void show_graph(Editor& editor, bool on) {
-  Graph& graph = graph_of(editor);
-  editor.timeline->shows_graph = on;
+void show_graph(Context& context, bool on) {
+  Graph& graph = graph_of(context);
+  context.timeline->shows_graph = on;
   if (on) {
-    editor.timeline->shows_strips = false;
-    Arrangement& arrangement = editor.arrangement();
+    context.timeline->shows_strips = false;
+    Arrangement& arrangement = context.screen->arrangement();
     arrangement.timeline = true;
     arrangement.console = false;
-    editor.timeline->chosen.clear();  // the graph hides the rows of keys, and hidden keys must not be changed
+    context.timeline->chosen.clear();  // the graph hides the rows of keys, and hidden keys must not be changed
     graph.fitted.clear();
     if (arrangement.bottom_height < kHeight)
-      graph.heights_before[static_cast<std::size_t>(editor.workspace)] =
+      graph.heights_before[static_cast<std::size_t>(context.workspace())] =
           std::exchange(arrangement.bottom_height, kHeight);
   } else {
-    for (std::size_t i = 0; i < editor.arrangements.size(); ++i) {
+    for (std::size_t i = 0; i < context.screen->arrangements.size(); ++i) {
       const float before = std::exchange(graph.heights_before[i], 0.0f);
-      float& height = editor.arrangements[i].bottom_height;
+      float& height = context.screen->arrangements[i].bottom_height;
       // Restores the height of the bottom area, unless the user has dragged its splitter while the graph was shown.
       if (before > 0 && height == kHeight) height = before;
     }
   }
-  editor.touch();
+  context.ui->touch();
 }
 
-void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys) {
-  Graph& graph = graph_of(editor);
+void fit_graph_values(Context& context, const std::set<GraphKey>* keys) {
+  Graph& graph = graph_of(context);
   double low = INFINITY, high = -INFINITY;
   const auto take = [&](double value) { low = std::min(low, value), high = std::max(high, value); };
   if (keys)
@@ -368,7 +372,7 @@ void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys) {
   const double room = std::max({1.0, kRoom * (high - low), 1e-6 * std::max(std::abs(low), std::abs(high))});
   graph.low = low - room;
   graph.high = high + room;
-  editor.touch();
+  context.ui->touch();
 }
 
 float graph_y(const Graph& graph, double value) {
@@ -380,21 +384,21 @@ double graph_value_at(const Graph& graph, float y) {
   return graph.low + (graph.high - graph.low) * (graph.plot.high.y - y) / std::max(1.0f, graph.plot.height());
 }
 
-std::set<GraphKey> chosen_graph_keys(const Editor& editor) {
+std::set<GraphKey> chosen_graph_keys(const Context& context) {
   std::set<GraphKey> found;
-  const auto& graph = editor.timeline->graph;
-  if (!graph || !editor.timeline->shows_graph || !shown_clip(editor)) return found;
-  const Keys& keys = graph_keys(editor);
+  const auto& graph = context.timeline->graph;
+  if (!graph || !context.timeline->shows_graph || !shown_clip(context.document())) return found;
+  const Keys& keys = graph_keys(context);
   for (const GraphKey& key : graph->chosen)
     if (exists(*graph, keys, key)) found.insert(found.end(), key);
   return found;
 }
 
-bool any_graph_key_chosen(const Editor& editor) {
-  const auto& graph = editor.timeline->graph;
-  if (!graph || !editor.timeline->shows_graph || !shown_clip(editor)) return false;
+bool any_graph_key_chosen(const Context& context) {
+  const auto& graph = context.timeline->graph;
+  if (!graph || !context.timeline->shows_graph || !shown_clip(context.document())) return false;
   return std::any_of(graph->chosen.begin(), graph->chosen.end(),
-                     [&, &keys = graph_keys(editor)](const GraphKey& key) { return exists(*graph, keys, key); });
+                     [&, &keys = graph_keys(context)](const GraphKey& key) { return exists(*graph, keys, key); });
 }
 
 }  // namespace limber::editor

@@ -12,9 +12,13 @@
 #include <array>
 #include <compare>
 
+#include "core/project/document.h"
+#include "editor/context/layout.h"
 #include "editor/motion/timeline.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct GraphTrack {
   std::string bone;
@@ -84,11 +88,11 @@ struct Graph {
   GraphCurves curves;
 };
 
-Graph& graph_of(Editor& editor);  // creates the state if there is none
+Graph& graph_of(Context& context);  // creates the state if there is none
 // Returns the clip's keys, or their preview during a drag; needs a shown clip.
-const Keys& graph_keys(const Editor& editor);
-bool graph_is_shown(const Editor& editor);
-std::shared_ptr<const Clip> graph_clip(const Editor& editor);  // returns the shown clip; null: none
+const Keys& graph_keys(const Context& context);
+bool graph_is_shown(const Context& context);
+std::shared_ptr<const Clip> graph_clip(const Document& document);  // returns the shown clip; null: none
 // Stores which keys are selected in a clip, for undo.
 void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, const std::set<GraphKey>& chosen);
 
@@ -97,14 +101,14 @@ struct GraphTracks {
   std::vector<GraphTrack> tracks;
   int left_out = 0;  // number of bones that are left out because too many are selected
 };
-GraphTracks graph_tracks(const Editor& editor);
+GraphTracks graph_tracks(const Context& context);
 std::set<int> key_frames_of(const Keys& keys, const GraphTrack& track);
 bool is_shown(const Graph& graph, const GraphChannel& channel);
 // Returns true if the key exists and its channel is shown.
 bool exists(const Graph& graph, const Keys& keys, const GraphKey& key);
 
 // Updates the curves for changes of the clip, its keys or the rig. Needs a shown clip and a rig.
-void update_curves(Editor& editor);
+void update_curves(Context& context);
 // Returns the values of the three channels at a frame, which may be fractional. Angles are chosen near those of the
 // whole frame before it.
 glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, double frame);
@@ -120,13 +124,13 @@ glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track,
 std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 
 // ---- The view
-void show_graph(Editor& editor, bool on);
+void show_graph(Context& context, bool on);
 // Fits the value axis to the keys; nullptr: to all shown curves.
-void fit_graph_values(Editor& editor, const std::set<GraphKey>* keys = nullptr);
+void fit_graph_values(Context& context, const std::set<GraphKey>* keys = nullptr);
 float graph_y(const Graph& graph, double value);
 double graph_value_at(const Graph& graph, float y);
 // Returns the selected keys that exist and are shown.
-std::set<GraphKey> chosen_graph_keys(const Editor& editor);
-bool any_graph_key_chosen(const Editor& editor);
+std::set<GraphKey> chosen_graph_keys(const Context& context);
+bool any_graph_key_chosen(const Context& context);
 
 }  // namespace limber::editor

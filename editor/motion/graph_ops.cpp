@@ -2,6 +2,8 @@
 // Operators of the graph editor: its view, the selection of keys, and the interpolation between keys.
 #include <algorithm>
 
+#include "editor/context/context.h"
+#include "editor/context/menu_state.h"
 #include "editor/context/operator.h"
 #include "editor/motion/graph_edits.h"
 #include "editor/motion/graph_tool.h"
@@ -12,51 +14,51 @@ namespace limber::editor {
 
 namespace {
 
-std::string needs_graph(const Editor& editor) {
-  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
-  if (!editor.document().armature) return "Import a rig first";
-  return graph_is_shown(editor) ? "" : "Show the graph editor first";
+std::string needs_graph(const Context& context) {
+  if (!shown_clip(context.document())) return "Import a motion first, or insert a key";
+  if (!context.document().armature) return "Import a rig first";
+  return graph_is_shown(context) ? "" : "Show the graph editor first";
 }
-std::string needs_graph_keys(const Editor& editor) {
-  if (const std::string why = needs_graph(editor); !why.empty()) return why;
-  return any_graph_key_chosen(editor) ? "" : "Select keys in the graph first";
+std::string needs_graph_keys(const Context& context) {
+  if (const std::string why = needs_graph(context); !why.empty()) return why;
+  return any_graph_key_chosen(context) ? "" : "Select keys in the graph first";
 }
 
-void choose_all(Editor& editor) {
-  Graph& graph = graph_of(editor);
-  update_curves(editor);
+void choose_all(Context& context) {
+  Graph& graph = graph_of(context);
+  update_curves(context);
   for (const auto& [track, curve] : graph.curves.tracks)
-    for (const int frame : key_frames_of(graph_keys(editor), track))
+    for (const int frame : key_frames_of(graph_keys(context), track))
       for (int axis = 0; axis < 3; ++axis)
         if (is_shown(graph, {track, axis})) graph.chosen.insert({{track, axis}, frame});
 }
 
-void fit_to_chosen(Editor& editor) {
-  const std::set<GraphKey> keys = chosen_graph_keys(editor);
-  fit_graph_values(editor, &keys);
+void fit_to_chosen(Context& context) {
+  const std::set<GraphKey> keys = chosen_graph_keys(context);
+  fit_graph_values(context, &keys);
   int low = keys.begin()->frame, high = low;
   for (const GraphKey& key : keys) low = std::min(low, key.frame), high = std::max(high, key.frame);
-  auto& window = editor.timeline->window;
+  auto& window = context.timeline->window;
   window.count = std::max(kFewestFrames, 1.3 * (high - low));
   window.low = (low + high) / 2.0 - window.count / 2;
 }
 
 // Applies `edit` to the selected keys of the shown clip and commits the result as one edit.
-void change(Editor& editor, const std::string& label,
+void change(Context& context, const std::string& label,
             const std::function<Keys(const GraphCurves&, const Keys&, const std::set<GraphKey>&)>& edit) {
-  stop_playing(editor);
-  update_curves(editor);
-  const Keys next = edit(graph_of(editor).curves, shown_clip(editor)->keys, chosen_graph_keys(editor));
-  if (next == shown_clip(editor)->keys) return;
-  edit_clip(editor, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = next; });
+  stop_playing(context);
+  update_curves(context);
+  const Keys next = edit(graph_of(context).curves, shown_clip(context.document())->keys, chosen_graph_keys(context));
+  if (next == shown_clip(context.document())->keys) return;
+  edit_clip(context, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = next; });
 }
 
 // Returns true if keys are selected and `is` holds for the shape of each.
-bool all_chosen(const Editor& editor, const std::function<bool(const KeyShape&)>& is) {
-  const std::set<GraphKey> chosen = chosen_graph_keys(editor);
+bool all_chosen(const Context& context, const std::function<bool(const KeyShape&)>& is) {
+  const std::set<GraphKey> chosen = chosen_graph_keys(context);
   return !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](const GraphKey& key) {
     const GraphTrack& track = key.channel.track;
-    const Keys& keys = graph_keys(editor);
+    const Keys& keys = graph_keys(context);
     return is(shape_at(track.is_shift ? keys.root_shapes : shapes_of(keys, track.bone), key.frame));
   });
 }
@@ -68,14 +70,14 @@ Operator interpolation(const char* id, const char* label, const char* descriptio
       "",
       "Motion",
       description,
-      [label, which](Editor& e) {
-        change(e, std::string("Interpolation: ") + label,
+      [label, which](Context& c) {
+        change(c, std::string("Interpolation: ") + label,
                [which](const GraphCurves&, const Keys& keys, const auto& chosen) {
                  return with_interpolation(keys, chosen, which);
                });
       },
       needs_graph_keys,
-      [which](const Editor& e) { return all_chosen(e, [which](const KeyShape& key) { return key.next == which; }); }};
+      [which](const Context& c) { return all_chosen(c, [which](const KeyShape& key) { return key.next == which; }); }};
 }
 Operator handles(const char* id, const char* label, const char* description, HandleKind which) {
   return {id,
@@ -83,15 +85,15 @@ Operator handles(const char* id, const char* label, const char* description, Han
           "",
           "Motion",
           description,
-          [label, which](Editor& e) {
-            change(e, std::string("Handles: ") + label,
+          [label, which](Context& c) {
+            change(c, std::string("Handles: ") + label,
                    [which](const GraphCurves& curves, const Keys& keys, const auto& chosen) {
                      return with_handles(curves, keys, chosen, which);
                    });
           },
           needs_graph_keys,
-          [which](const Editor& e) {
-            return all_chosen(e, [which](const KeyShape& key) { return key.handles == which; });
+          [which](const Context& c) {
+            return all_chosen(c, [which](const KeyShape& key) { return key.handles == which; });
           }};
 }
 Operator easing(const char* id, const char* label, const char* description, Easing which) {
@@ -100,8 +102,8 @@ Operator easing(const char* id, const char* label, const char* description, Easi
           "",
           "Motion",
           description,
-          [label, which](Editor& e) {
-            change(e, label, [which](const GraphCurves& curves, const Keys& keys, const auto& chosen) {
+          [label, which](Context& c) {
+            change(c, label, [which](const GraphCurves& curves, const Keys& keys, const auto& chosen) {
               return with_easing(curves, keys, chosen, which);
             });
           },
@@ -114,54 +116,55 @@ std::vector<Operator> graph_operators() {
   return {
       {"graph.show", "Graph editor", icon::kReport, "Motion",
        "Show the clip as curves instead of the timeline's rows. Run again to show the rows.",
-       [](Editor& e) { show_graph(e, !graph_is_shown(e)); },
-       [](const Editor& e) { return shown_clip(e) ? "" : "Import a motion first, or insert a key"; }, graph_is_shown},
+       [](Context& c) { show_graph(c, !graph_is_shown(c)); },
+       [](const Context& c) { return shown_clip(c.document()) ? "" : "Import a motion first, or insert a key"; },
+       graph_is_shown},
       {"graph.select", "Select in the graph", "", "Motion",
        "Select and drag keys and their handles. Drag in an empty area to select keys with a box.", press_graph,
        needs_graph},
       {"graph.select_all", "Select all keys in the graph", "", "Motion", "Select every key of the shown curves.",
        choose_all, needs_graph},
       {"graph.select_none", "Deselect keys in the graph", "", "Motion", "Deselect all keys of the curves.",
-       [](Editor& e) { graph_of(e).chosen.clear(); }, needs_graph_keys},
+       [](Context& c) { graph_of(c).chosen.clear(); }, needs_graph_keys},
       {"graph.pan", "Pan the graph", "", "Motion", "Drag to scroll the curves.", pan_graph, needs_graph},
       {"graph.zoom", "Zoom the graph", "", "Motion", "Zoom time and values around the pointer.",
-       [](Editor& e) { zoom_graph(e, ZoomAxes::Both); }, needs_graph},
+       [](Context& c) { zoom_graph(c, ZoomAxes::Both); }, needs_graph},
       {"graph.zoom_time", "Zoom the graph's time", "", "Motion", "Show fewer or more frames around the pointer.",
-       [](Editor& e) { zoom_graph(e, ZoomAxes::Time); }, needs_graph},
+       [](Context& c) { zoom_graph(c, ZoomAxes::Time); }, needs_graph},
       {"graph.zoom_values", "Zoom the graph's values", "", "Motion",
        "Show a smaller or larger range of values around the pointer.",
-       [](Editor& e) { zoom_graph(e, ZoomAxes::Value); }, needs_graph},
+       [](Context& c) { zoom_graph(c, ZoomAxes::Value); }, needs_graph},
       {"graph.view_all", "Show all curves", "", "Motion", "Fit the whole clip and all shown curves into the graph.",
-       [](Editor& e) {
-         fit_window(e);
-         fit_graph_values(e);
+       [](Context& c) {
+         fit_window(c);
+         fit_graph_values(c);
        },
        needs_graph},
       {"graph.view_selected", "Show selected keys in the graph", "", "Motion", "Fit the selected keys into the graph.",
        fit_to_chosen, needs_graph_keys},
       {"graph.move", "Move keys in the graph", icon::kMove, "Motion",
        "Move the selected keys in time and value with the pointer, or by a typed number.",
-       [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Move); }, needs_graph_keys},
+       [](Context& c) { begin_changing_graph_keys(c, GraphChange::Move); }, needs_graph_keys},
       {"graph.scale", "Scale keys in the graph", icon::kScale, "Motion",
        "Scale the selected keys in time about the play head, and in value about their middle.",
-       [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Scale); }, needs_graph_keys},
+       [](Context& c) { begin_changing_graph_keys(c, GraphChange::Scale); }, needs_graph_keys},
       {"graph.duplicate", "Duplicate keys in the graph", icon::kDuplicate, "Motion",
        "Copy the selected keys of the curves and move the copies with the pointer, or by a typed number.",
-       [](Editor& e) { begin_changing_graph_keys(e, GraphChange::Duplicate); }, needs_graph_keys},
+       [](Context& c) { begin_changing_graph_keys(c, GraphChange::Duplicate); }, needs_graph_keys},
       {"graph.delete", "Delete keys in the graph", icon::kTrash, "Motion",
        "Delete the selected keys. A bone's key is deleted with all of its three channels.",
-       [](Editor& e) {
-         change(e, "Delete keys in the graph", [](const GraphCurves&, const Keys& keys, const auto& chosen) {
+       [](Context& c) {
+         change(c, "Delete keys in the graph", [](const GraphCurves&, const Keys& keys, const auto& chosen) {
            return with_keys_deleted(keys, chosen);
          });
        },
        needs_graph_keys},
       {"graph.interpolation_menu", "Interpolation menu", "", "Motion",
        "Open a menu that sets the interpolation after the selected keys.",
-       [](Editor& e) { e.open_popup = "Interpolation"; }, needs_graph_keys},
+       [](Context& c) { c.menus->open_popup = "Interpolation"; }, needs_graph_keys},
       {"graph.handle_menu", "Handle menu", "", "Motion",
-       "Open a menu that sets the kind of the selected keys' handles.", [](Editor& e) { e.open_popup = "Handles"; },
-       needs_graph_keys},
+       "Open a menu that sets the kind of the selected keys' handles.",
+       [](Context& c) { c.menus->open_popup = "Handles"; }, needs_graph_keys},
       interpolation("graph.constant", "Constant", "Hold the value of the selected keys until the next key.",
                     Interpolation::Constant),
       interpolation("graph.linear", "Linear", "Interpolate linearly from the selected keys to the next ones.",

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/motion/graph_tool.h"
 #include "editor/motion/timeline_ruler.h"
 #include "editor/motion/timeline_tool.h"
@@ -27,22 +30,22 @@ constexpr const char* kAxes[] = {"X", "Y", "Z"};
 
 std::string name_of(const GraphTrack& track) { return track.is_shift ? track.bone + " shift" : track.bone; }
 
-void draw_channel_button(Editor& editor, const GraphChannel& channel, const Rect& place) {
-  const Look& look = editor.look;
-  Graph& graph = graph_of(editor);
+void draw_channel_button(Context& context, const GraphChannel& channel, const Rect& place) {
+  const Look& look = context.ui->look;
+  Graph& graph = graph_of(context);
   const bool shown = !graph.hidden.contains(channel);
-  const Pressed pressed = press_area(editor, kAxes[channel.axis], place);
+  const Pressed pressed = press_area(context.ui, kAxes[channel.axis], place);
   fill(place, pressed.hovered ? look.theme.hover : shown ? look.theme.raised : look.theme.panel, look.px(3));
   const Rect edge{{place.low.x + look.px(2), place.high.y - look.px(4)},
                   {place.high.x - look.px(2), place.high.y - look.px(2)}};
   fill(edge, with_alpha(look.theme.axis[channel.axis], shown ? 1.0f : 0.25f));
-  put_text(editor, look.fonts.small, shown ? look.theme.text : look.theme.text3, place, kAxes[channel.axis],
+  put_text(context.ui, look.fonts.small, shown ? look.theme.text : look.theme.text3, place, kAxes[channel.axis],
            Align::Centre);
   if (pressed.hovered)
-    tooltip(editor, place, name_of(channel.track) + " " + kAxes[channel.axis],
+    tooltip(context.ui, place, name_of(channel.track) + " " + kAxes[channel.axis],
             "Click to show or hide this curve. Ctrl-click to show only this one.");
   if (!pressed.clicked) return;
-  if (editor.input.modifiers().ctrl) {
+  if (context.ui->input.modifiers().ctrl) {
     graph.hidden.clear();
     for (const auto& [track, curve] : graph.curves.tracks)
       for (int axis = 0; axis < 3; ++axis) graph.hidden.insert({track, axis});
@@ -54,26 +57,27 @@ void draw_channel_button(Editor& editor, const GraphChannel& channel, const Rect
   }
 }
 
-void draw_list(Editor& editor, const Rect& area, const GraphTracks& found) {
-  const Look& look = editor.look;
-  Column column(editor, "channels", area);
+void draw_list(Context& context, const Rect& area, const GraphTracks& found) {
+  const Look& look = context.ui->look;
+  Column column(context.ui, "channels", area);
   const auto words = [&](const std::string& text) {
     const Rect row = column.row(22);
-    put_text(editor, look.fonts.small, look.theme.text3, Rect{{row.low.x + look.px(12), row.low.y}, row.high}, text);
+    put_text(context.ui, look.fonts.small, look.theme.text3, Rect{{row.low.x + look.px(12), row.low.y}, row.high},
+             text);
   };
   if (found.tracks.empty()) words("Select a bone");
   int index = 0;
   for (const GraphTrack& track : found.tracks) {
     Rect row;
     if (!column.list_row(row, index++, false)) continue;
-    const PathScope path(editor, name_of(track));
+    const PathScope path(context.ui, name_of(track));
     float right = row.high.x - look.px(6);
     for (int axis = 2; axis >= 0; --axis) {
       const Rect place{{right - look.px(kButton), row.low.y + look.px(2)}, {right, row.high.y - look.px(2)}};
-      draw_channel_button(editor, {track, axis}, place);
+      draw_channel_button(context, {track, axis}, place);
       right = place.low.x - look.px(3);
     }
-    put_text(editor, look.fonts.regular, look.theme.text2,
+    put_text(context.ui, look.fonts.regular, look.theme.text2,
              Rect{{row.low.x + look.px(12), row.low.y}, {right - look.px(2), row.high.y}}, name_of(track));
   }
   if (found.left_out > 0) words("and " + std::to_string(found.left_out) + " more: select fewer bones");
@@ -90,9 +94,9 @@ const char* unit_of(const Graph& graph) {
   return angles && shifts ? "" : shifts ? " mm" : "\u00b0";
 }
 
-void draw_values(Editor& editor) {
-  const Look& look = editor.look;
-  const Graph& graph = graph_of(editor);
+void draw_values(Context& context) {
+  const Look& look = context.ui->look;
+  const Graph& graph = graph_of(context);
   const double per_pixel = (graph.high - graph.low) / std::max(1.0f, graph.plot.height());
   const double step = round_step(look.px(kLeastValues) * per_pixel);
   const char* unit = unit_of(graph);
@@ -108,7 +112,7 @@ void draw_values(Editor& editor) {
     std::snprintf(text, sizeof text, step >= 1 ? "%.0f%s" : "%.3g%s", value, unit);
     const float half = look.px(8);
     if (y - half < graph.plot.low.y || y + half > graph.plot.high.y) continue;
-    put_text(editor, look.fonts.small_mono, look.theme.text3,
+    put_text(context.ui, look.fonts.small_mono, look.theme.text3,
              Rect{{graph.plot.low.x - look.px(kValues), y - half}, {graph.plot.low.x - look.px(6), y + half}}, text,
              Align::Right);
   }
@@ -116,16 +120,16 @@ void draw_values(Editor& editor) {
 
 // Draws a line through the values at whole frames. If frames are far apart, the line also passes through the values
 // that `fine` returns between frames; `fine` may be empty.
-void draw_line(Editor& editor, const std::vector<glm::dvec3>& values, int axis, Colour colour, float width,
+void draw_line(Context& context, const std::vector<glm::dvec3>& values, int axis, Colour colour, float width,
                const std::function<glm::dvec3(double)>& fine) {
-  const Timeline& timeline = *editor.timeline;
-  const Graph& graph = graph_of(editor);
+  const Timeline& timeline = *context.timeline;
+  const Graph& graph = graph_of(context);
   const int first = graph.curves.range.low, last = first + static_cast<int>(values.size()) - 1;
   const double per_frame = timeline.ruler.width() / timeline.window.count;
   const int low = static_cast<int>(std::clamp(std::floor(timeline.window.low), double(first), double(last)));
   const int high =
       static_cast<int>(std::clamp(std::ceil(timeline.window.low + timeline.window.count), double(first), double(last)));
-  const int parts = fine ? std::clamp(static_cast<int>(per_frame / editor.look.px(kFine)), 1, 16) : 1;
+  const int parts = fine ? std::clamp(static_cast<int>(per_frame / context.ui->look.px(kFine)), 1, 16) : 1;
   // If several frames fall into half a pixel, only some of them are drawn.
   const int stride = std::max(1, static_cast<int>(std::floor(0.5 / std::max(per_frame, 1e-9))));
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -140,12 +144,12 @@ void draw_line(Editor& editor, const std::vector<glm::dvec3>& values, int axis, 
   list.PathStroke(colour, 0, width);
 }
 
-void draw_curves(Editor& editor) {
-  const Look& look = editor.look;
-  const Graph& graph = graph_of(editor);
-  const std::string active = editor.selection.bone && editor.document().armature &&
-                                     *editor.selection.bone < std::ssize(editor.document().armature->bones)
-                                 ? editor.document().armature->bones[*editor.selection.bone].name
+void draw_curves(Context& context) {
+  const Look& look = context.ui->look;
+  const Graph& graph = graph_of(context);
+  const std::string active = context.selection->bone && context.document().armature &&
+                                     *context.selection->bone < std::ssize(context.document().armature->bones)
+                                 ? context.document().armature->bones[*context.selection->bone].name
                                  : "";
   for (const bool keyed : {false, true})
     for (const auto& [track, curve] : graph.curves.tracks) {
@@ -154,9 +158,9 @@ void draw_curves(Editor& editor) {
       for (int axis = 0; axis < 3; ++axis) {
         if (!is_shown(graph, {track, axis})) continue;
         if (!keyed && has_keys && !curve.motion.empty())
-          draw_line(editor, curve.motion, axis, with_alpha(look.theme.text3, 0.55f), look.scale, {});
+          draw_line(context, curve.motion, axis, with_alpha(look.theme.text3, 0.55f), look.scale, {});
         if (keyed && !curve.values.empty())
-          draw_line(editor, curve.values, axis, with_alpha(look.theme.axis[axis], faint ? 0.45f : 1.0f),
+          draw_line(context, curve.values, axis, with_alpha(look.theme.axis[axis], faint ? 0.45f : 1.0f),
                     (faint ? 1.0f : 1.6f) * look.scale,
                     [&, t = &track](double frame) { return graph_values(graph.curves, *t, frame); });
       }
@@ -165,20 +169,20 @@ void draw_curves(Editor& editor) {
 
 // Draws the keys of one track. Of keys that are drawn at the same point, only the first key and the selected keys are
 // drawn.
-void draw_keys_of(Editor& editor, const GraphTrack& track) {
-  const Look& look = editor.look;
-  const Graph& graph = graph_of(editor);
+void draw_keys_of(Context& context, const GraphTrack& track) {
+  const Look& look = context.ui->look;
+  const Graph& graph = graph_of(context);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const std::set<int> frames = key_frames_of(graph_keys(editor), track);
+  const std::set<int> frames = key_frames_of(graph_keys(context), track);
   for (int axis = 0; axis < 3; ++axis) {
     if (!is_shown(graph, {track, axis})) continue;
     std::optional<glm::vec2> before;
     bool before_chosen = false;
     for (const int frame : frames) {
-      const float x = x_of(*editor.timeline, frame);
+      const float x = x_of(*context.timeline, frame);
       if (x < graph.plot.low.x - look.px(8) || x > graph.plot.high.x + look.px(8)) continue;
       const GraphKey key{{track, axis}, frame};
-      const glm::vec2 point = graph_point(editor, key);
+      const glm::vec2 point = graph_point(context.timeline, key);
       const bool chosen = graph.chosen.contains(key);
       if (before && glm::distance(*before, point) < look.px(kKeyRadius) && (before_chosen || !chosen)) continue;
       list.AddCircleFilled(im(point), look.px(kKeyRadius + 1), look.theme.field);
@@ -189,16 +193,16 @@ void draw_keys_of(Editor& editor, const GraphTrack& track) {
   }
 }
 
-void draw_keys_and_handles(Editor& editor) {
-  const Look& look = editor.look;
-  const Graph& graph = graph_of(editor);
+void draw_keys_and_handles(Context& context) {
+  const Look& look = context.ui->look;
+  const Graph& graph = graph_of(context);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  for (const GraphHandle& handle : graph_handles(editor)) {
+  for (const GraphHandle& handle : graph_handles(context)) {
     list.AddLine(im(handle.key_point), im(handle.point), look.theme.select, look.scale);
     list.AddCircleFilled(im(handle.point), look.px(kHandleRadius), look.theme.field);
     list.AddCircle(im(handle.point), look.px(kHandleRadius), look.theme.select, 0, 1.5f * look.scale);
   }
-  for (const auto& [track, curve] : graph.curves.tracks) draw_keys_of(editor, track);
+  for (const auto& [track, curve] : graph.curves.tracks) draw_keys_of(context, track);
   if (!graph.box) return;
   const Rect box = intersection(*graph.box, graph.plot);
   fill(box, with_alpha(look.theme.select, 0.15f));
@@ -206,52 +210,52 @@ void draw_keys_and_handles(Editor& editor) {
 }
 
 // Returns a text that identifies the shown clip and tracks. When this text changes, the value axis is fitted again.
-std::string shown_name(const Editor& editor, const GraphTracks& found) {
-  std::string name = shown_clip(editor)->name;
+std::string shown_name(const Context& context, const GraphTracks& found) {
+  std::string name = shown_clip(context.document())->name;
   for (const GraphTrack& track : found.tracks) name += "/" + name_of(track);
   return name;
 }
 
 }  // namespace
 
-void draw_graph(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
-  Timeline& timeline = *editor.timeline;
-  Graph& graph = graph_of(editor);
+void draw_graph(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
+  Timeline& timeline = *context.timeline;
+  Graph& graph = graph_of(context);
   const float left = rect.low.x + look.px(kList + kValues), right = rect.high.x - look.px(kRulerEnds);
   timeline.marks = timeline.lane = timeline.keys = {};
   timeline.ruler = {{left, rect.low.y}, {right, rect.low.y + look.px(kRulerHeight)}};
   graph.plot = {{left, timeline.ruler.high.y}, {right, std::max(timeline.ruler.high.y + 1, rect.high.y)}};
-  editor.timeline_area = timeline.area = {timeline.ruler.low, graph.plot.high};
-  editor.graph_area = graph.plot;
+  context.screen->timeline_area = timeline.area = {timeline.ruler.low, graph.plot.high};
+  context.screen->graph_area = graph.plot;
 
-  const GraphTracks found = graph_tracks(editor);
-  if (editor.document().armature) update_curves(editor);
+  const GraphTracks found = graph_tracks(context);
+  if (context.document().armature) update_curves(context);
   else graph.curves = {};
-  if (const std::string name = shown_name(editor, found); graph.fitted != name && graph.curves.complete()) {
-    fit_graph_values(editor);
+  if (const std::string name = shown_name(context, found); graph.fitted != name && graph.curves.complete()) {
+    fit_graph_values(context);
     graph.fitted = name;
   }
-  draw_list(editor, {{rect.low.x, timeline.ruler.high.y}, {rect.low.x + look.px(kList), rect.high.y}}, found);
+  draw_list(context, {{rect.low.x, timeline.ruler.high.y}, {rect.low.x + look.px(kList), rect.high.y}}, found);
   fill({{rect.low.x + look.px(kList), rect.low.y}, {rect.low.x + look.px(kList) + look.line(), rect.high.y}},
        look.theme.line);
-  register_widget(editor, "ruler", timeline.ruler);
-  register_widget(editor, "graph", graph.plot);
+  register_widget(context.ui, "ruler", timeline.ruler);
+  register_widget(context.ui, "graph", graph.plot);
   fill(graph.plot, look.theme.field);
   ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(kValues), 0)),
                       im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
-  draw_ruler(editor);
-  draw_values(editor);
+  draw_ruler(context);
+  draw_values(context);
   ImGui::PushClipRect(im(graph.plot.low), im(graph.plot.high), true);
   if (!graph.curves.tracks.empty()) {
-    draw_curves(editor);
-    draw_keys_and_handles(editor);
+    draw_curves(context);
+    draw_keys_and_handles(context);
   } else {
-    put_text(editor, look.fonts.regular, look.theme.text2, graph.plot, "Select bones to see their curves",
+    put_text(context.ui, look.fonts.regular, look.theme.text2, graph.plot, "Select bones to see their curves",
              Align::Centre);
   }
   ImGui::PopClipRect();
-  draw_play_head(editor, {});
+  draw_play_head(context, {});
   ImGui::PopClipRect();
 }
 

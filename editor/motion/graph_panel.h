@@ -7,6 +7,8 @@
 
 namespace limber::editor {
 
-void draw_graph(Editor& editor, const Rect& rect);
+struct Context;
+
+void draw_graph(Context& context, const Rect& rect);
 
 }  // namespace limber::editor

@@ -6,9 +6,13 @@
 #include <cstdio>
 #include <utility>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/modal_tool.h"
 #include "editor/motion/graph_edits.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/shown_pose.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/numeric_input.h"
 
 namespace limber::editor {
@@ -24,27 +28,27 @@ constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // zooming keeps the r
 constexpr double kFurthestMove = 1e7;
 
 // Shows these keys instead of the clip's keys, in the graph and in the body's pose.
-void preview(Editor& editor, Keys keys) {
-  Graph& graph = graph_of(editor);
-  const ClipOnRig* on_rig = clip_on_rig(editor);
+void preview(Context& context, Keys keys) {
+  Graph& graph = graph_of(context);
+  const ClipOnRig* on_rig = clip_on_rig(context);
   if (on_rig) {
     Clip clip = *on_rig->clip();
     clip.keys = keys;
     show_pose(
-        editor,
-        ClipOnRig(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig).at(shown_frame(editor)));
+        context,
+        ClipOnRig(std::make_shared<const Clip>(std::move(clip)), on_rig->armature(), on_rig).at(shown_frame(context)));
   }
   graph.preview = std::move(keys);
-  graph.previewed = graph_clip(editor);
-  editor.touch();
+  graph.previewed = graph_clip(context.document());
+  context.ui->touch();
 }
 
-void drop_preview(Editor& editor) {
-  Graph& graph = graph_of(editor);
+void drop_preview(Context& context) {
+  Graph& graph = graph_of(context);
   graph.preview.reset();
   graph.previewed.reset();
-  drop_shown_pose(editor);
-  editor.touch();
+  drop_shown_pose(context);
+  context.ui->touch();
 }
 
 // A drag of selected keys, with the keys and curves from the moment when it began. If a job has meanwhile replaced the
@@ -55,35 +59,35 @@ struct Moving {
   GraphCurves curves;
   std::set<GraphKey> chosen;
 
-  explicit Moving(Editor& editor)
-      : clip(graph_clip(editor)),
+  explicit Moving(Context& context)
+      : clip(graph_clip(context.document())),
         keys(clip->keys),
-        curves(graph_of(editor).curves),
-        chosen(chosen_graph_keys(editor)) {}
+        curves(graph_of(context).curves),
+        chosen(chosen_graph_keys(context)) {}
 
-  bool is_shown(const Editor& editor) const { return clip.get() == shown_clip(editor); }
+  bool is_shown(const Context& context) const { return clip.get() == shown_clip(context.document()); }
 
-  void show(Editor& editor, const Keys& changed) const {
-    if (is_shown(editor)) preview(editor, changed);
-    else drop_preview(editor);
+  void show(Context& context, const Keys& changed) const {
+    if (is_shown(context)) preview(context, changed);
+    else drop_preview(context);
   }
-  void show(Editor& editor, GraphChange change, const GraphMap& time, const GraphMap& value) const {
-    show(editor, change == GraphChange::Duplicate ? with_keys_copied(curves, keys, chosen, time, value)
-                                                  : with_keys_changed(curves, keys, chosen, time, value));
-    graph_of(editor).chosen = mapped_keys(time, chosen);
+  void show(Context& context, GraphChange change, const GraphMap& time, const GraphMap& value) const {
+    show(context, change == GraphChange::Duplicate ? with_keys_copied(curves, keys, chosen, time, value)
+                                                   : with_keys_changed(curves, keys, chosen, time, value));
+    graph_of(context).chosen = mapped_keys(time, chosen);
   }
-  void cancel(Editor& editor) const {
-    drop_preview(editor);
-    graph_of(editor).chosen = chosen;
+  void cancel(Context& context) const {
+    drop_preview(context);
+    graph_of(context).chosen = chosen;
   }
-  void commit(Editor& editor, const std::string& label) const {
-    Graph& graph = graph_of(editor);
+  void commit(Context& context, const std::string& label) const {
+    Graph& graph = graph_of(context);
     const std::optional<Keys> changed = std::exchange(graph.preview, std::nullopt);
-    drop_preview(editor);
-    if (!changed || !is_shown(editor) || *changed == keys) return;
+    drop_preview(context);
+    if (!changed || !is_shown(context) || *changed == keys) return;
     remember_chosen(graph, clip, chosen);
-    edit_clip(editor, label, PoseThen::FromClip, [&](Clip& next) { next.keys = *changed; });
-    remember_chosen(graph, graph_clip(editor), graph.chosen);
+    edit_clip(context, label, PoseThen::FromClip, [&](Clip& next) { next.keys = *changed; });
+    remember_chosen(graph, graph_clip(context.document()), graph.chosen);
   }
 };
 
@@ -98,44 +102,44 @@ constexpr const char* kChanges[] = {"Move keys in the graph", "Scale keys in the
 
 class ChangingGraphKeys final : public Modal {
  public:
-  ChangingGraphKeys(Editor& editor, GraphChange change)
-      : moving_(editor),
+  ChangingGraphKeys(Context& context, GraphChange change)
+      : moving_(context),
         change_(change),
         scales_(change == GraphChange::Scale),
-        pivot_frame_(shown_frame(editor)) {
+        pivot_frame_(shown_frame(context)) {
     double low = INFINITY, high = -INFINITY;
     for (const GraphKey& key : moving_.chosen) {
       const double value = graph_values(moving_.curves, key.channel.track, key.frame)[key.channel.axis];
       low = std::min(low, value), high = std::max(high, value);
     }
     pivot_value_ = (low + high) / 2;
-    reach_ =
-        editor.input.pointer - glm::vec2(x_of(*editor.timeline, pivot_frame_), graph_y(graph_of(editor), pivot_value_));
+    reach_ = context.ui->input.pointer -
+             glm::vec2(x_of(*context.timeline, pivot_frame_), graph_y(graph_of(context), pivot_value_));
   }
 
-  bool moved(Editor& editor, const glm::vec2& pixels) override {
-    way_ += pixels * (editor.input.down(Key::Shift) ? 0.1f : 1.0f);
-    return show(editor);
+  bool moved(Context& context, const glm::vec2& pixels) override {
+    way_ += pixels * (context.ui->input.down(Key::Shift) ? 0.1f : 1.0f);
+    return show(context);
   }
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool button(Context& context, const ButtonChanged& event) override {
     if (!event.down || event.button == MouseButton::Middle) return true;
-    return event.button == MouseButton::Left ? confirm(editor) : drop(editor);
+    return event.button == MouseButton::Left ? confirm(context) : drop(context);
   }
-  bool key(Editor& editor, const KeyChanged& event) override {
+  bool key(Context& context, const KeyChanged& event) override {
     if (!event.down) return true;
-    if (event.key == Key::Escape) return drop(editor);
-    if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
+    if (event.key == Key::Escape) return drop(context);
+    if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(context);
     if (event.key == Key::X || event.key == Key::Y) {
       const Lock wanted = event.key == Key::X ? Lock::Time : Lock::Value;
       lock_ = lock_ == wanted ? Lock::None : wanted;
-      return show(editor);
+      return show(context);
     }
-    if (number_.key(event.key)) show(editor);
+    if (number_.key(event.key)) show(context);
     return true;
   }
-  bool frame(Editor& editor, double) override { return moving_.is_shown(editor) || drop(editor); }
-  void cancel(Editor& editor) override { moving_.cancel(editor); }
-  std::vector<KeyHint> hints(const Editor&) const override {
+  bool frame(Context& context, double) override { return moving_.is_shown(context) || drop(context); }
+  void cancel(Context& context) override { moving_.cancel(context); }
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{}, words()},          {{"X"}, "Time only"}, {{"Y"}, "Value only"}, {{"0-9"}, "Type a number"},
             {{"Enter"}, "Confirm"}, {{"Esc"}, "Cancel"}};
   }
@@ -167,9 +171,9 @@ class ChangingGraphKeys final : public Modal {
     value_ = lock_ == Lock::Time ? GraphMap{} : GraphMap{in_value, pivot_value_ * (1 - in_value)};
   }
 
-  void move(const Editor& editor) {
-    double frames = frames_of_pixels(*editor.timeline, way_.x);
-    double value = value_of_pixels(*editor.timeline->graph, way_.y);
+  void move(const Context& context) {
+    double frames = frames_of_pixels(*context.timeline, way_.x);
+    double value = value_of_pixels(*context.timeline->graph, way_.y);
     if (number_.typed()) {
       // If no axis is locked, a typed number is a number of frames, as in the timeline.
       frames = number_.value();
@@ -179,18 +183,18 @@ class ChangingGraphKeys final : public Modal {
     value_ = {1, lock_ == Lock::Time ? 0 : std::clamp(value, -kFurthestMove, kFurthestMove)};
   }
 
-  bool show(Editor& editor) {
+  bool show(Context& context) {
     if (scales_) scale();
-    else move(editor);
-    moving_.show(editor, change_, time_, value_);
+    else move(context);
+    moving_.show(context, change_, time_, value_);
     return true;
   }
-  bool confirm(Editor& editor) {
-    moving_.commit(editor, kChanges[static_cast<int>(change_)]);
+  bool confirm(Context& context) {
+    moving_.commit(context, kChanges[static_cast<int>(change_)]);
     return false;
   }
-  bool drop(Editor& editor) {
-    cancel(editor);
+  bool drop(Context& context) {
+    cancel(context);
     return false;
   }
 
@@ -206,19 +210,19 @@ class ChangingGraphKeys final : public Modal {
   TypedNumber number_;
 };
 
-std::optional<GraphKey> key_under_pointer(Editor& editor) {
-  const Graph& graph = graph_of(editor);
-  const Keys& keys = graph_keys(editor);
+std::optional<GraphKey> key_under_pointer(Context& context) {
+  const Graph& graph = graph_of(context);
+  const Keys& keys = graph_keys(context);
   std::optional<GraphKey> nearest;
-  float least = editor.look.px(kReach);
+  float least = context.ui->look.px(kReach);
   for (const auto& [track, curve] : graph.curves.tracks)
     for (const int frame : key_frames_of(keys, track))
       for (int axis = 0; axis < 3; ++axis) {
         const GraphKey key{{track, axis}, frame};
         if (!is_shown(graph, key.channel)) continue;
         // Of several keys at the same point, a selected key is preferred.
-        const float far =
-            glm::distance(graph_point(editor, key), editor.input.pointer) - (graph.chosen.contains(key) ? 0.5f : 0.0f);
+        const float far = glm::distance(graph_point(context.timeline, key), context.ui->input.pointer) -
+                          (graph.chosen.contains(key) ? 0.5f : 0.0f);
         if (far > least) continue;
         least = far;
         nearest = key;
@@ -226,145 +230,146 @@ std::optional<GraphKey> key_under_pointer(Editor& editor) {
   return nearest;
 }
 
-void drag_handle(Editor& editor, const GraphHandle& handle) {
-  const auto begun = std::make_shared<const Moving>(editor);
-  const auto moved = [=](Editor& e, const glm::vec2&) {
-    const Graph& graph = graph_of(e);
+void drag_handle(Context& context, const GraphHandle& handle) {
+  const auto begun = std::make_shared<const Moving>(context);
+  const auto moved = [=](Context& c, const glm::vec2&) {
+    const Graph& graph = graph_of(c);
     const double whole = *handle_frames(begun->curves, handle.key.channel.track, handle.key.frame, handle.side);
     const double side = handle.side == KeySide::In ? -1 : 1;
     // The handle must stay on its side of the key. If the pointer crosses the key, the slope uses a tenth of the
     // handle's length.
     const double frames =
-        std::max(0.1 * whole, side * frames_of_pixels(*e.timeline, e.input.pointer.x - handle.key_point.x));
-    const double value = value_of_pixels(graph, e.input.pointer.y - handle.key_point.y);
-    begun->show(e, with_slope(begun->curves, begun->keys, handle.key, handle.side, side * value / frames));
+        std::max(0.1 * whole, side * frames_of_pixels(*c.timeline, c.ui->input.pointer.x - handle.key_point.x));
+    const double value = value_of_pixels(graph, c.ui->input.pointer.y - handle.key_point.y);
+    begun->show(c, with_slope(begun->curves, begun->keys, handle.key, handle.side, side * value / frames));
   };
-  editor.drag = Drag{MouseButton::Left, moved, [begun](Editor& e) { begun->commit(e, "Move handle"); },
-                     [begun](Editor& e) { begun->cancel(e); }};
+  context.interaction->drag = Drag{MouseButton::Left, moved, [begun](Context& c) { begun->commit(c, "Move handle"); },
+                                   [begun](Context& c) { begun->cancel(c); }};
 }
 
-void drag_key(Editor& editor, const GraphKey& key) {
-  Graph& graph = graph_of(editor);
-  const bool extend = editor.input.modifiers().shift;
+void drag_key(Context& context, const GraphKey& key) {
+  Graph& graph = graph_of(context);
+  const bool extend = context.ui->input.modifiers().shift;
   if (extend && graph.chosen.contains(key)) {
     graph.chosen.erase(key);
     return;
   }
   if (!extend && !graph.chosen.contains(key)) graph.chosen.clear();
   graph.chosen.insert(key);
-  const auto begun = std::make_shared<const Moving>(editor);
-  const auto moved = [begun, from = editor.input.pointer](Editor& e, const glm::vec2&) {
-    const glm::vec2 way = e.input.pointer - from;
-    if (!graph_of(e).preview && glm::length(way) < e.look.px(kStart)) return;
-    begun->show(e, GraphChange::Move, {1, std::round(frames_of_pixels(*e.timeline, way.x))},
-                {1, value_of_pixels(graph_of(e), way.y)});
+  const auto begun = std::make_shared<const Moving>(context);
+  const auto moved = [begun, from = context.ui->input.pointer](Context& c, const glm::vec2&) {
+    const glm::vec2 way = c.ui->input.pointer - from;
+    if (!graph_of(c).preview && glm::length(way) < c.ui->look.px(kStart)) return;
+    begun->show(c, GraphChange::Move, {1, std::round(frames_of_pixels(*c.timeline, way.x))},
+                {1, value_of_pixels(graph_of(c), way.y)});
   };
-  editor.drag = Drag{MouseButton::Left, moved, [begun](Editor& e) { begun->commit(e, kChanges[0]); },
-                     [begun](Editor& e) { begun->cancel(e); }};
+  context.interaction->drag = Drag{MouseButton::Left, moved, [begun](Context& c) { begun->commit(c, kChanges[0]); },
+                                   [begun](Context& c) { begun->cancel(c); }};
 }
 
-void choose_in_box(Editor& editor, const Rect& box) {
-  Graph& graph = graph_of(editor);
-  if (!editor.input.modifiers().shift) graph.chosen.clear();
+void choose_in_box(Context& context, const Rect& box) {
+  Graph& graph = graph_of(context);
+  if (!context.ui->input.modifiers().shift) graph.chosen.clear();
   for (const auto& [track, curve] : graph.curves.tracks)
-    for (const int frame : key_frames_of(graph_keys(editor), track))
+    for (const int frame : key_frames_of(graph_keys(context), track))
       for (int axis = 0; axis < 3; ++axis)
         if (const GraphKey key{{track, axis}, frame};
-            is_shown(graph, key.channel) && box.contains(graph_point(editor, key)))
+            is_shown(graph, key.channel) && box.contains(graph_point(context.timeline, key)))
           graph.chosen.insert(key);
 }
 
-void draw_box(Editor& editor) {
-  const glm::vec2 from = editor.input.pointer;
-  const auto moved = [from](Editor& e, const glm::vec2&) {
-    graph_of(e).box = Rect{glm::min(from, e.input.pointer), glm::max(from, e.input.pointer)};
+void draw_box(Context& context) {
+  const glm::vec2 from = context.ui->input.pointer;
+  const auto moved = [from](Context& c, const glm::vec2&) {
+    graph_of(c).box = Rect{glm::min(from, c.ui->input.pointer), glm::max(from, c.ui->input.pointer)};
   };
-  const auto ended = [](Editor& e) {
-    const std::optional<Rect> box = std::exchange(graph_of(e).box, std::nullopt);
-    if (!shown_clip(e)) return;
-    if (box) choose_in_box(e, *box);
-    else if (!e.input.modifiers().shift) graph_of(e).chosen.clear();
+  const auto ended = [](Context& c) {
+    const std::optional<Rect> box = std::exchange(graph_of(c).box, std::nullopt);
+    if (!shown_clip(c.document())) return;
+    if (box) choose_in_box(c, *box);
+    else if (!c.ui->input.modifiers().shift) graph_of(c).chosen.clear();
   };
-  editor.drag = Drag{MouseButton::Left, moved, ended, [](Editor& e) { graph_of(e).box.reset(); }};
+  context.interaction->drag = Drag{MouseButton::Left, moved, ended, [](Context& c) { graph_of(c).box.reset(); }};
 }
 
 }  // namespace
 
-glm::vec2 graph_point(const Editor& editor, const GraphKey& key) {
-  const Graph& graph = *editor.timeline->graph;
+glm::vec2 graph_point(const Timeline& timeline, const GraphKey& key) {
+  const Graph& graph = *timeline.graph;
   const double value = graph_values(graph.curves, key.channel.track, key.frame)[key.channel.axis];
-  return {x_of(*editor.timeline, key.frame), graph_y(graph, value)};
+  return {x_of(timeline, key.frame), graph_y(graph, value)};
 }
 
-std::vector<GraphHandle> graph_handles(const Editor& editor) {
+std::vector<GraphHandle> graph_handles(const Context& context) {
   std::vector<GraphHandle> handles;
-  const Graph& graph = *editor.timeline->graph;
-  const Keys& keys = graph_keys(editor);
-  const double per_frame = editor.timeline->ruler.width() / editor.timeline->window.count;
+  const Graph& graph = *context.timeline->graph;
+  const Keys& keys = graph_keys(context);
+  const double per_frame = context.timeline->ruler.width() / context.timeline->window.count;
   for (const GraphKey& key : graph.chosen) {
-    const float x = x_of(*editor.timeline, key.frame);
+    const float x = x_of(*context.timeline, key.frame);
     if (x < graph.plot.low.x || x > graph.plot.high.x || !exists(graph, keys, key)) continue;
     const GraphTrack& track = key.channel.track;
     for (const KeySide side : {KeySide::In, KeySide::Out}) {
       const auto third = handle_frames(graph.curves, track, key.frame, side);
-      if (!third || *third * per_frame < editor.look.px(kLeastThird)) continue;
+      if (!third || *third * per_frame < context.ui->look.px(kLeastThird)) continue;
       const double frames = side == KeySide::In ? -*third : *third;
       const auto speeds = graph_speeds(graph.curves, track, key.frame, side);
       const double value = graph_values(graph.curves, track, key.frame)[key.channel.axis];
-      const glm::vec2 end(x_of(*editor.timeline, key.frame + frames),
+      const glm::vec2 end(x_of(*context.timeline, key.frame + frames),
                           graph_y(graph, value + frames * (*speeds)[key.channel.axis]));
-      const GraphHandle handle{key, side, graph_point(editor, key), end};
+      const GraphHandle handle{key, side, graph_point(context.timeline, key), end};
       // A handle that is so close to its key could not be told from the key or pressed, so it is left out.
-      if (glm::distance(handle.point, handle.key_point) > editor.look.px(kReach)) handles.push_back(handle);
+      if (glm::distance(handle.point, handle.key_point) > context.ui->look.px(kReach)) handles.push_back(handle);
     }
   }
   return handles;
 }
 
-void press_graph(Editor& editor) {
-  stop_playing(editor);
-  settle_frame(editor);
-  update_curves(editor);
-  const std::vector<GraphHandle> handles = graph_handles(editor);
+void press_graph(Context& context) {
+  stop_playing(context);
+  settle_frame(context);
+  update_curves(context);
+  const std::vector<GraphHandle> handles = graph_handles(context);
   const auto nearest = std::min_element(handles.begin(), handles.end(), [&](const auto& a, const auto& b) {
-    return glm::distance(a.point, editor.input.pointer) < glm::distance(b.point, editor.input.pointer);
+    return glm::distance(a.point, context.ui->input.pointer) < glm::distance(b.point, context.ui->input.pointer);
   });
-  if (nearest != handles.end() && glm::distance(nearest->point, editor.input.pointer) <= editor.look.px(kReach))
-    return drag_handle(editor, *nearest);
-  if (const auto key = key_under_pointer(editor)) return drag_key(editor, *key);
-  draw_box(editor);
+  if (nearest != handles.end() &&
+      glm::distance(nearest->point, context.ui->input.pointer) <= context.ui->look.px(kReach))
+    return drag_handle(context, *nearest);
+  if (const auto key = key_under_pointer(context)) return drag_key(context, *key);
+  draw_box(context);
 }
 
-void begin_changing_graph_keys(Editor& editor, GraphChange change) {
-  stop_playing(editor);
-  settle_frame(editor);
-  update_curves(editor);  // the curves may be outdated if the graph was not drawn since the keys changed
-  editor.modal = std::make_shared<ChangingGraphKeys>(editor, change);
-  editor.modal_wrap = {};
+void begin_changing_graph_keys(Context& context, GraphChange change) {
+  stop_playing(context);
+  settle_frame(context);
+  update_curves(context);  // the curves may be outdated if the graph was not drawn since the keys changed
+  context.interaction->modal = std::make_shared<ChangingGraphKeys>(context, change);
+  context.interaction->modal_wrap = {};
 }
 
-void pan_graph(Editor& editor) {
-  editor.drag = Drag{MouseButton::Middle, [](Editor& e, const glm::vec2& by) {
-                       Graph& graph = graph_of(e);
-                       e.timeline->window.low -= frames_of_pixels(*e.timeline, by.x);
-                       const double value = value_of_pixels(graph, by.y);
-                       graph.low -= value;
-                       graph.high -= value;
-                     }};
+void pan_graph(Context& context) {
+  context.interaction->drag = Drag{MouseButton::Middle, [](Context& c, const glm::vec2& by) {
+                                     Graph& graph = graph_of(c);
+                                     c.timeline->window.low -= frames_of_pixels(*c.timeline, by.x);
+                                     const double value = value_of_pixels(graph, by.y);
+                                     graph.low -= value;
+                                     graph.high -= value;
+                                   }};
 }
 
-void zoom_graph(Editor& editor, ZoomAxes axes) {
-  Graph& graph = graph_of(editor);
-  auto& window = editor.timeline->window;
-  const double factor = std::pow(kStep, -editor.input.wheel);
+void zoom_graph(Context& context, ZoomAxes axes) {
+  Graph& graph = graph_of(context);
+  auto& window = context.timeline->window;
+  const double factor = std::pow(kStep, -context.ui->input.wheel);
   if (axes != ZoomAxes::Value) {
-    const double about = frame_at(*editor.timeline, editor.input.pointer.x);
+    const double about = frame_at(*context.timeline, context.ui->input.pointer.x);
     const double fresh = std::clamp(window.count * factor, kFewestFrames, kMostFrames);
     window.low = about - (about - window.low) * fresh / window.count;
     window.count = fresh;
   }
   if (axes != ZoomAxes::Time) {
-    const double about = graph_value_at(graph, editor.input.pointer.y), range = graph.high - graph.low;
+    const double about = graph_value_at(graph, context.ui->input.pointer.y), range = graph.high - graph.low;
     const double fresh = std::clamp(range * factor, kLeastValues, kMostValues);
     graph.low = about - (about - graph.low) * fresh / range;
     graph.high = graph.low + fresh;

@@ -13,9 +13,15 @@
 #include "core/motion/recorded_clip.h"
 #include "core/study/text.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
+#include "editor/context/views.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -53,14 +59,14 @@ FormField ease_field() {
                    "s");
 }
 
-std::string needs_clip_and_rig(const Editor& editor) {
-  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_clip_and_rig(const Context& context) {
+  if (!shown_clip(context.document())) return "Import a motion first, or insert a key";
+  return context.document().armature ? "" : "Import a rig first";
 }
 
-std::string needs_limb(const Editor& editor) {
-  if (const std::string why = needs_clip_and_rig(editor); !why.empty()) return why;
-  return planted_limbs(*editor.document().armature).empty()
+std::string needs_limb(const Context& context) {
+  if (const std::string why = needs_clip_and_rig(context); !why.empty()) return why;
+  return planted_limbs(*context.document().armature).empty()
              ? "The rig needs arms or legs with known names, such as LeftForearm"
              : "";
 }
@@ -194,28 +200,28 @@ std::shared_ptr<const Clip> cleaned_source(const std::shared_ptr<const Clip>& so
   return std::make_shared<const Clip>(std::move(travels));
 }
 
-void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, int first, const Cleaning& cleaning,
+void take_in(Context& context, const std::shared_ptr<const Clip>& source, int first, const Cleaning& cleaning,
              const std::shared_ptr<const Armature>& rig, const Result& result) {
   const bool is_new = cleaning.becomes == Becomes::NewClip;
   Clip clip = clip_of_poses(*source, *rig, result.poses, first);
   if (is_let_go(*source, cleaning)) clip.retarget.travel = source->retarget.travel;
   if (is_new) clip.name += cleaning.made;
-  take_in_clip(editor, source, rig, cleaning.label, std::move(clip), is_new);
-  if (result.is_short) editor.messages.warn(result.line, result.detail);
-  else editor.messages.ok(result.line, result.detail);
+  take_in_clip(context, source, rig, cleaning.label, std::move(clip), is_new);
+  if (result.is_short) context.messages->warn(result.line, result.detail);
+  else context.messages->ok(result.line, result.detail);
 }
 
 // Cleans the playing range of the shown clip in a background task.
-void start_cleaning(Editor& editor, const Cleaning& cleaning) {
-  stop_playing(editor);
-  const auto [first, last] = playing_range(editor);
-  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
-  start_task(editor, cleaning.label,
-             [source, rig = editor.document().armature, cleaning, first, last](Progress& progress) -> Finish {
+void start_cleaning(Context& context, const Cleaning& cleaning) {
+  stop_playing(context);
+  const auto [first, last] = playing_range(context.document());
+  const auto source = context.document().clips[static_cast<std::size_t>(context.document().clip)];
+  start_task(context, cleaning.label,
+             [source, rig = context.document().armature, cleaning, first, last](Progress& progress) -> Finish {
                const ClipOnRig clip(cleaned_source(source, cleaning), rig);
                if (!clip.problem().empty()) throw Error("the clip cannot be cleaned", source->name, clip.problem());
                const auto result = std::make_shared<const Result>(clean(clip, first, last, cleaning, progress));
-               return [=](Editor& e) { take_in(e, source, first, cleaning, rig, *result); };
+               return [=](Context& c) { take_in(c, source, first, cleaning, rig, *result); };
              });
 }
 
@@ -224,17 +230,17 @@ bool has_legs(const std::vector<PlantedLimb>& limbs) {
 }
 
 // Throws Error if no clip or rig is left, or if the playing range has too many frames.
-void require_frames(const Editor& editor) {
-  if (!shown_clip(editor) || !editor.document().armature)
+void require_frames(const Document& document) {
+  if (!shown_clip(document) || !document.armature)
     throw Error("the clip was deleted meanwhile", "clean", "select a clip and open the dialog again");
-  const auto [first, last] = playing_range(editor);
+  const auto [first, last] = playing_range(document);
   if (std::int64_t{last} - first >= kMostFrames)
     throw Error("the playing range has too many frames", frames_text(first, last), "set a shorter range");
 }
 
-void ask_cleaning(Editor& editor) {
-  const bool feet = has_legs(planted_limbs(*editor.document().armature));
-  const double rate = shown_clip(editor)->rate, most = 0.39 * rate;
+void ask_cleaning(Context& context) {
+  const bool feet = has_legs(planted_limbs(*context.document().armature));
+  const double rate = shown_clip(context.document())->rate, most = 0.39 * rate;
   const auto cleaning_of = [](const std::vector<FormField>& fields) {
     Cleaning cleaning{.label = "Clean clip", .made = " clean"};
     cleaning.smooth = fields[0].value;
@@ -243,7 +249,7 @@ void ask_cleaning(Editor& editor) {
     cleaning.becomes = static_cast<Becomes>(fields[3].chosen);
     return cleaning;
   };
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Clean clip",
        "Removes jitter from the playing range, and keeps standing feet in place.",
        "Clean",
@@ -251,21 +257,21 @@ void ask_cleaning(Editor& editor) {
                   std::min(6.0, most), 0, most, "%.1f", "Hz"),
         choice_of("Feet", "Keep standing feet and resting hands in place.", {"As they are", "Planted"}, feet ? 1 : 0),
         ease_field(), becomes_field(Becomes::NewClip)},
-       [feet, cleaning_of](const Editor& e, const std::vector<FormField>& fields) {
-         require_frames(e);
+       [feet, cleaning_of](const Context& c, const std::vector<FormField>& fields) {
+         require_frames(c.document());
          const Cleaning cleaning = cleaning_of(fields);
          if (cleaning.smooth <= 0 && !cleaning.plants_feet) throw NotYet{"Set a filter, or plant the feet."};
          if (cleaning.plants_feet && !feet)
            throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
-         const auto [first, last] = playing_range(e);
+         const auto [first, last] = playing_range(c.document());
          return "Cleans " + frames_text(first, last) + ". The clip's keys are baked into the motion." +
-                (is_let_go(*shown_clip(e), cleaning)
+                (is_let_go(*shown_clip(c.document()), cleaning)
                      ? " Feet are planted as the body travels; root motion then keeps it in place again."
-                 : cleaning.plants_feet && keeps_in_place(*shown_clip(e))
+                 : cleaning.plants_feet && keeps_in_place(*shown_clip(c.document()))
                      ? " Root motion keeps the body in place, so few feet stand: set Root motion to Free first."
                      : "");
        },
-       [cleaning_of](Editor& e, const std::vector<FormField>& fields) { start_cleaning(e, cleaning_of(fields)); }}));
+       [cleaning_of](Context& c, const std::vector<FormField>& fields) { start_cleaning(c, cleaning_of(fields)); }}));
 }
 
 // Reads "x, y, z". Throws NotYet if the text is something else, and Error if the position is beyond kFarthest.
@@ -291,61 +297,61 @@ std::string position_text(const glm::dvec3& position) {
 enum HoldField { kLimb, kFrom, kTo, kPlace, kPosition, kEase, kResult };
 enum class HoldPlace { WhereItIs, CrossHair, Position };
 
-glm::dvec3 hold_position(const Editor& editor, const std::vector<FormField>& fields) {
+glm::dvec3 hold_position(const Views& views, const std::vector<FormField>& fields) {
   return static_cast<HoldPlace>(fields[kPlace].chosen) == HoldPlace::Position ? position_in(fields[kPosition].text)
-                                                                              : editor.views->cross_hair;
+                                                                              : views.cross_hair;
 }
 
 // Returns the selected limb's position in the first frame of the hold; nothing if no pose of that frame is known.
-std::optional<glm::dvec3> place_before_hold(const Editor& editor, const std::vector<FormField>& fields) {
-  const ClipOnRig* clip = editor.timeline->prepared.get();
-  if (!clip || clip->clip().get() != shown_clip(editor) || !clip->problem().empty()) return {};
+std::optional<glm::dvec3> place_before_hold(const Context& context, const std::vector<FormField>& fields) {
+  const ClipOnRig* clip = context.timeline->prepared.get();
+  if (!clip || clip->clip().get() != shown_clip(context.document()) || !clip->problem().empty()) return {};
   const Armature& rig = *clip->armature();
   const int first = static_cast<int>(fields[kFrom].value);
   return place_of(planted_limbs(rig)[static_cast<std::size_t>(fields[kLimb].chosen)], PlantPoint::Tip, rig,
                   clip->at(first));
 }
 
-std::string hold_outcome(const Editor& editor, const std::vector<FormField>& fields) {
-  require_frames(editor);
+std::string hold_outcome(const Context& context, const std::vector<FormField>& fields) {
+  require_frames(context.document());
   const int first = static_cast<int>(fields[kFrom].value), last = static_cast<int>(fields[kTo].value);
   if (last < first) throw NotYet{"The last frame comes before the first one."};
   const std::string& limb = fields[kLimb].choices[static_cast<std::size_t>(fields[kLimb].chosen)];
   std::string words = "Holds the " + limb + " in " + frames_text(first, last) + ".";
-  if (!shown_clip(editor)->keys.empty()) words += " The clip's keys are baked into the motion.";
+  if (!shown_clip(context.document())->keys.empty()) words += " The clip's keys are baked into the motion.";
   const auto wish = static_cast<HoldPlace>(fields[kPlace].chosen);
   if (wish == HoldPlace::WhereItIs) return words;
-  const std::optional<glm::dvec3> place = place_before_hold(editor, fields);
+  const std::optional<glm::dvec3> place = place_before_hold(context, fields);
   if (wish == HoldPlace::Position && fields[kPosition].text.empty() && place)
     throw NotYet{"Type the position as x, y, z in mm. In frame " + std::to_string(first) + " the " + limb + " is at " +
                  position_text(*place) + "."};
-  const glm::dvec3 wanted = hold_position(editor, fields);
+  const glm::dvec3 wanted = hold_position(context.views, fields);
   if (!place) return words;
   return words + " In the first one it is " + mm_text(glm::distance(*place, wanted)) + " from there.";
 }
 
-void hold_limb(Editor& editor, const std::vector<FormField>& fields) {
-  const int low = playing_range(editor).low;
+void hold_limb(Context& context, const std::vector<FormField>& fields) {
+  const int low = playing_range(context.document()).low;
   Cleaning cleaning{.label = "Hold limb", .made = " held"};
   cleaning.hold = Plant{.limb = fields[kLimb].chosen,
                         .first = static_cast<int>(std::lround(fields[kFrom].value)) - low,
                         .last = static_cast<int>(std::lround(fields[kTo].value)) - low,
-                        .place = hold_position(editor, fields)};
+                        .place = hold_position(context.views, fields)};
   cleaning.stays_where_it_is = static_cast<HoldPlace>(fields[kPlace].chosen) == HoldPlace::WhereItIs;
   cleaning.ease = fields[kEase].value;
   cleaning.becomes = static_cast<Becomes>(fields[kResult].chosen);
-  start_cleaning(editor, cleaning);
+  start_cleaning(context, cleaning);
 }
 
-void ask_hold(Editor& editor) {
-  const Armature& rig = *editor.document().armature;
+void ask_hold(Context& context) {
+  const Armature& rig = *context.document().armature;
   const std::vector<PlantedLimb> limbs = planted_limbs(rig);
   std::vector<std::string> names;
   for (const PlantedLimb& limb : limbs) names.push_back(limb.name);
-  const auto [low, high] = playing_range(editor);
-  const int frame = std::clamp(shown_frame(editor), low, high);
-  const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 2)));
-  editor.open_dialog(make_form(
+  const auto [low, high] = playing_range(context.document());
+  const int frame = std::clamp(shown_frame(context), low, high);
+  const int until = std::min(high, frame + static_cast<int>(std::lround(shown_clip(context.document())->rate / 2)));
+  context.dialogs->open(make_form(
       {"Hold a hand or foot",
        "Keeps a hand or foot in place for some frames, by bending the elbow or knee.",
        "Hold",
@@ -362,36 +368,36 @@ void ask_hold(Editor& editor) {
        hold_limb}));
 }
 
-std::string needs_gap(const Editor& editor) {
-  if (const std::string why = needs_clip_and_rig(editor); !why.empty()) return why;
-  const auto [low, high] = playing_range(editor);
+std::string needs_gap(const Context& context) {
+  if (const std::string why = needs_clip_and_rig(context); !why.empty()) return why;
+  const auto [low, high] = playing_range(context.document());
   return high - low < 4 ? "Set a range of at least five frames first" : "";
 }
 
-void ask_gap(Editor& editor) {
-  const auto [low, high] = playing_range(editor);
-  const int frame = std::clamp(shown_frame(editor), low + 2, high - 2);
-  const int until = std::min(high - 2, frame + static_cast<int>(std::lround(shown_clip(editor)->rate / 4)));
-  editor.open_dialog(make_form(
+void ask_gap(Context& context) {
+  const auto [low, high] = playing_range(context.document());
+  const int frame = std::clamp(shown_frame(context), low + 2, high - 2);
+  const int until = std::min(high - 2, frame + static_cast<int>(std::lround(shown_clip(context.document())->rate / 4)));
+  context.dialogs->open(make_form(
       {"Close gap",
        "Replaces frames, such as those with an error of the motion capture, by a smooth transition.",
        "Replace",
        {number_of("From frame", "The first frame to replace.", frame, low + 2, high - 2, "%.0f"),
         number_of("To frame", "The last frame to replace.", until, low + 2, high - 2, "%.0f"),
         becomes_field(Becomes::SameClip)},
-       [](const Editor& e, const std::vector<FormField>& fields) {
-         require_frames(e);
+       [](const Context& c, const std::vector<FormField>& fields) {
+         require_frames(c.document());
          if (fields[1].value < fields[0].value) throw NotYet{"The last frame comes before the first one."};
          return "Replaces " + frames_text(static_cast<int>(fields[0].value), static_cast<int>(fields[1].value)) +
                 ". The clip's keys are baked into the motion.";
        },
-       [](Editor& e, const std::vector<FormField>& fields) {
-         const int first = playing_range(e).low;
+       [](Context& c, const std::vector<FormField>& fields) {
+         const int first = playing_range(c.document()).low;
          Cleaning cleaning{.label = "Close gap", .made = " closed"};
          cleaning.gap = Cleaning::Gap{static_cast<int>(std::lround(fields[0].value)) - first,
                                       static_cast<int>(std::lround(fields[1].value)) - first};
          cleaning.becomes = static_cast<Becomes>(fields[2].chosen);
-         start_cleaning(e, cleaning);
+         start_cleaning(c, cleaning);
        }}));
 }
 

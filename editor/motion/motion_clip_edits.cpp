@@ -14,9 +14,13 @@
 #include "core/project/strip_clips.h"
 #include "core/study/text.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_preview.h"
+#include "editor/motion/timeline.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -79,22 +83,22 @@ std::string match_of(std::shared_ptr<const Motion> motion, const std::shared_ptr
   return text;
 }
 
-void take_in(Editor& editor, const Incoming& incoming, const std::vector<FormField>& fields) {
+void take_in(Context& context, const Incoming& incoming, const std::vector<FormField>& fields) {
   std::shared_ptr<const Motion> motion = incoming.motion;
   const bool z_up = fields[1].chosen == 1;
   if (z_up) motion = std::make_shared<const Motion>(y_up_from_z_up(*motion));
-  Document next = editor.document();
+  Document next = context.document();
   Clip clip = clip_for(next, motion, incoming.name, static_cast<int>(std::round(fields[2].value)));
   clip.rate = fields[3].value;
   clip.retarget.scale = kUnits[fields[0].chosen];
   add_clip(next, std::move(clip));
-  commit(editor, "Import " + incoming.name + ".bvh", std::move(next));
-  if (z_up) editor.messages.info(incoming.name + ".bvh is turned upright", "The z axis points up in the file.");
+  commit(context, "Import " + incoming.name + ".bvh", std::move(next));
+  if (z_up) context.messages->info(incoming.name + ".bvh is turned upright", "The z axis points up in the file.");
 }
 
-void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
+void ask(Context& context, const std::shared_ptr<const Incoming>& incoming) {
   const double rate = clip_of(incoming->motion, "").rate;
-  const auto outcome = [incoming](const Editor&, const std::vector<FormField>& fields) {
+  const auto outcome = [incoming](const Context&, const std::vector<FormField>& fields) {
     std::string words = incoming->facts + " " + incoming->match;
     const bool as_guessed = fields[1].chosen == static_cast<int>(incoming->up.axis);
     if (const std::string reason = reason_of(incoming->up);
@@ -109,10 +113,10 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
     return words;
   };
   auto picture = std::make_shared<MotionPicture>(incoming->motion);
-  const auto draw_picture = [picture](Editor& e, const Rect& rect, const std::vector<FormField>& fields) {
-    picture->draw(e, rect, fields[1].chosen == 1, fields[3].value);
+  const auto draw_picture = [picture](Context& c, const Rect& rect, const std::vector<FormField>& fields) {
+    picture->draw(c, rect, fields[1].chosen == 1, fields[3].value);
   };
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Import " + incoming->name + ".bvh",
        "Adds this motion as a new clip and retargets it to the rig.",
        "Import",
@@ -125,7 +129,7 @@ void ask(Editor& editor, const std::shared_ptr<const Incoming>& incoming) {
                   rate, 1, 1000, "%.6g", "fps"),
         fact_of("Rotations", orders_of(*incoming->motion))},
        outcome,
-       [incoming](Editor& e, const std::vector<FormField>& fields) { take_in(e, *incoming, fields); },
+       [incoming](Context& c, const std::vector<FormField>& fields) { take_in(c, *incoming, fields); },
        draw_picture}));
 }
 
@@ -173,10 +177,11 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
   return clip;
 }
 
-void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame, double ratio) {
-  settle_frame(editor);
-  Document next = editor.document();
+void take_in_clip(Context& context, const std::shared_ptr<const Clip>& source,
+                  const std::shared_ptr<const Armature>& rig, const std::string& label, Clip clip, bool is_new,
+                  std::optional<double> frame, double ratio) {
+  settle_frame(context);
+  Document next = context.document();
   const auto place = std::find(next.clips.begin(), next.clips.end(), source);
   if (place == next.clips.end() || next.armature != rig)
     throw Error("the clip or the rig was changed meanwhile", source->name, "do this again: " + label);
@@ -190,27 +195,27 @@ void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, con
     next.clips[static_cast<std::size_t>(next.clip)] = changed;
     if (ratio != 1) follow_frames(next, source, changed, ratio);
   }
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  editor.timeline->chosen.clear();
-  commit(editor, label, std::move(next));
+  next.pose = pose_at_frame(next, &context.timeline->prepared);
+  context.timeline->chosen.clear();
+  commit(context, label, std::move(next));
 }
 
-void choose_clip(Editor& editor, int clip) {
-  if (clip == editor.document().clip) return;
-  stop_playing(editor);
-  Document next = editor.document();
+void choose_clip(Context& context, int clip) {
+  if (clip == context.document().clip) return;
+  stop_playing(context);
+  Document next = context.document();
   next.clip = clip;
   next.frame = std::clamp(next.frame, next.shown_clip()->range_start,
                           std::max(next.shown_clip()->range_start, next.shown_clip()->range_end));
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  editor.timeline->chosen.clear();
+  next.pose = pose_at_frame(next, &context.timeline->prepared);
+  context.timeline->chosen.clear();
   const std::string label = "Show clip " + next.shown_clip()->name;
-  commit(editor, label, std::move(next));
+  commit(context, label, std::move(next));
 }
 
-void import_motion(Editor& editor, const Path& path) {
-  start_task(editor, "Read " + path.filename().string(),
-             [path, armature = editor.document().armature](Progress&) -> Finish {
+void import_motion(Context& context, const Path& path) {
+  start_task(context, "Read " + path.filename().string(),
+             [path, armature = context.document().armature](Progress&) -> Finish {
                auto incoming = std::make_shared<Incoming>();
                incoming->motion = std::make_shared<const Motion>(read_bvh(path));
                incoming->name = path.stem().string();
@@ -219,7 +224,7 @@ void import_motion(Editor& editor, const Path& path) {
                incoming->up = up_axis_of(*incoming->motion);
                incoming->facts = facts_of(*incoming->motion);
                incoming->match = match_of(incoming->motion, armature);
-               return [incoming](Editor& e) { ask(e, incoming); };
+               return [incoming](Context& c) { ask(c, incoming); };
              });
 }
 

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "core/motion/retarget_confidence.h"
-#include "editor/motion/timeline.h"
+#include "core/project/document.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // The number of bones of the rig that a clip moves, and how certain their matches are.
 struct Matching {
@@ -31,13 +33,14 @@ Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, co
 // goes to `frame`, or without `frame` stays at the current frame; both are clamped to the playing range. Throws Error
 // if the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
 //   ratio  how many frames each frame of the source has become; strips of the source go on playing the same
-void take_in_clip(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
-                  const std::string& label, Clip clip, bool is_new, std::optional<double> frame = {}, double ratio = 1);
+void take_in_clip(Context& context, const std::shared_ptr<const Clip>& source,
+                  const std::shared_ptr<const Armature>& rig, const std::string& label, Clip clip, bool is_new,
+                  std::optional<double> frame = {}, double ratio = 1);
 
-void choose_clip(Editor& editor, int clip);
+void choose_clip(Context& context, int clip);
 // Reads a BVH file and opens a dialog that asks for the scale, up axis, first frame and frame rate of the new clip.
-void import_motion(Editor& editor, const Path& path);
+void import_motion(Context& context, const Path& path);
 // Opens the dialog of the retarget map, which lists each bone of the rig and the joint of the motion that moves it.
-void open_map(Editor& editor);
+void open_map(Context& context);
 
 }  // namespace limber::editor

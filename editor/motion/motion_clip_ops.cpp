@@ -9,13 +9,20 @@
 #include "core/motion/clip_speed.h"
 #include "core/project/strip_clips.h"
 #include "core/study/text.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
+#include "editor/context/screen.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/file_browser/file_browser.h"
 #include "editor/motion/motion_clip_edits.h"
+#include "editor/motion/timeline.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -24,31 +31,34 @@ namespace {
 const FileFilter kMaps{"Retarget maps", {".json"}};
 
 // Opens a dialog that asks for a new name of the shown clip. A number is added when another clip has that name.
-void ask_clip_name(Editor& editor) {
-  editor.open_dialog(make_form({"Rename clip",
-                                "Changes the name of the shown clip.",
-                                "Rename",
-                                {text_of("Name", "The clip's name.", shown_clip(editor)->name)},
-                                [](const Editor&, const std::vector<FormField>& fields) -> std::string {
-                                  if (fields[0].text.empty()) throw Error("a clip needs a name", "rename", "type one");
-                                  return "";
-                                },
-                                [](Editor& e, const std::vector<FormField>& fields) {
-                                  if (!shown_clip(e) || fields[0].text == shown_clip(e)->name) return;
-                                  const std::string name = unique_clip_name(e.document().clips, fields[0].text);
-                                  edit_clip(e, "Rename clip", PoseThen::Stays, [&](Clip& clip) { clip.name = name; });
-                                }}));
+void ask_clip_name(Context& context) {
+  context.dialogs->open(make_form({"Rename clip",
+                                   "Changes the name of the shown clip.",
+                                   "Rename",
+                                   {text_of("Name", "The clip's name.", shown_clip(context.document())->name)},
+                                   [](const Context&, const std::vector<FormField>& fields) -> std::string {
+                                     if (fields[0].text.empty())
+                                       throw Error("a clip needs a name", "rename", "type one");
+                                     return "";
+                                   },
+                                   [](Context& c, const std::vector<FormField>& fields) {
+                                     if (!shown_clip(c.document()) || fields[0].text == shown_clip(c.document())->name)
+                                       return;
+                                     const std::string name = unique_clip_name(c.document().clips, fields[0].text);
+                                     edit_clip(c, "Rename clip", PoseThen::Stays,
+                                               [&](Clip& clip) { clip.name = name; });
+                                   }}));
 }
 
-std::string needs_clip(const Editor& editor) {
-  return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
+std::string needs_clip(const Context& context) {
+  return shown_clip(context.document()) ? "" : "Import a motion first, or insert a key";
 }
-std::string needs_motion(const Editor& editor) {
-  return shown_clip(editor) && shown_clip(editor)->motion ? "" : "Import a motion first";
+std::string needs_motion(const Context& context) {
+  return shown_clip(context.document()) && shown_clip(context.document())->motion ? "" : "Import a motion first";
 }
-std::string needs_both(const Editor& editor) {
-  if (const std::string why = needs_motion(editor); !why.empty()) return why;
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_both(const Context& context) {
+  if (const std::string why = needs_motion(context); !why.empty()) return why;
+  return context.document().armature ? "" : "Import a rig first";
 }
 
 Operator setting(const char* id, const char* label, const char* description,
@@ -59,15 +69,15 @@ Operator setting(const char* id, const char* label, const char* description,
           "",
           "Motion",
           description,
-          [label, set](Editor& e) {
-            RetargetSettings next = shown_clip(e)->retarget;
+          [label, set](Context& c) {
+            RetargetSettings next = shown_clip(c.document())->retarget;
             set(next);
-            if (next != shown_clip(e)->retarget)
-              edit_clip(e, std::string("Retarget: ") + label, PoseThen::FromClip,
+            if (next != shown_clip(c.document())->retarget)
+              edit_clip(c, std::string("Retarget: ") + label, PoseThen::FromClip,
                         [&](Clip& clip) { clip.retarget = next; });
           },
           needs_motion,
-          [is](const Editor& e) { return shown_clip(e) && is(shown_clip(e)->retarget); }};
+          [is](const Context& c) { return shown_clip(c.document()) && is(shown_clip(c.document())->retarget); }};
 }
 Operator travel(const char* id, const char* label, const char* description, Travel which) {
   return setting(
@@ -91,80 +101,84 @@ Operator rest(const char* id, const char* label, const char* description, RestSt
           "",
           "Motion",
           description,
-          [=](Editor& e) {
-            if (shown_clip(e)->map.stances.*whose == which) return;
-            edit_clip(e, std::string("Rest pose: ") + label, PoseThen::FromClip, [&](Clip& clip) {
+          [=](Context& c) {
+            if (shown_clip(c.document())->map.stances.*whose == which) return;
+            edit_clip(c, std::string("Rest pose: ") + label, PoseThen::FromClip, [&](Clip& clip) {
               clip.map.stances.*whose = which;
               for (auto& [bone, source] : clip.map.sources) source.rest_offset.reset();
             });
           },
           needs_motion,
-          [=](const Editor& e) { return shown_clip(e) && shown_clip(e)->map.stances.*whose == which; }};
+          [=](const Context& c) {
+            return shown_clip(c.document()) && shown_clip(c.document())->map.stances.*whose == which;
+          }};
 }
 
 // Opens the sidebar of the Pose workspace and shows its Motion section.
-void show_retargeting(Editor& editor) {
-  editor.workspace = Workspace::Pose;
-  editor.arrangement().sidebar = true;
-  editor.open_sections["Motion"] = true;
-  editor.wanted_section = "Motion";
+void show_retargeting(Context& context) {
+  context.screen->workspace = Workspace::Pose;
+  context.screen->arrangement().sidebar = true;
+  context.ui->open_sections["Motion"] = true;
+  context.ui->wanted_section = "Motion";
 }
 
-void map_by_names(Editor& editor) {
-  edit_clip(editor, "Match by names", PoseThen::FromClip, [](Clip& clip) { clip.map.sources = {}; });
+void map_by_names(Context& context) {
+  edit_clip(context, "Match by names", PoseThen::FromClip, [](Clip& clip) { clip.map.sources = {}; });
 }
 
-void load_map(Editor& editor) {
-  const bool from_dialog = editor.dialog != nullptr;
-  browse(editor, {.purpose = "map",
-                  .title = "Load a retarget map",
-                  .action = "Load",
-                  .filters = {kMaps},
-                  .chosen = [from_dialog](Editor& e, const Path& path) {
-                    if (!shown_clip(e) || !shown_clip(e)->motion || !e.document().armature) return;
-                    const RetargetMap map = read_retarget_map(path, *shown_clip(e)->motion, *e.document().armature);
-                    edit_clip(e, "Load map " + path.filename().string(), PoseThen::FromClip,
-                              [&](Clip& clip) { clip.map = map; });
-                    if (from_dialog) open_map(e);
-                  }});
+void load_map(Context& context) {
+  const bool from_dialog = context.dialogs->shown != nullptr;
+  browse(context, {.purpose = "map",
+                   .title = "Load a retarget map",
+                   .action = "Load",
+                   .filters = {kMaps},
+                   .chosen = [from_dialog](Context& c, const Path& path) {
+                     if (!shown_clip(c.document()) || !shown_clip(c.document())->motion || !c.document().armature)
+                       return;
+                     const RetargetMap map =
+                         read_retarget_map(path, *shown_clip(c.document())->motion, *c.document().armature);
+                     edit_clip(c, "Load map " + path.filename().string(), PoseThen::FromClip,
+                               [&](Clip& clip) { clip.map = map; });
+                     if (from_dialog) open_map(c);
+                   }});
 }
 
-void save_map(Editor& editor) {
-  const bool from_dialog = editor.dialog != nullptr;
-  browse(editor, {.purpose = "map",
-                  .title = "Save the retarget map",
-                  .action = "Save",
-                  .kind = FileRequest::Kind::Save,
-                  .filters = {kMaps},
-                  .name = shown_clip(editor)->name + "-map",
-                  .chosen = [from_dialog](Editor& e, const Path& path) {
-                    const ClipOnRig* clip = clip_on_rig(e);
-                    if (!clip || !clip->retarget()) return;
-                    write_retarget_map(clip->retarget()->map(), path);
-                    e.messages.ok("Saved " + path.filename().string(), path.parent_path().string());
-                    if (from_dialog) open_map(e);
-                  }});
+void save_map(Context& context) {
+  const bool from_dialog = context.dialogs->shown != nullptr;
+  browse(context, {.purpose = "map",
+                   .title = "Save the retarget map",
+                   .action = "Save",
+                   .kind = FileRequest::Kind::Save,
+                   .filters = {kMaps},
+                   .name = shown_clip(context.document())->name + "-map",
+                   .chosen = [from_dialog](Context& c, const Path& path) {
+                     const ClipOnRig* clip = clip_on_rig(c);
+                     if (!clip || !clip->retarget()) return;
+                     write_retarget_map(clip->retarget()->map(), path);
+                     c.messages->ok("Saved " + path.filename().string(), path.parent_path().string());
+                     if (from_dialog) open_map(c);
+                   }});
 }
 
-void delete_shown(Editor& editor) {
-  stop_playing(editor);
-  Document next = editor.document();
+void delete_shown(Context& context) {
+  stop_playing(context);
+  Document next = context.document();
   const std::string name = next.shown_clip()->name;
   next.clips.erase(next.clips.begin() + next.clip);
-  relink_strips(editor.document(), next);  // the pose is then that of the strips that are left
+  relink_strips(context.document(), next);  // the pose is then that of the strips that are left
   next.clip = std::max(0, std::min(next.clip, static_cast<int>(next.clips.size()) - 1));
   if (const Clip* clip = next.shown_clip())
     next.frame = std::clamp(next.frame, all_frames(*clip).low, all_frames(*clip).high);
   next.pose = pose_at_frame(next);
-  commit(editor, "Delete clip " + name, std::move(next));
+  commit(context, "Delete clip " + name, std::move(next));
 }
 
 // Deletes the shown clip; asks before if strips play it, because they go with it.
-void delete_clip(Editor& editor) {
-  const auto clip = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
-  const std::vector<StripUse> uses = strip_uses(editor.document(), clip);
-  if (uses.empty()) return delete_shown(editor);
-  stop_playing(editor);
+void delete_clip(Context& context) {
+  const auto clip = context.document().clips[static_cast<std::size_t>(context.document().clip)];
+  const std::vector<StripUse> uses = strip_uses(context.document(), clip);
+  if (uses.empty()) return delete_shown(context);
+  stop_playing(context);
   Question question{.title = "Delete " + clip->name + " and its strips?", .icon = icon::kTrash};
   for (const StripUse& use : uses)
     question.lines.push_back(std::to_string(use.strips) + (use.strips == 1 ? " strip of " : " strips of ") + use.clip +
@@ -174,16 +188,16 @@ void delete_clip(Editor& editor) {
     question.lines.resize(kListed - 1);
     question.lines.push_back("Strips of " + std::to_string(others) + " other clips go with it.");
   }
-  question.answers = {{"Cancel", {}}, {"Delete", [clip](Editor& e) {
-                                         if (shown_clip(e) == clip.get()) delete_shown(e);
+  question.answers = {{"Cancel", {}}, {"Delete", [clip](Context& c) {
+                                         if (shown_clip(c.document()) == clip.get()) delete_shown(c);
                                        }}};
-  ask(editor, std::move(question));
+  ask(context, std::move(question));
 }
 
 // Trims the shown clip to its playing range. Frames of the motion outside the range are kept but not used; keys and
 // markers outside the range are deleted.
-void trim(Editor& editor) {
-  edit_clip(editor, "Trim clip", PoseThen::FromClip, [](Clip& clip) {
+void trim(Context& context) {
+  edit_clip(context, "Trim clip", PoseThen::FromClip, [](Clip& clip) {
     const int low = clip.range_start, high = std::max(low, clip.range_end);
     if (clip.motion) {
       if (high < clip.start || low > clip.end())
@@ -199,8 +213,8 @@ void trim(Editor& editor) {
   });
 }
 
-void untrim(Editor& editor) {
-  edit_clip(editor, "Undo trim", PoseThen::FromClip, [](Clip& clip) {
+void untrim(Context& context) {
+  edit_clip(context, "Undo trim", PoseThen::FromClip, [](Clip& clip) {
     clip.start -= clip.first;
     clip.first = 0;
     clip.last = std::max(0, clip.motion->frame_count - 1);
@@ -210,32 +224,32 @@ void untrim(Editor& editor) {
 }
 
 // Gives the shown clip another frame rate. The play head goes to the frame of the same moment.
-void resample_shown(Editor& editor, double rate) {
-  if (!shown_clip(editor))
+void resample_shown(Context& context, double rate) {
+  if (!shown_clip(context.document()))
     throw Error("the clip was deleted meanwhile", "resample", "select a clip and open the dialog again");
-  settle_frame(editor);
-  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
+  settle_frame(context);
+  const auto source = context.document().clips[static_cast<std::size_t>(context.document().clip)];
   const double ratio = rate / source->rate;
-  const double moment = source->start + std::round((double(editor.document().frame) - source->start) * ratio);
-  take_in_clip(editor, source, editor.document().armature, "Resample clip", at_rate(*source, rate), false, moment,
+  const double moment = source->start + std::round((double(context.document().frame) - source->start) * ratio);
+  take_in_clip(context, source, context.document().armature, "Resample clip", at_rate(*source, rate), false, moment,
                ratio);
 }
 
-void ask_rate(Editor& editor) {
-  editor.open_dialog(make_form(
+void ask_rate(Context& context) {
+  context.dialogs->open(make_form(
       {"Resample the clip",
        "Changes the number of frames per second. Motion, keys and markers keep their times.",
        "Resample",
-       {number_of("Frame rate", "Frames per second.", shown_clip(editor)->rate, 1, 1000, "%.6g", "fps")},
-       [](const Editor& e, const std::vector<FormField>& fields) {
-         const Clip* clip = shown_clip(e);
+       {number_of("Frame rate", "Frames per second.", shown_clip(context.document())->rate, 1, 1000, "%.6g", "fps")},
+       [](const Context& c, const std::vector<FormField>& fields) {
+         const Clip* clip = shown_clip(c.document());
          if (!clip)
            throw Error("the clip was deleted meanwhile", "resample", "select a clip and open the dialog again");
          const double ratio = fields[0].value / clip->rate;
          return grouped(clip->range_end - clip->range_start + 1) + " frames become " +
                 grouped(static_cast<int>(std::round((clip->range_end - clip->range_start) * ratio)) + 1) + ".";
        },
-       [](Editor& e, const std::vector<FormField>& fields) { resample_shown(e, fields[0].value); }}));
+       [](Context& c, const std::vector<FormField>& fields) { resample_shown(c, fields[0].value); }}));
 }
 
 }  // namespace

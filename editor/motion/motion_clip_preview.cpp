@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/context/context.h"
+#include "editor/context/views.h"
 #include "editor/ui/draw.h"
 #include "editor/ui/widgets.h"
 
@@ -59,8 +61,8 @@ void MotionPicture::measure(bool z_up) {
     }
 }
 
-void MotionPicture::move_on(Editor& editor, const Rect& rect, double rate) {
-  const Pressed pressed = press_area(editor, "preview", rect);
+void MotionPicture::move_on(Context& context, const Rect& rect, double rate) {
+  const Pressed pressed = press_area(context.ui, "preview", rect);
   const int last = motion_->frame_count - 1;
   if (pressed.held) {
     const double share = (ImGui::GetIO().MousePos.x - rect.low.x) / std::max(1.0f, rect.width());
@@ -69,20 +71,20 @@ void MotionPicture::move_on(Editor& editor, const Rect& rect, double rate) {
     stays_ = true;
   } else if (pressed.hovered && last > 0) {
     if (stays_) return;
-    if (began_ < 0) began_ = editor.now, began_at_ = frame_;
-    frame_ = static_cast<int>(std::fmod(began_at_ + (editor.now - began_) * rate, last + 1.0));
-    editor.wake_at(editor.now + std::max(kFinest, 1 / rate));
+    if (began_ < 0) began_ = context.ui->now, began_at_ = frame_;
+    frame_ = static_cast<int>(std::fmod(began_at_ + (context.ui->now - began_) * rate, last + 1.0));
+    context.ui->wake_at(context.ui->now + std::max(kFinest, 1 / rate));
   } else {
     began_ = -1;
     stays_ = false;
   }
 }
 
-void MotionPicture::draw(Editor& editor, const Rect& rect, bool z_up, double rate) {
-  const Look& look = editor.look;
+void MotionPicture::draw(Context& context, const Rect& rect, bool z_up, double rate) {
+  const Look& look = context.ui->look;
   const float text = look.px(20);
   const Rect picture{rect.low, {rect.high.x, rect.high.y - 2 * text}};
-  move_on(editor, picture, std::isfinite(rate) && rate > 0 ? std::min(rate, 1000.0) : 30);
+  move_on(context, picture, std::isfinite(rate) && rate > 0 ? std::min(rate, 1000.0) : 30);
   measure(z_up);
   fill(picture, look.theme.field, look.px(6));
 
@@ -109,9 +111,9 @@ void MotionPicture::draw(Editor& editor, const Rect& rect, bool z_up, double rat
   fill({bar.low, {bar.low.x + static_cast<float>(share) * bar.width(), bar.high.y}}, look.theme.accent, 0);
   char words[64];
   std::snprintf(words, sizeof words, "Frame %d / %d", frame_, motion_->frame_count - 1);
-  put_text(editor, look.fonts.mono, look.theme.text2,
+  put_text(context.ui, look.fonts.mono, look.theme.text2,
            Rect{{rect.low.x, picture.high.y}, {rect.high.x, picture.high.y + text}}, words);
-  put_text(editor, look.fonts.small, look.theme.text3, Rect{{rect.low.x, picture.high.y + text}, rect.high},
+  put_text(context.ui, look.fonts.small, look.theme.text3, Rect{{rect.low.x, picture.high.y + text}, rect.high},
            "Hover to play the motion, drag to scrub.");
 }
 

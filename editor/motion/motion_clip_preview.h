@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "core/motion/bvh.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
+
+struct Context;
+struct Rect;
 
 class MotionPicture {
  public:
@@ -19,7 +21,7 @@ class MotionPicture {
   // Draws the preview in `rect`.
   //   z_up  whether the z axis of the motion's file points up; false: its y axis does
   //   rate  frames per second at which the motion plays
-  void draw(Editor& editor, const Rect& rect, bool z_up, double rate);
+  void draw(Context& context, const Rect& rect, bool z_up, double rate);
   int frame() const { return frame_; }
 
  private:
@@ -27,7 +29,7 @@ class MotionPicture {
   // horizontally so that the first joint has x = y = 0.
   std::vector<glm::dvec3> places(int frame, bool z_up) const;
   void measure(bool z_up);
-  void move_on(Editor& editor, const Rect& rect, double rate);
+  void move_on(Context& context, const Rect& rect, double rate);
 
   std::shared_ptr<const Motion> motion_;
   std::vector<std::pair<int, int>> sticks_;  // the figure's lines, each as two indices into places()

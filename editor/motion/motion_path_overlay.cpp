@@ -3,7 +3,10 @@
 
 #include <chrono>
 
+#include "editor/context/context.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/workspace.h"
 #include "editor/motion/timeline.h"
 #include "editor/ui/draw.h"
 
@@ -41,10 +44,10 @@ void draw_diamond(ImDrawList& canvas, const glm::vec2& at, float half, Colour co
 
 // Draws the path of one bone's tip.
 //   number  index of the bone in the paths' list
-void draw_path(Editor& editor, const ViewProjection& view, const MotionPaths& paths, std::size_t number) {
+void draw_path(Context& context, const ViewProjection& view, const MotionPaths& paths, std::size_t number) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
-  const float scale = editor.look.scale;
-  const int now = shown_frame(editor);
+  const float scale = context.ui->look.scale;
+  const int now = shown_frame(context);
   const std::string& name = paths.armature->bones[paths.bones[number]].name;
   std::optional<glm::dvec2> before, dot;
   for (std::size_t k = 0; k < paths.tips.size(); ++k) {
@@ -63,34 +66,34 @@ void draw_path(Editor& editor, const ViewProjection& view, const MotionPaths& pa
     const auto pixel = view.pixel_of(paths.tips[k][number]);
     if (!pixel) continue;
     if (has_key(*paths.clip, name, frame)) draw_diamond(canvas, glm::vec2(*pixel), 5 * scale, kKey);
-    if (frame == now) canvas.AddCircle(im(glm::vec2(*pixel)), 5 * scale, editor.look.theme.text, 0, 1.5f * scale);
+    if (frame == now) canvas.AddCircle(im(glm::vec2(*pixel)), 5 * scale, context.ui->look.theme.text, 0, 1.5f * scale);
   }
 }
 
 }  // namespace
 
-const MotionPaths* motion_paths(Editor& editor) {
+const MotionPaths* motion_paths(Context& context) {
   const ClipOnRig* clip =
-      editor.timeline->paths.on && editor.workspace == Workspace::Pose ? clip_on_rig(editor) : nullptr;
-  std::vector<int> bones(editor.selection.bones.begin(), editor.selection.bones.end());
-  if (bones.size() > kMostBones) bones.assign(editor.selection.bone ? 1 : 0, editor.selection.bone.value_or(0));
+      context.timeline->paths.on && context.workspace() == Workspace::Pose ? clip_on_rig(context) : nullptr;
+  std::vector<int> bones(context.selection->bones.begin(), context.selection->bones.end());
+  if (bones.size() > kMostBones) bones.assign(context.selection->bone ? 1 : 0, context.selection->bone.value_or(0));
   if (!clip || bones.empty()) return nullptr;
-  auto& kept = editor.timeline->paths.kept;
-  const auto [low, high] = playing_range(editor);
+  auto& kept = context.timeline->paths.kept;
+  const auto [low, high] = playing_range(context.document());
   const int last = std::min(high, low + kMostFrames - 1);
   if (!kept || kept->clip != clip->clip() || kept->armature != clip->armature() || kept->bones != bones ||
       kept->first != low || kept->last != last)
     kept = std::make_shared<MotionPaths>(MotionPaths{clip->clip(), clip->armature(), bones, low, last, {}});
   add_points(*clip, *kept);
-  if (kept->first + std::ssize(kept->tips) <= kept->last) editor.touch();
+  if (kept->first + std::ssize(kept->tips) <= kept->last) context.ui->touch();
   return kept.get();
 }
 
-void draw_motion_paths(Editor& editor) {
-  const MotionPaths* paths = motion_paths(editor);
-  const std::optional<ViewProjection> view = paths ? body_seen(editor) : std::nullopt;
+void draw_motion_paths(Context& context) {
+  const MotionPaths* paths = motion_paths(context);
+  const std::optional<ViewProjection> view = paths ? body_seen(context) : std::nullopt;
   if (!view) return;
-  for (std::size_t number = 0; number < paths->bones.size(); ++number) draw_path(editor, *view, *paths, number);
+  for (std::size_t number = 0; number < paths->bones.size(); ++number) draw_path(context, *view, *paths, number);
 }
 
 }  // namespace limber::editor

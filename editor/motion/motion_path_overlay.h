@@ -8,9 +8,11 @@
 #include <memory>
 #include <vector>
 
-#include "editor/context/editor.h"
+#include "core/motion/clip.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct MotionPaths {
   // The inputs from which the points were computed. When one of them changes, the points are computed again.
@@ -25,7 +27,7 @@ struct MotionPaths {
 
 // Computes more points of the selected bones' paths, for a few milliseconds at most. Returns null if the paths are
 // switched off, no bone is selected, or no clip moves the rig.
-const MotionPaths* motion_paths(Editor& editor);
-void draw_motion_paths(Editor& editor);
+const MotionPaths* motion_paths(Context& context);
+void draw_motion_paths(Context& context);
 
 }  // namespace limber::editor

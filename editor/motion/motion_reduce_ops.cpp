@@ -8,9 +8,13 @@
 #include "core/base/error.h"
 #include "core/motion/reduce_planted.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/motion/timeline.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -18,9 +22,9 @@ namespace {
 
 constexpr std::int64_t kMostFrames = 100'000;  // a longer playing range is not reduced to keys
 
-std::string needs_clip_and_rig(const Editor& editor) {
-  if (!shown_clip(editor)) return "Import a motion first, or insert a key";
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_clip_and_rig(const Context& context) {
+  if (!shown_clip(context.document())) return "Import a motion first, or insert a key";
+  return context.document().armature ? "" : "Import a rig first";
 }
 
 struct Wanted {
@@ -67,17 +71,17 @@ Clip keyed_clip(const Clip& source, const ReducedKeys& reduced, int first, int l
   return clip;
 }
 
-void take_in(Editor& editor, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
+void take_in(Context& context, const std::shared_ptr<const Clip>& source, const std::shared_ptr<const Armature>& rig,
              const FrameRange& range, bool is_new, const Reduced& result) {
   const ReducedKeys& reduced = result.keys.reduced;
-  take_in_clip(editor, source, rig, "Reduce to keys",
+  take_in_clip(context, source, rig, "Reduce to keys",
                keyed_clip(*source, reduced, range.low, range.high, is_new ? source->name + " keys" : source->name),
                is_new);
   const std::string line = std::to_string(range.high - range.low + 1) + " frames became " +
                            std::to_string(reduced.count) + " keys of " + std::to_string(reduced.keys.bones.size()) +
                            (reduced.keys.bones.size() == 1 ? " bone" : " bones");
-  if (result.is_short()) editor.messages.warn(line, summary_of(result));
-  else editor.messages.ok(line, summary_of(result));
+  if (result.is_short()) context.messages->warn(line, summary_of(result));
+  else context.messages->ok(line, summary_of(result));
 }
 
 Reduced reduce(const Armature& rig, const std::vector<Pose>& poses, double rate, int start, const Wanted& wanted,
@@ -89,11 +93,11 @@ Reduced reduce(const Armature& rig, const std::vector<Pose>& poses, double rate,
           plants.size(), wanted.plant_mm};
 }
 
-void start_reducing(Editor& editor, const Wanted& wanted) {
-  stop_playing(editor);
-  const FrameRange range = playing_range(editor);
-  const auto source = editor.document().clips[static_cast<std::size_t>(editor.document().clip)];
-  start_task(editor, "Reduce to keys", [=, rig = editor.document().armature](Progress& progress) -> Finish {
+void start_reducing(Context& context, const Wanted& wanted) {
+  stop_playing(context);
+  const FrameRange range = playing_range(context.document());
+  const auto source = context.document().clips[static_cast<std::size_t>(context.document().clip)];
+  start_task(context, "Reduce to keys", [=, rig = context.document().armature](Progress& progress) -> Finish {
     const ClipOnRig clip(source, rig);
     if (!clip.problem().empty()) throw Error("the clip cannot be reduced", source->name, clip.problem());
     std::vector<Pose> poses;
@@ -103,14 +107,14 @@ void start_reducing(Editor& editor, const Wanted& wanted) {
     }
     const auto reduced =
         std::make_shared<const Reduced>(reduce(*rig, poses, source->rate, range.low, wanted, progress));
-    return [=](Editor& e) { take_in(e, source, rig, range, wanted.is_new, *reduced); };
+    return [=](Context& c) { take_in(c, source, rig, range, wanted.is_new, *reduced); };
   });
 }
 
-std::string outcome_of(const Editor& e) {
-  if (!shown_clip(e) || !e.document().armature)
+std::string outcome_of(const Context& c) {
+  if (!shown_clip(c.document()) || !c.document().armature)
     throw Error("the clip was deleted meanwhile", "reduce", "select a clip and open the dialog again");
-  const auto [first, last] = playing_range(e);
+  const auto [first, last] = playing_range(c.document());
   if (std::int64_t{last} - first >= kMostFrames)
     throw Error("the playing range has too many frames",
                 "frames " + std::to_string(first) + " to " + std::to_string(last), "set a shorter range");
@@ -118,9 +122,9 @@ std::string outcome_of(const Editor& e) {
          ", with the clip's keys. The result has keys and no recorded motion.";
 }
 
-void ask_reducing(Editor& editor) {
-  const bool has_limbs = !planted_limbs(*editor.document().armature).empty();
-  editor.open_dialog(make_form(
+void ask_reducing(Context& context) {
+  const bool has_limbs = !planted_limbs(*context.document().armature).empty();
+  context.dialogs->open(make_form(
       {"Reduce to keys",
        "Replaces the playing range by a few keys with Bezier curves, for editing in the graph editor.",
        "Reduce",
@@ -133,9 +137,9 @@ void ask_reducing(Editor& editor) {
                   "distance needs more keys. 0 = no limit: feet may slide.",
                   has_limbs ? 1 : 0, 0, has_limbs ? 1000 : 0, "%.2f", "mm"),
         choice_of("Result", "Store the keys in a new clip, or replace the shown clip.", {"New clip", "Same clip"})},
-       [](const Editor& e, const std::vector<FormField>&) { return outcome_of(e); },
-       [](Editor& e, const std::vector<FormField>& fields) {
-         start_reducing(e,
+       [](const Context& c, const std::vector<FormField>&) { return outcome_of(c); },
+       [](Context& c, const std::vector<FormField>& fields) {
+         start_reducing(c,
                         {{.degrees = fields[0].value, .mm = fields[1].value}, fields[2].value, fields[3].chosen == 0});
        }}));
 }

@@ -6,7 +6,10 @@
 #include <limits>
 
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/motion/timeline.h"
 #include "editor/shown/preview_blend.h"
 #include "editor/ui/draw.h"
@@ -22,7 +25,7 @@ constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A;
 // bone's length.
 constexpr double kWidest = 0.12, kHalfWidth = 0.0425;
 
-void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& armature, const Pose& pose, Colour colour) {
+void draw_ghost(Ui& ui, const ViewProjection& view, const Armature& armature, const Pose& pose, Colour colour) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   const auto posed = posed_from_rest(armature, pose);
   for (std::size_t b = 0; b < armature.bones.size(); ++b) {
@@ -33,7 +36,7 @@ void draw_ghost(Editor& editor, const ViewProjection& view, const Armature& arma
                      middle = *head + kWidest * along;
     const ImVec2 outline[] = {im(glm::vec2(*head)), im(glm::vec2(middle + across)), im(glm::vec2(*tail)),
                               im(glm::vec2(middle - across))};
-    canvas.AddPolyline(outline, 4, colour, ImDrawFlags_Closed, 1.4f * editor.look.scale);
+    canvas.AddPolyline(outline, 4, colour, ImDrawFlags_Closed, 1.4f * ui.look.scale);
   }
 }
 
@@ -46,19 +49,19 @@ constexpr float kCell = 2;  // edge of the grid cells from which silhouette() fi
 constexpr std::chrono::milliseconds kTime{8};
 constexpr std::size_t kMostKept = 1000;  // all cached outlines are discarded when there are more than this
 
-void take_surface(Editor& editor, OnionOutlines& outlines) {
-  const Document& document = editor.document();
+void take_surface(Context& context, OnionOutlines& outlines) {
+  const Document& document = context.document();
   if (outlines.volume == document.volume && outlines.weights == document.weights) return;
   outlines = {.volume = document.volume, .weights = document.weights};
   if (!document.volume || !document.weights) return;
-  start_task(editor, "", [volume = document.volume, weights = document.weights](Progress&) -> Finish {
+  start_task(context, "", [volume = document.volume, weights = document.weights](Progress&) -> Finish {
     const LabelSet all(65536, 1);
     auto surface = std::make_shared<const SkinnedSurface>(
         skinned_surface(*volume, TissueVoxels(*volume), *weights, all, kMostVertices));
-    return [volume, weights, surface](Editor& e) {
-      OnionOutlines& now = *e.timeline->onion.outlines;
+    return [volume, weights, surface](Context& c) {
+      OnionOutlines& now = *c.timeline->onion.outlines;
       if (now.volume == volume && now.weights == weights) now.surface = surface;
-      e.touch();
+      c.ui->touch();
     };
   });
 }
@@ -105,28 +108,28 @@ void draw_lines(const std::vector<std::vector<glm::vec2>>& lines, Colour colour,
 
 }  // namespace
 
-void draw_onion_skin(Editor& editor) {
-  auto& onion = editor.timeline->onion;
-  const std::optional<ViewProjection> view = body_seen(editor);
-  const ClipOnRig* clip = onion.on && editor.workspace == Workspace::Pose && view ? clip_on_rig(editor) : nullptr;
+void draw_onion_skin(Context& context) {
+  auto& onion = context.timeline->onion;
+  const std::optional<ViewProjection> view = body_seen(context);
+  const ClipOnRig* clip = onion.on && context.workspace() == Workspace::Pose && view ? clip_on_rig(context) : nullptr;
   if (!clip) return;
   if (!onion.outlines) onion.outlines = std::make_shared<OnionOutlines>();
   OnionOutlines& outlines = *onion.outlines;
-  take_surface(editor, outlines);
+  take_surface(context, outlines);
   const OnionOutlines::Seen seen{view_of(*view), clip->clip(), clip->armature(), outlines.surface,
-                                 preview_blend(editor)};
+                                 preview_blend(context.resampling)};
   if (outlines.seen != seen || outlines.lines.size() > kMostKept) {
     outlines.seen = seen;
     outlines.lines.clear();
   }
 
-  const FrameRange range = playing_range(editor);
+  const FrameRange range = playing_range(context.document());
   const auto began = std::chrono::steady_clock::now();
   bool made_one = false, waits = false;
   // The ghosts furthest in time are drawn first, so that nearer ones lie on top.
   for (int step = onion.count; step >= 1; --step)
     for (const int side : {-1, 1}) {
-      const int frame = shown_frame(editor) + side * step * onion.step;
+      const int frame = shown_frame(context) + side * step * onion.step;
       if (frame < range.low || frame > range.high) continue;
       const Colour colour =
           with_alpha(side < 0 ? kPast : kComing, std::min(1.0f, 1.8f / static_cast<float>(1 << step)));
@@ -136,15 +139,15 @@ void draw_onion_skin(Editor& editor) {
         if (!waits)
           found = outlines.lines
                       .emplace(frame, outline_of(*view, outlines, *clip->armature(), clip->at(frame),
-                                                 kCell * editor.look.scale))
+                                                 kCell * context.ui->look.scale))
                       .first,
           made_one = true;
       }
       if (found != outlines.lines.end() && !found->second.empty())
-        draw_lines(found->second, colour, 1.6f * editor.look.scale);
-      else if (editor.views->bones) draw_ghost(editor, *view, *clip->armature(), clip->at(frame), colour);
+        draw_lines(found->second, colour, 1.6f * context.ui->look.scale);
+      else if (context.views->bones) draw_ghost(context.ui, *view, *clip->armature(), clip->at(frame), colour);
     }
-  if (waits) editor.touch();
+  if (waits) context.ui->touch();
 }
 
 }  // namespace limber::editor

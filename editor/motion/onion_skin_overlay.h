@@ -11,9 +11,11 @@
 #include <vector>
 
 #include "core/deform/skinned_surface.h"
-#include "editor/context/editor.h"
+#include "core/motion/clip.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct OnionOutlines {
   std::shared_ptr<const LabelVolume> volume;  // the label volume from which `surface` is computed
@@ -33,6 +35,6 @@ struct OnionOutlines {
   std::map<int, std::vector<std::vector<glm::vec2>>> lines;  // cached outlines by frame: closed lines, pixels
 };
 
-void draw_onion_skin(Editor& editor);
+void draw_onion_skin(Context& context);
 
 }  // namespace limber::editor

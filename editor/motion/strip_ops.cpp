@@ -7,8 +7,11 @@
 #include "core/motion/recorded_clip.h"
 #include "core/study/text.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator.h"
+#include "editor/context/selection.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/motion/graph.h"
 #include "editor/motion/motion_clip_edits.h"
@@ -17,6 +20,7 @@
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/shown_pose.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -26,38 +30,38 @@ constexpr std::int64_t kMostFrames = 1e6;  // strips that play more frames are n
 
 // ---- Why operators cannot run
 
-std::string needs_clip(const Editor& editor) {
-  return shown_clip(editor) ? "" : "Import a motion first, or insert a key";
+std::string needs_clip(const Context& context) {
+  return shown_clip(context.document()) ? "" : "Import a motion first, or insert a key";
 }
-std::string needs_shown_strips(const Editor& editor) {
-  if (const std::string why = needs_clip(editor); !why.empty()) return why;
-  if (!shown_strips(editor)) return "Make strips of the clip first";
-  return strips_are_shown(editor) ? "" : "Show the strips first";
+std::string needs_shown_strips(const Context& context) {
+  if (const std::string why = needs_clip(context); !why.empty()) return why;
+  if (!shown_strips(context)) return "Make strips of the clip first";
+  return strips_are_shown(context) ? "" : "Show the strips first";
 }
-std::string needs_chosen(const Editor& editor) {
-  if (const std::string why = needs_shown_strips(editor); !why.empty()) return why;
-  return chosen_strips(editor).empty() ? "Select strips first" : "";
+std::string needs_chosen(const Context& context) {
+  if (const std::string why = needs_shown_strips(context); !why.empty()) return why;
+  return chosen_strips(context).empty() ? "Select strips first" : "";
 }
-std::string needs_active(const Editor& editor) {
-  if (const std::string why = needs_shown_strips(editor); !why.empty()) return why;
-  return active_strip(editor) ? "" : "Select a strip first";
+std::string needs_active(const Context& context) {
+  if (const std::string why = needs_shown_strips(context); !why.empty()) return why;
+  return active_strip(context) ? "" : "Select a strip first";
 }
-std::string needs_active_and_rig(const Editor& editor) {
-  if (const std::string why = needs_active(editor); !why.empty()) return why;
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_active_and_rig(const Context& context) {
+  if (const std::string why = needs_active(context); !why.empty()) return why;
+  return context.document().armature ? "" : "Import a rig first";
 }
-std::string needs_track(const Editor& editor) {
-  if (const std::string why = needs_shown_strips(editor); !why.empty()) return why;
-  return active_track(editor) ? "" : "Add a track first";
+std::string needs_track(const Context& context) {
+  if (const std::string why = needs_shown_strips(context); !why.empty()) return why;
+  return active_track(context) ? "" : "Add a track first";
 }
-std::string needs_strips_and_rig(const Editor& editor) {
-  if (const std::string why = needs_clip(editor); !why.empty()) return why;
-  if (!shown_clip(editor)->strips) return "Make strips of the clip first";
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_strips_and_rig(const Context& context) {
+  if (const std::string why = needs_clip(context); !why.empty()) return why;
+  if (!shown_clip(context.document())->strips) return "Make strips of the clip first";
+  return context.document().armature ? "" : "Import a rig first";
 }
-std::string needs_clip_of_strips(const Editor& editor) {
-  if (!needs_clip(editor).empty()) return needs_clip(editor);
-  const auto& clips = editor.document().clips;
+std::string needs_clip_of_strips(const Context& context) {
+  if (!needs_clip(context).empty()) return needs_clip(context);
+  const auto& clips = context.document().clips;
   const bool any = std::any_of(clips.begin(), clips.end(), [](const auto& clip) { return !clip->strips; });
   return any ? "" : "Import a motion first: strips play other clips";
 }
@@ -84,15 +88,15 @@ std::string make_strips_in(Document& next) {
 }
 
 // Adds a clip with a strip of the shown clip, and shows it.
-void make_strips(Editor& editor) {
-  stop_playing(editor);
-  settle_frame(editor);
-  Document next = editor.document();
+void make_strips(Context& context) {
+  stop_playing(context);
+  settle_frame(context);
+  Document next = context.document();
   const std::string source = next.shown_clip()->name, name = make_strips_in(next);
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  commit(editor, "Make strips of " + source, std::move(next));
-  show_strips(editor, true);
-  choose_strip(editor, name);
+  next.pose = pose_at_frame(next, &context.timeline->prepared);
+  commit(context, "Make strips of " + source, std::move(next));
+  show_strips(context, true);
+  choose_strip(context, name);
 }
 
 // Returns the active track if it has room for the strip, else the lowest track above it that has room, else a new
@@ -125,10 +129,10 @@ std::string add_strip_to(Strips& strips, const std::shared_ptr<const Clip>& sour
 }
 
 // Makes strips of the shown clip and adds another strip to them, as one edit.
-void make_strips_with(Editor& editor, const std::shared_ptr<const Clip>& source, int frame) {
-  stop_playing(editor);
-  settle_frame(editor);
-  Document next = editor.document();
+void make_strips_with(Context& context, const std::shared_ptr<const Clip>& source, int frame) {
+  stop_playing(context);
+  settle_frame(context);
+  Document next = context.document();
   make_strips_in(next);
   auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
   Clip clip = *shown;
@@ -140,97 +144,97 @@ void make_strips_with(Editor& editor, const std::shared_ptr<const Clip>& source,
   clip.range_end = span.last;
   clip.strips = std::make_shared<const Strips>(std::move(strips));
   shown = std::make_shared<const Clip>(std::move(clip));
-  next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  commit(editor, "Add strip of " + source->name, std::move(next));
-  show_strips(editor, true);
-  choose_strip(editor, name);
+  next.pose = pose_at_frame(next, &context.timeline->prepared);
+  commit(context, "Add strip of " + source->name, std::move(next));
+  show_strips(context, true);
+  choose_strip(context, name);
 }
 
-void add_strip(Editor& editor, const std::shared_ptr<const Clip>& source, int frame) {
-  if (!shown_strips(editor)) return make_strips_with(editor, source, frame);
-  show_strips(editor, true);
+void add_strip(Context& context, const std::shared_ptr<const Clip>& source, int frame) {
+  if (!shown_strips(context)) return make_strips_with(context, source, frame);
+  show_strips(context, true);
   std::string name;
-  const std::size_t from = active_track(editor).value_or(0);
-  const double rate = strips_rate(editor);
-  change_strips(editor, "Add strip of " + source->name, [&](Strips& strips) {
-    name = add_strip_to(strips, source, frame, from, editor.document().armature, rate);
+  const std::size_t from = active_track(context).value_or(0);
+  const double rate = strips_rate(context.document());
+  change_strips(context, "Add strip of " + source->name, [&](Strips& strips) {
+    name = add_strip_to(strips, source, frame, from, context.document().armature, rate);
   });
-  choose_strip(editor, name);
+  choose_strip(context, name);
 }
 
-void ask_strip(Editor& editor) {
-  const bool has_strips = shown_strips(editor) != nullptr;
+void ask_strip(Context& context) {
+  const bool has_strips = shown_strips(context) != nullptr;
   std::vector<std::shared_ptr<const Clip>> sources;
   std::vector<std::string> names;
-  for (const auto& clip : editor.document().clips)
+  for (const auto& clip : context.document().clips)
     if (!clip->strips) sources.push_back(clip), names.push_back(clip->name);
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Add strip",
        "Adds a strip that plays a clip. The strip is put on the active track, or on a track above it if there is no "
        "room.",
        "Add",
        {choice_of("Clip", "The clip that the strip plays.", names),
-        number_of("Start", "The frame at which the strip begins.", shown_frame(editor), -100'000, 1e6, "%.0f")},
-       [=](const Editor& e, const std::vector<FormField>& fields) {
-         if (!shown_clip(e) || (has_strips && !shown_strips(e)))
+        number_of("Start", "The frame at which the strip begins.", shown_frame(context), -100'000, 1e6, "%.0f")},
+       [=](const Context& c, const std::vector<FormField>& fields) {
+         if (!shown_clip(c.document()) || (has_strips && !shown_strips(c)))
            throw Error("there are no strips any more", "strip", "open this again");
          const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
          const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
          return grouped(frames) + (frames == 1 ? " frame." : " frames of the clip.") +
-                (shown_strips(e) ? "" : " A new clip plays " + shown_clip(e)->name + " as a strip, too.");
+                (shown_strips(c) ? "" : " A new clip plays " + shown_clip(c.document())->name + " as a strip, too.");
        },
-       [=](Editor& e, const std::vector<FormField>& fields) {
+       [=](Context& c, const std::vector<FormField>& fields) {
          const auto& source = sources[static_cast<std::size_t>(fields[0].chosen)];
-         const auto& clips = e.document().clips;
-         if (!shown_clip(e) || (has_strips && !shown_strips(e)) ||
+         const auto& clips = c.document().clips;
+         if (!shown_clip(c.document()) || (has_strips && !shown_strips(c)) ||
              std::find(clips.begin(), clips.end(), source) == clips.end())
            throw Error("the clip was deleted meanwhile", source->name, "open the dialog again");
-         add_strip(e, source, static_cast<int>(std::lround(fields[1].value)));
+         add_strip(c, source, static_cast<int>(std::lround(fields[1].value)));
        }}));
 }
 
-void bake_strips(Editor& editor) {
-  stop_playing(editor);
-  const auto source = graph_clip(editor);
-  const auto [first, last] = playing_range(editor);
+void bake_strips(Context& context) {
+  stop_playing(context);
+  const auto source = graph_clip(context.document());
+  const auto [first, last] = playing_range(context.document());
   if (std::int64_t{last} - first >= kMostFrames)
     throw Error("the strips play too many frames", "frames " + std::to_string(first) + " to " + std::to_string(last),
                 "set a shorter range");
-  start_task(editor, "Bake strips to clip", [source, rig = editor.document().armature](Progress& progress) -> Finish {
+  start_task(context, "Bake strips to clip", [source, rig = context.document().armature](Progress& progress) -> Finish {
     auto baked = std::make_shared<Clip>(baked_clip(source, rig, progress));
     baked->name += " baked";
-    return [=](Editor& e) {
-      take_in_clip(e, source, rig, "Bake strips to clip", *baked, true);
-      show_face(e, TimelineFace::Rows);
-      e.messages.ok(grouped(baked->motion->frame_count) + " frames baked",
-                    "The clip " + shown_clip(e)->name + " contains the combined motion of the strips");
+    return [=](Context& c) {
+      take_in_clip(c, source, rig, "Bake strips to clip", *baked, true);
+      show_face(c, TimelineFace::Rows);
+      c.messages->ok(grouped(baked->motion->frame_count) + " frames baked",
+                     "The clip " + shown_clip(c.document())->name + " contains the combined motion of the strips");
     };
   });
 }
 
 // ---- Strips
 
-void choose_all(Editor& editor) {
-  for (const StripTrack& track : shown_strips(editor)->tracks)
-    for (const Strip& strip : track.strips) strip_view(editor).chosen.insert(strip.name);
+void choose_all(Context& context) {
+  for (const StripTrack& track : shown_strips(context)->tracks)
+    for (const Strip& strip : track.strips) strip_view(context.timeline).chosen.insert(strip.name);
 }
 
-void delete_chosen(Editor& editor) {
-  const std::set<std::string> chosen = chosen_strips(editor);
-  change_strips(editor, chosen.size() == 1 ? "Delete strip" : "Delete strips", [&](Strips& strips) {
+void delete_chosen(Context& context) {
+  const std::set<std::string> chosen = chosen_strips(context);
+  change_strips(context, chosen.size() == 1 ? "Delete strip" : "Delete strips", [&](Strips& strips) {
     for (StripTrack& track : strips.tracks)
       std::erase_if(track.strips, [&](const Strip& strip) { return chosen.contains(strip.name); });
   });
 }
 
-void mute_chosen(Editor& editor) {
-  const std::set<std::string> chosen = chosen_strips(editor);
+void mute_chosen(Context& context) {
+  const std::set<std::string> chosen = chosen_strips(context);
   bool any_plays = false;
   for (const std::string& name : chosen) {
-    const StripPlace place = *find_strip(*shown_strips(editor), name);
-    any_plays = any_plays || !shown_strips(editor)->tracks[place.track].strips[place.index].muted;
+    const StripPlace place = *find_strip(*shown_strips(context), name);
+    any_plays = any_plays || !shown_strips(context)->tracks[place.track].strips[place.index].muted;
   }
-  change_strips(editor, any_plays ? "Mute strips" : "Unmute strips", [&](Strips& strips) {
+  change_strips(context, any_plays ? "Mute strips" : "Unmute strips", [&](Strips& strips) {
     for (StripTrack& track : strips.tracks)
       for (Strip& strip : track.strips)
         if (chosen.contains(strip.name)) strip.muted = any_plays;
@@ -238,14 +242,14 @@ void mute_chosen(Editor& editor) {
 }
 
 // Splits at the shown frame the selected strips or, if none is selected, all strips that play there.
-void split_at_head(Editor& editor) {
-  const int frame = shown_frame(editor);
-  const double rate = strips_rate(editor);
-  std::set<std::string> wanted = chosen_strips(editor), seconds;
+void split_at_head(Context& context) {
+  const int frame = shown_frame(context);
+  const double rate = strips_rate(context.document());
+  std::set<std::string> wanted = chosen_strips(context), seconds;
   if (wanted.empty())
-    for (const StripTrack& track : shown_strips(editor)->tracks)
+    for (const StripTrack& track : shown_strips(context)->tracks)
       for (const Strip& strip : track.strips) wanted.insert(strip.name);
-  Strips next = *shown_clip(editor)->strips;
+  Strips next = *shown_clip(context.document())->strips;
   for (const std::string& name : wanted) {
     const StripPlace place = *find_strip(next, name);
     StripTrack& track = next.tracks[place.track];
@@ -259,39 +263,39 @@ void split_at_head(Editor& editor) {
   if (seconds.empty())
     throw Error("no selected strip plays before and after this frame", "frame " + std::to_string(frame),
                 "move the play head to the middle of a strip");
-  change_strips(editor, "Split strips", [&](Strips& strips) { strips = std::move(next); });
-  strip_view(editor).chosen = seconds;
-  strip_view(editor).active = *seconds.begin();
+  change_strips(context, "Split strips", [&](Strips& strips) { strips = std::move(next); });
+  strip_view(context.timeline).chosen = seconds;
+  strip_view(context.timeline).active = *seconds.begin();
 }
 
-void set_bones(Editor& editor, bool all) {
+void set_bones(Context& context, bool all) {
   std::optional<std::set<std::string>> bones;
   if (!all) {
-    const Armature& armature = *editor.document().armature;
+    const Armature& armature = *context.document().armature;
     bones.emplace();
     std::vector<char> inside(armature.bones.size());
-    for (const int bone : editor.selection.bones) inside[static_cast<std::size_t>(bone)] = 1;
+    for (const int bone : context.selection->bones) inside[static_cast<std::size_t>(bone)] = 1;
     for (std::size_t bone = 0; bone < armature.bones.size(); ++bone) {
       const int parent = armature.bones[bone].parent;
       if (parent >= 0 && inside[static_cast<std::size_t>(parent)]) inside[bone] = 1;
       if (inside[bone]) bones->insert(armature.bones[bone].name);
     }
   }
-  change_active_strip(editor, "Set bones of strip", [&](Strip& strip) { strip.bones = bones; });
+  change_active_strip(context, "Set bones of strip", [&](Strip& strip) { strip.bones = bones; });
 }
-std::string needs_bones(const Editor& editor) {
-  if (const std::string why = needs_active_and_rig(editor); !why.empty()) return why;
-  const auto count = std::ssize(editor.document().armature->bones);
-  const bool fits = std::all_of(editor.selection.bones.begin(), editor.selection.bones.end(),
+std::string needs_bones(const Context& context) {
+  if (const std::string why = needs_active_and_rig(context); !why.empty()) return why;
+  const auto count = std::ssize(context.document().armature->bones);
+  const bool fits = std::all_of(context.selection->bones.begin(), context.selection->bones.end(),
                                 [&](int bone) { return bone >= 0 && bone < count; });
-  return fits && !editor.selection.bones.empty() ? "" : "Select bones first";
+  return fits && !context.selection->bones.empty() ? "" : "Select bones first";
 }
 
-void begin_where_body_is(Editor& editor) {
-  const auto armature = editor.document().armature;
-  const double rate = strips_rate(editor);
-  const std::string name = active_strip(editor)->name;
-  change_strips(editor, "Begin strip where the body is", [&](Strips& strips) {
+void begin_where_body_is(Context& context) {
+  const auto armature = context.document().armature;
+  const double rate = strips_rate(context.document());
+  const std::string name = active_strip(context)->name;
+  change_strips(context, "Begin strip where the body is", [&](Strips& strips) {
     const StripPlace place = *find_strip(strips, name);
     strips.tracks[place.track].strips[place.index].place = place_where_body_is(strips, place, armature, rate);
   });
@@ -299,64 +303,65 @@ void begin_where_body_is(Editor& editor) {
 
 // ---- Tracks
 
-void change_track(Editor& editor, const std::string& label, const std::function<void(StripTrack&)>& edit) {
-  const std::size_t track = *active_track(editor);
-  change_strips(editor, label, [&](Strips& strips) { edit(strips.tracks[track]); });
+void change_track(Context& context, const std::string& label, const std::function<void(StripTrack&)>& edit) {
+  const std::size_t track = *active_track(context);
+  change_strips(context, label, [&](Strips& strips) { edit(strips.tracks[track]); });
 }
 
-void add_track(Editor& editor) {
-  if (!shown_strips(editor)) make_strips(editor);
-  show_strips(editor, true);
-  if (shown_strips(editor)->tracks.size() >= kMostTracks)
+void add_track(Context& context) {
+  if (!shown_strips(context)) make_strips(context);
+  show_strips(context, true);
+  if (shown_strips(context)->tracks.size() >= kMostTracks)
     throw Error("no more tracks can be added", std::to_string(kMostTracks) + " tracks", "delete one first");
-  const std::string name = track_name_of(*shown_strips(editor));
-  change_strips(editor, "Add track", [&](Strips& strips) { strips.tracks.push_back({.name = name}); });
-  strip_view(editor).track = name;
+  const std::string name = track_name_of(*shown_strips(context));
+  change_strips(context, "Add track", [&](Strips& strips) { strips.tracks.push_back({.name = name}); });
+  strip_view(context.timeline).track = name;
 }
 
-void move_track(Editor& editor, int by) {
-  const std::size_t track = *active_track(editor), to = track + static_cast<std::size_t>(by);
-  const std::string name = shown_strips(editor)->tracks[track].name;
-  if (to >= shown_strips(editor)->tracks.size())
-    return editor.messages.info(name + (by > 0 ? " is the highest track" : " is the lowest track"));
-  change_strips(editor, by > 0 ? "Move track up" : "Move track down",
+void move_track(Context& context, int by) {
+  const std::size_t track = *active_track(context), to = track + static_cast<std::size_t>(by);
+  const std::string name = shown_strips(context)->tracks[track].name;
+  if (to >= shown_strips(context)->tracks.size())
+    return context.messages->info(name + (by > 0 ? " is the highest track" : " is the lowest track"));
+  change_strips(context, by > 0 ? "Move track up" : "Move track down",
                 [&](Strips& strips) { std::swap(strips.tracks[track], strips.tracks[to]); });
-  strip_view(editor).track = name;
+  strip_view(context.timeline).track = name;
 }
 
-void delete_track(Editor& editor) {
-  const std::size_t track = *active_track(editor);
-  change_strips(editor, "Delete track", [&](Strips& strips) {
+void delete_track(Context& context) {
+  const std::size_t track = *active_track(context);
+  change_strips(context, "Delete track", [&](Strips& strips) {
     strips.tracks.erase(strips.tracks.begin() + static_cast<std::ptrdiff_t>(track));
   });
 }
 
-void ask_track_name(Editor& editor) {
-  const std::string before = shown_strips(editor)->tracks[*active_track(editor)].name;
-  editor.open_dialog(make_form({"Rename track",
-                                "Changes the name of the active track.",
-                                "Rename",
-                                {text_of("Name", "The track's name.", before)},
-                                [](const Editor&, const std::vector<FormField>& fields) -> std::string {
-                                  if (fields[0].text.empty()) throw Error("a track needs a name", "rename", "type one");
-                                  return "";
-                                },
-                                [before](Editor& e, const std::vector<FormField>& fields) {
-                                  const std::string& name = fields[0].text;
-                                  const auto track = active_track(e);
-                                  if (!track)
-                                    throw Error("the track was deleted meanwhile", before, "open the dialog again");
-                                  if (name == before) return;
-                                  change_track(e, "Rename track", [&](StripTrack& one) {
-                                    one.name = unique_track_name(*shown_clip(e)->strips, name);
-                                  });
-                                  strip_view(e).track = shown_strips(e)->tracks[*track].name;
-                                }}));
+void ask_track_name(Context& context) {
+  const std::string before = shown_strips(context)->tracks[*active_track(context)].name;
+  context.dialogs->open(make_form({"Rename track",
+                                   "Changes the name of the active track.",
+                                   "Rename",
+                                   {text_of("Name", "The track's name.", before)},
+                                   [](const Context&, const std::vector<FormField>& fields) -> std::string {
+                                     if (fields[0].text.empty())
+                                       throw Error("a track needs a name", "rename", "type one");
+                                     return "";
+                                   },
+                                   [before](Context& c, const std::vector<FormField>& fields) {
+                                     const std::string& name = fields[0].text;
+                                     const auto track = active_track(c);
+                                     if (!track)
+                                       throw Error("the track was deleted meanwhile", before, "open the dialog again");
+                                     if (name == before) return;
+                                     change_track(c, "Rename track", [&](StripTrack& one) {
+                                       one.name = unique_track_name(*shown_clip(c.document())->strips, name);
+                                     });
+                                     strip_view(c.timeline).track = shown_strips(c)->tracks[*track].name;
+                                   }}));
 }
 
-bool is_track(const Editor& editor, bool StripTrack::*flag) {
-  const auto track = active_track(editor);
-  return track && shown_strips(editor)->tracks[*track].*flag;
+bool is_track(const Context& context, bool StripTrack::*flag) {
+  const auto track = active_track(context);
+  return track && shown_strips(context)->tracks[*track].*flag;
 }
 
 std::vector<Operator> track_operators() {
@@ -367,17 +372,17 @@ std::vector<Operator> track_operators() {
        ask_track_name, needs_track},
       {"strips.track_up", "Move strip track up", "", "Motion",
        "Move the active track up by one, so that it plays over the track that was above it.",
-       [](Editor& e) { move_track(e, 1); }, needs_track},
+       [](Context& c) { move_track(c, 1); }, needs_track},
       {"strips.track_down", "Move strip track down", "", "Motion",
        "Move the active track down by one, so that the track that was below it plays over it.",
-       [](Editor& e) { move_track(e, -1); }, needs_track},
+       [](Context& c) { move_track(c, -1); }, needs_track},
       {"strips.mute_track", "Mute strip track", "", "Motion", "Switch the active track's strips off, or on again.",
-       [](Editor& e) { change_track(e, "Mute track", [](StripTrack& track) { track.muted = !track.muted; }); },
-       needs_track, [](const Editor& e) { return is_track(e, &StripTrack::muted); }},
+       [](Context& c) { change_track(c, "Mute track", [](StripTrack& track) { track.muted = !track.muted; }); },
+       needs_track, [](const Context& c) { return is_track(c, &StripTrack::muted); }},
       {"strips.solo_track", "Solo strip track", "", "Motion",
        "Play only the active track and other tracks with solo switched on.",
-       [](Editor& e) { change_track(e, "Solo track", [](StripTrack& track) { track.solo = !track.solo; }); },
-       needs_track, [](const Editor& e) { return is_track(e, &StripTrack::solo); }},
+       [](Context& c) { change_track(c, "Solo track", [](StripTrack& track) { track.solo = !track.solo; }); },
+       needs_track, [](const Context& c) { return is_track(c, &StripTrack::solo); }},
       {"strips.delete_track", "Delete strip track", icon::kTrash, "Motion", "Delete the active track with its strips.",
        delete_track, needs_track},
   };
@@ -389,20 +394,20 @@ std::vector<Operator> strip_operators() {
   std::vector<Operator> all{
       {"motion.next_face", "Next timeline view", "", "Motion",
        "Switch the timeline to its next view: keys, curves or strips.",
-       [](Editor& e) { show_face(e, static_cast<TimelineFace>((static_cast<int>(shown_face(e)) + 1) % 3)); },
+       [](Context& c) { show_face(c, static_cast<TimelineFace>((static_cast<int>(shown_face(c.timeline)) + 1) % 3)); },
        needs_clip},
       {"motion.show_rows", "Timeline rows", "", "Motion", "Show the markers, the clip and the keys in the timeline.",
-       [](Editor& e) { show_face(e, TimelineFace::Rows); }, needs_clip,
-       [](const Editor& e) { return shown_face(e) == TimelineFace::Rows; }},
+       [](Context& c) { show_face(c, TimelineFace::Rows); }, needs_clip,
+       [](const Context& c) { return shown_face(c.timeline) == TimelineFace::Rows; }},
       {"strips.show", "Strips", "", "Motion",
        "Show the clip's strips instead of the timeline's rows. Run again to show the rows.",
-       [](Editor& e) { show_face(e, strips_are_shown(e) ? TimelineFace::Rows : TimelineFace::Strips); }, needs_clip,
+       [](Context& c) { show_face(c, strips_are_shown(c) ? TimelineFace::Rows : TimelineFace::Strips); }, needs_clip,
        strips_are_shown},
       {"strips.make", "Make strips of the clip", "", "Motion",
        "Add a clip that plays the shown clip as a strip. You can then add strips of other clips.", make_strips,
-       [](const Editor& e) {
-         if (const std::string why = needs_clip(e); !why.empty()) return why;
-         return shown_clip(e)->strips ? std::string("This clip is made of strips already") : std::string();
+       [](const Context& c) {
+         if (const std::string why = needs_clip(c); !why.empty()) return why;
+         return shown_clip(c.document())->strips ? std::string("This clip is made of strips already") : std::string();
        }},
       {"strips.add", "Add strip...", icon::kAdd, "Motion", "Add a strip of another clip at the play head.", ask_strip,
        needs_clip_of_strips},
@@ -412,7 +417,7 @@ std::vector<Operator> strip_operators() {
       {"strips.select_all", "Select all strips", "", "Motion", "Select every strip of the clip.", choose_all,
        needs_shown_strips},
       {"strips.select_none", "Deselect strips", "", "Motion", "Deselect all strips.",
-       [](Editor& e) { strip_view(e).chosen.clear(), strip_view(e).active.clear(); }, needs_chosen},
+       [](Context& c) { strip_view(c.timeline).chosen.clear(), strip_view(c.timeline).active.clear(); }, needs_chosen},
       {"strips.pan", "Pan the strips", "", "Motion", "Drag to scroll the strips.", pan_strips, needs_shown_strips},
       {"strips.move", "Move strips", icon::kMove, "Motion",
        "Move the selected strips in time with the pointer, or by a typed number of frames.", begin_moving_strips,
@@ -428,16 +433,16 @@ std::vector<Operator> strip_operators() {
        delete_chosen, needs_chosen},
       {"strips.bones_selected", "Strip on selected bones", "", "Motion",
        "Let the active strip move only the selected bones and their descendants.",
-       [](Editor& e) { set_bones(e, false); }, needs_bones},
+       [](Context& c) { set_bones(c, false); }, needs_bones},
       {"strips.bones_all", "Strip on all bones", "", "Motion", "Let the active strip move every bone.",
-       [](Editor& e) { set_bones(e, true); }, needs_active},
+       [](Context& c) { set_bones(c, true); }, needs_active},
       {"strips.begin_here", "Begin strip where the body is", "", "Motion",
        "Move and turn the active strip along the ground so that it begins where the body is at that frame.",
        begin_where_body_is, needs_active_and_rig},
       {"strips.clear_place", "Begin strip at clip's position", "", "Motion",
        "Begin the active strip at the position and heading that its clip has.",
-       [](Editor& e) {
-         change_active_strip(e, "Begin strip at clip's position", [](Strip& strip) { strip.place = {}; });
+       [](Context& c) {
+         change_active_strip(c, "Begin strip at clip's position", [](Strip& strip) { strip.place = {}; });
        },
        needs_active},
       {"strips.bake", "Bake strips to clip", "", "Motion",

@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
+#include "editor/context/screen.h"
+#include "editor/motion/timeline.h"
 #include "editor/motion/timeline_ruler.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/ui/icons.h"
@@ -21,49 +25,49 @@ constexpr float kLeastCycle = 6;  // narrower cycles of a strip get no lines bet
 // ---- The list of tracks
 
 // Draws a switch of a track and runs its operator when it is pressed. Returns whether the strips were changed.
-bool draw_switch(Editor& editor, const StripTrack& track, const Rect& place, const char* letter, const char* id,
+bool draw_switch(Context& context, const StripTrack& track, const Rect& place, const char* letter, const char* id,
                  bool on) {
-  const Look& look = editor.look;
-  const Pressed pressed = press_area(editor, letter, place);
+  const Look& look = context.ui->look;
+  const Pressed pressed = press_area(context.ui, letter, place);
   fill(place, pressed.hovered ? look.theme.hover : on ? look.theme.accent_soft : look.theme.raised, look.px(3));
   if (on) outline(place, look.theme.accent, look.px(3), look.line());
-  put_text(editor, look.fonts.small, on ? look.theme.accent_text : look.theme.text2, place, letter, Align::Centre);
-  const Operator* op = find_operator(editor, id);
-  if (pressed.hovered) operator_tooltip(editor, *op, place);
+  put_text(context.ui, look.fonts.small, on ? look.theme.accent_text : look.theme.text2, place, letter, Align::Centre);
+  const Operator* op = find_operator(context.operators, id);
+  if (pressed.hovered) operator_tooltip(context, *op, place);
   if (!pressed.clicked) return false;
-  strip_view(editor).track = track.name;
-  run(editor, *op);
+  strip_view(context.timeline).track = track.name;
+  run(context, *op);
   return true;
 }
 
-void draw_tracks(Editor& editor, const Rect& area) {
-  const Look& look = editor.look;
-  const auto active = active_track(editor);
+void draw_tracks(Context& context, const Rect& area) {
+  const Look& look = context.ui->look;
+  const auto active = active_track(context);
   bool renames = false;
   ImGui::PushClipRect(im(area.low), im(area.high), true);
-  for (std::size_t t = shown_strips(editor)->tracks.size(); t-- > 0;) {
-    const StripTrack& track = shown_strips(editor)->tracks[t];
-    const Rect line = track_rect(editor, t);
+  for (std::size_t t = shown_strips(context)->tracks.size(); t-- > 0;) {
+    const StripTrack& track = shown_strips(context)->tracks[t];
+    const Rect line = track_rect(context, t);
     const Rect row{{area.low.x, line.low.y}, {area.high.x, line.high.y}};
     if (intersection(row, area).empty()) continue;
-    const PathScope path(editor, "track " + track.name);
+    const PathScope path(context.ui, "track " + track.name);
     const bool is_active = active == t;
     fill(row, is_active ? look.theme.accent_soft : t % 2 ? look.theme.panel : look.theme.row_alt);
     const float high = row.high.y - look.px(3), low = row.low.y + look.px(3);
     const Rect solo{{row.high.x - look.px(kSwitch + 6), low}, {row.high.x - look.px(6), high}};
     const Rect mute{{solo.low.x - look.px(kSwitch + 3), low}, {solo.low.x - look.px(3), high}};
     const Rect name{{row.low.x, row.low.y}, {mute.low.x - look.px(4), row.high.y}};
-    const Pressed pressed = press_area(editor, "name", intersection(name, area));
-    if (pressed.clicked) strip_view(editor).track = track.name;
-    put_text(editor, is_active ? look.fonts.semibold : look.fonts.regular,
-             plays(*shown_strips(editor), t) ? look.theme.text : look.theme.text3,
+    const Pressed pressed = press_area(context.ui, "name", intersection(name, area));
+    if (pressed.clicked) strip_view(context.timeline).track = track.name;
+    put_text(context.ui, is_active ? look.fonts.semibold : look.fonts.regular,
+             plays(*shown_strips(context), t) ? look.theme.text : look.theme.text3,
              Rect{{row.low.x + look.px(12), row.low.y}, name.high}, track.name);
     renames = renames || pressed.double_clicked;
-    if (draw_switch(editor, track, mute, "M", "strips.mute_track", track.muted)) break;
-    if (draw_switch(editor, track, solo, "S", "strips.solo_track", track.solo)) break;
+    if (draw_switch(context, track, mute, "M", "strips.mute_track", track.muted)) break;
+    if (draw_switch(context, track, solo, "S", "strips.solo_track", track.solo)) break;
   }
   ImGui::PopClipRect();
-  if (renames) run(editor, "strips.rename_track");
+  if (renames) run(context, "strips.rename_track");
 }
 
 // ---- The strips
@@ -82,33 +86,33 @@ std::string title_of(const Strip& strip) {
 }
 
 // Draws lines between the cycles of a strip that repeats.
-void draw_cycles(Editor& editor, const Strip& strip, const Rect& place, Colour colour) {
-  const double steps = strip.last - strip.first, ratio = frames_per_frame(strip, strips_rate(editor));
-  const Look& look = editor.look;
-  const double width = steps / ratio / editor.timeline->window.count * editor.timeline->ruler.width();
+void draw_cycles(Context& context, const Strip& strip, const Rect& place, Colour colour) {
+  const double steps = strip.last - strip.first, ratio = frames_per_frame(strip, strips_rate(context.document()));
+  const Look& look = context.ui->look;
+  const double width = steps / ratio / context.timeline->window.count * context.timeline->ruler.width();
   if (steps <= 0 || width < look.px(kLeastCycle)) return;
   for (double cycle = std::floor(strip.skip / steps) + 1; cycle < strip.repeat; ++cycle) {
-    const float x = std::round(x_of(*editor.timeline, strip.start + (cycle * steps - strip.skip) / ratio));
+    const float x = std::round(x_of(*context.timeline, strip.start + (cycle * steps - strip.skip) / ratio));
     if (x > place.high.x) return;
     if (x > place.low.x) fill({{x, place.low.y + look.px(3)}, {x + look.line(), place.high.y - look.px(3)}}, colour);
   }
 }
 
-void draw_strip(Editor& editor, const StripPlace& where, const StripRun& run) {
-  const Look& look = editor.look;
-  const StripView& view = strip_view(editor);
-  const StripTrack& track = shown_strips(editor)->tracks[where.track];
+void draw_strip(Context& context, const StripPlace& where, const StripRun& run) {
+  const Look& look = context.ui->look;
+  const StripView& view = strip_view(context.timeline);
+  const StripTrack& track = shown_strips(context)->tracks[where.track];
   const Strip& strip = track.strips[where.index];
-  const Rect place = strip_rect(editor, where), seen = intersection(place, view.rows);
+  const Rect place = strip_rect(context, where), seen = intersection(place, view.rows);
   if (seen.empty()) return;
-  const bool sounds = plays(*shown_strips(editor), where.track) && !strip.muted,
+  const bool sounds = plays(*shown_strips(context), where.track) && !strip.muted,
              chosen = view.chosen.contains(strip.name);
   const float alpha = sounds ? 1.0f : 0.4f, round = look.px(kRounding);
   const Colour edge = with_alpha(chosen ? look.theme.select : look.theme.accent, chosen ? 1.0f : alpha);
   fill(place, look.theme.panel, round);  // covers what was drawn below, so that it does not show through
   fill(place, with_alpha(look.theme.accent_soft, alpha), round);
-  draw_cycles(editor, strip, place, with_alpha(look.theme.accent_text, 0.5f * alpha));
-  const auto x = [&](int frame) { return x_of(*editor.timeline, frame); };
+  draw_cycles(context, strip, place, with_alpha(look.theme.accent_text, 0.5f * alpha));
+  const auto x = [&](int frame) { return x_of(*context.timeline, frame); };
   ImGui::PushClipRect(im(seen.low), im(seen.high), true);
   if (run.fade_in > 0) draw_fade(look, {x(run.start), place.high.y}, {x(run.start + run.fade_in), place.low.y}, edge);
   if (run.fade_out > 0) draw_fade(look, {x(run.end), place.high.y}, {x(run.end - run.fade_out), place.low.y}, edge);
@@ -117,43 +121,43 @@ void draw_strip(Editor& editor, const StripPlace& where, const StripRun& run) {
   const Rect words{{std::max(place.low.x, view.rows.low.x) + look.px(8), place.low.y},
                    {std::min(place.high.x, view.rows.high.x) - look.px(6), place.high.y}};
   if (words.width() > look.px(kLeastName))
-    put_text(editor, view.active == strip.name ? look.fonts.semibold : look.fonts.regular,
+    put_text(context.ui, view.active == strip.name ? look.fonts.semibold : look.fonts.regular,
              sounds ? look.theme.text : look.theme.text2, words, title_of(strip));
 }
 
 // Draws a line from the end of a strip that holds its last pose to the next strip of its track.
-void draw_hold(Editor& editor, const StripPlace& where) {
-  const Look& look = editor.look;
-  const StripView& view = strip_view(editor);
-  const StripTrack& track = shown_strips(editor)->tracks[where.track];
+void draw_hold(Context& context, const StripPlace& where) {
+  const Look& look = context.ui->look;
+  const StripView& view = strip_view(context.timeline);
+  const StripTrack& track = shown_strips(context)->tracks[where.track];
   const Strip& strip = track.strips[where.index];
-  const int end = end_of(strip, strips_rate(editor));
+  const int end = end_of(strip, strips_rate(context.document()));
   float until = view.rows.high.x;
   for (const Strip& other : track.strips) {
     if (other.muted) continue;
-    if (end_of(other, strips_rate(editor)) > end && other.start <= end) return;
-    if (other.start > end) until = std::min(until, x_of(*editor.timeline, other.start));
+    if (end_of(other, strips_rate(context.document())) > end && other.start <= end) return;
+    if (other.start > end) until = std::min(until, x_of(*context.timeline, other.start));
   }
-  const Rect row = track_rect(editor, where.track);
-  const float y = std::round(row.centre().y), from = std::max(x_of(*editor.timeline, end), view.rows.low.x);
+  const Rect row = track_rect(context, where.track);
+  const float y = std::round(row.centre().y), from = std::max(x_of(*context.timeline, end), view.rows.low.x);
   if (until > from) fill({{from, y}, {until, y + look.line()}}, look.theme.line2);
 }
 
-void draw_rows(Editor& editor) {
-  const Look& look = editor.look;
-  const StripView& view = strip_view(editor);
-  const Strips& strips = *shown_strips(editor);
+void draw_rows(Context& context) {
+  const Look& look = context.ui->look;
+  const StripView& view = strip_view(context.timeline);
+  const Strips& strips = *shown_strips(context);
   for (std::size_t t = 0; t < strips.tracks.size(); ++t)
-    fill(intersection(track_rect(editor, t), view.rows), t % 2 ? look.theme.panel : look.theme.row_alt);
+    fill(intersection(track_rect(context, t), view.rows), t % 2 ? look.theme.panel : look.theme.row_alt);
   for (std::size_t t = 0; t < strips.tracks.size(); ++t)
     for (std::size_t i = 0; i < strips.tracks[t].strips.size(); ++i)
-      if (const Strip& strip = strips.tracks[t].strips[i]; strip.holds && !strip.muted) draw_hold(editor, {t, i});
+      if (const Strip& strip = strips.tracks[t].strips[i]; strip.holds && !strip.muted) draw_hold(context, {t, i});
   for (std::size_t t = 0; t < strips.tracks.size(); ++t) {
-    const std::vector<StripRun> runs = runs_of(strips.tracks[t], strips_rate(editor));
+    const std::vector<StripRun> runs = runs_of(strips.tracks[t], strips_rate(context.document()));
     for (std::size_t i = 0; i < strips.tracks[t].strips.size(); ++i) {
-      const Rect place = intersection(strip_rect(editor, {t, i}), view.rows);
-      if (!place.empty()) register_widget(editor, "strip " + strips.tracks[t].strips[i].name, place);
-      draw_strip(editor, {t, i}, runs[i]);
+      const Rect place = intersection(strip_rect(context, {t, i}), view.rows);
+      if (!place.empty()) register_widget(context.ui, "strip " + strips.tracks[t].strips[i].name, place);
+      draw_strip(context, {t, i}, runs[i]);
     }
   }
   if (!view.box) return;
@@ -162,51 +166,53 @@ void draw_rows(Editor& editor) {
   outline(box, look.theme.select, 0, look.line());
 }
 
-void place_rows(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
-  Timeline& timeline = *editor.timeline;
+void place_rows(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
+  Timeline& timeline = *context.timeline;
   const float left = rect.low.x + look.px(kList), right = rect.high.x - look.px(kRulerEnds);
   timeline.marks = timeline.lane = timeline.keys = {};
   timeline.ruler = {{left, rect.low.y}, {right, rect.low.y + look.px(kRulerHeight)}};
-  strip_view(editor).rows = {{left, timeline.ruler.high.y}, {right, std::max(timeline.ruler.high.y + 1, rect.high.y)}};
-  editor.timeline_area = timeline.area = {timeline.ruler.low, strip_view(editor).rows.high};
+  strip_view(context.timeline).rows = {{left, timeline.ruler.high.y},
+                                       {right, std::max(timeline.ruler.high.y + 1, rect.high.y)}};
+  context.screen->timeline_area = timeline.area = {timeline.ruler.low, strip_view(context.timeline).rows.high};
 }
 
 }  // namespace
 
-void draw_strips(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
-  Timeline& timeline = *editor.timeline;
-  place_rows(editor, rect);
-  StripView& view = strip_view(editor);
+void draw_strips(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
+  Timeline& timeline = *context.timeline;
+  place_rows(context, rect);
+  StripView& view = strip_view(context.timeline);
   const Rect list{{rect.low.x, timeline.ruler.high.y}, {rect.low.x + look.px(kList), rect.high.y}};
   const float top = rect.low.y + look.px(1), bottom = rect.low.y + look.px(kRulerHeight - 1);
-  operator_button(editor, "strips.add", {{list.high.x - look.px(97), top}, {list.high.x - look.px(33), bottom}},
+  operator_button(context, "strips.add", {{list.high.x - look.px(97), top}, {list.high.x - look.px(33), bottom}},
                   "Strip");
-  operator_button(editor, "strips.add_track", {{list.high.x - look.px(30), top}, {list.high.x - look.px(4), bottom}},
+  operator_button(context, "strips.add_track", {{list.high.x - look.px(30), top}, {list.high.x - look.px(4), bottom}},
                   "");
   fill({{list.high.x, rect.low.y}, {list.high.x + look.line(), rect.high.y}}, look.theme.line);
-  register_widget(editor, "ruler", timeline.ruler);
+  register_widget(context.ui, "ruler", timeline.ruler);
   ImGui::PushClipRect(im(timeline.area.low), im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
-  draw_ruler(editor);
+  draw_ruler(context);
   ImGui::PopClipRect();
-  if (!shown_strips(editor) || shown_strips(editor)->tracks.empty()) {
-    const bool has_strips = shown_strips(editor) != nullptr;
+  if (!shown_strips(context) || shown_strips(context)->tracks.empty()) {
+    const bool has_strips = shown_strips(context) != nullptr;
     const Rect all{{list.low.x, list.low.y}, view.rows.high};
-    const Operator* op = find_operator(editor, has_strips ? "strips.add" : "strips.make");
-    if (empty_state(editor, all, has_strips ? "No strips yet" : "This clip has no strips", op->label)) run(editor, *op);
+    const Operator* op = find_operator(context.operators, has_strips ? "strips.add" : "strips.make");
+    if (empty_state(context.ui, all, has_strips ? "No strips yet" : "This clip has no strips", op->label))
+      run(context, *op);
     return;
   }
-  scroll_tracks(editor, 0);  // keeps the scroll position valid if tracks were removed
-  register_widget(editor, "strips", view.rows);
-  draw_tracks(editor, list);
-  if (!shown_strips(editor)) return;  // a switch of a track may have replaced the document
+  scroll_tracks(context, 0);  // keeps the scroll position valid if tracks were removed
+  register_widget(context.ui, "strips", view.rows);
+  draw_tracks(context, list);
+  if (!shown_strips(context)) return;  // a switch of a track may have replaced the document
   ImGui::PushClipRect(im(view.rows.low), im(view.rows.high + glm::vec2(look.px(kRulerEnds), 0)), true);
-  draw_rows(editor);
+  draw_rows(context);
   ImGui::PopClipRect();
   ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)),
                       im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
-  draw_play_head(editor, {});
+  draw_play_head(context, {});
   ImGui::PopClipRect();
 }
 

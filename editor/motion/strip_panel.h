@@ -7,6 +7,9 @@
 
 namespace limber::editor {
 
-void draw_strips(Editor& editor, const Rect& rect);
+struct Context;
+struct Rect;
+
+void draw_strips(Context& context, const Rect& rect);
 
 }  // namespace limber::editor

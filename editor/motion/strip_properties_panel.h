@@ -2,11 +2,12 @@
 // Section of the Pose workspace with the settings of the active strip, while strips are shown.
 #pragma once
 
-#include "editor/context/editor.h"
 #include "editor/ui/section.h"
 
 namespace limber::editor {
 
-void draw_strip_properties(Editor& editor, Column& column);
+struct Context;
+
+void draw_strip_properties(Context& context, Column& column);
 
 }  // namespace limber::editor

@@ -7,9 +7,13 @@
 #pragma once
 
 #include "core/motion/strip_edits.h"
-#include "editor/motion/timeline.h"
+#include "core/project/document.h"
+#include "editor/ui/rect.h"
 
 namespace limber::editor {
+
+struct Context;
+struct Timeline;
 
 struct StripView {
   std::set<std::string> chosen;
@@ -25,37 +29,37 @@ struct StripView {
 
 constexpr float kTrackHeight = 26;  // height of a track, pixels at scale 1
 
-StripView& strip_view(Editor& editor);  // creates the state if there is none
-bool strips_are_shown(const Editor& editor);
-void show_strips(Editor& editor, bool on);
+StripView& strip_view(Timeline& timeline);  // creates the state if there is none
+bool strips_are_shown(const Context& context);
+void show_strips(Context& context, bool on);
 
 // the strips, with a drag in progress; nullptr: the shown clip has none
-const Strips* shown_strips(const Editor& editor);
-double strips_rate(const Editor& editor);  // the shown clip's rate, frames per second
+const Strips* shown_strips(const Context& context);
+double strips_rate(const Document& document);  // the shown clip's rate, frames per second
 // names of the selected strips that exist; empty while the view is hidden
-std::set<std::string> chosen_strips(const Editor& editor);
-const Strip* active_strip(const Editor& editor);  // returns the active strip; nullptr: none is active
-std::optional<std::size_t> active_track(const Editor& editor);
+std::set<std::string> chosen_strips(const Context& context);
+const Strip* active_strip(const Context& context);  // returns the active strip; nullptr: none is active
+std::optional<std::size_t> active_track(const Context& context);
 // Selects this strip and deselects all others.
-void choose_strip(Editor& editor, const std::string& name);
+void choose_strip(Context& context, const std::string& name);
 
 // ---- Edits of the shown clip's strips
 
 // Commits an edit of the strips. If the playing range was the range of the strips before, it is so afterwards.
-void change_strips(Editor& editor, const std::string& label, const std::function<void(Strips&)>& edit);
+void change_strips(Context& context, const std::string& label, const std::function<void(Strips&)>& edit);
 // Shows these strips instead of the clip's, in the view and in the body's pose, until drop_strip_preview() is called.
-void preview_strips(Editor& editor, Strips strips);
-void drop_strip_preview(Editor& editor);
+void preview_strips(Context& context, Strips strips);
+void drop_strip_preview(Context& context);
 // Commits an edit of the active strip, as change_strips() does.
-void change_active_strip(Editor& editor, const std::string& label, const std::function<void(Strip&)>& edit);
-void preview_active_strip(Editor& editor, const std::function<void(Strip&)>& edit);
+void change_active_strip(Context& context, const std::string& label, const std::function<void(Strip&)>& edit);
+void preview_active_strip(Context& context, const std::function<void(Strip&)>& edit);
 
 // ---- Places in the view
-Rect track_rect(const Editor& editor, std::size_t track);  // the track's row over its whole width, pixels
-Rect strip_rect(const Editor& editor, const StripPlace& place);
+Rect track_rect(const Context& context, std::size_t track);  // the track's row over its whole width, pixels
+Rect strip_rect(const Context& context, const StripPlace& place);
 // Returns the number of the track at a height of the view, counted from the lowest; beyond the tracks it is outside
 // their range.
-int track_at(const Editor& editor, float y);
-void scroll_tracks(Editor& editor, float by);  // moves the tracks by this distance, pixels at scale 1
+int track_at(const Context& context, float y);
+void scroll_tracks(Context& context, float by);  // moves the tracks by this distance, pixels at scale 1
 
 }  // namespace limber::editor

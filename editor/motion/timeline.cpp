@@ -5,9 +5,14 @@
 #include <cmath>
 
 #include "core/motion/strips.h"
+#include "core/project/history.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/interaction.h"
 #include "editor/motion/constrained_pose.h"
 #include "editor/shown/shown_pose.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -39,26 +44,26 @@ std::optional<int> frame_after(double frames, int count, AtEnd at_end) {
   return place < count ? place : turn - place;
 }
 
-void count_picture(Editor& editor) {
-  auto& play = editor.timeline->play;
+void count_picture(Context& context) {
+  auto& play = context.timeline->play;
   ++play.pictures;
-  const double passed = editor.now - play.counted_since;
+  const double passed = context.ui->now - play.counted_since;
   if (passed < 1) return;
-  const double wanted = std::min(frame_rate(editor) * play.speed, kWindowRate);
+  const double wanted = std::min(frame_rate(context.document()) * play.speed, kWindowRate);
   const double shown = play.pictures / passed;
   play.pictures_per_second = shown < 0.9 * wanted ? shown : 0;
   play.pictures = 0;
-  play.counted_since = editor.now;
+  play.counted_since = context.ui->now;
 }
 
 }  // namespace
 
-const Clip* shown_clip(const Editor& editor) { return editor.document().shown_clip(); }
+const Clip* shown_clip(const Document& document) { return document.shown_clip(); }
 
-int shown_frame(const Editor& editor) { return editor.timeline->frame.value_or(editor.document().frame); }
+int shown_frame(const Context& context) { return context.timeline->frame.value_or(context.document().frame); }
 
-FrameRange playing_range(const Editor& editor) {
-  const Clip* clip = shown_clip(editor);
+FrameRange playing_range(const Document& document) {
+  const Clip* clip = shown_clip(document);
   const FrameRange range =
       clip ? FrameRange{clip->range_start, clip->range_end} : FrameRange{Clip{}.range_start, Clip{}.range_end};
   return {range.low, std::max(range.low, range.high)};
@@ -75,104 +80,106 @@ FrameRange all_frames(const Clip& clip) {
   return all;
 }
 
-double frame_rate(const Editor& editor) { return shown_clip(editor) ? shown_clip(editor)->rate : Clip{}.rate; }
+double frame_rate(const Document& document) { return shown_clip(document) ? shown_clip(document)->rate : Clip{}.rate; }
 
-const ClipOnRig* clip_on_rig(Editor& editor) {
-  auto& prepared = editor.timeline->prepared;
-  const std::shared_ptr<const Clip> clip = clip_part(editor.document());
-  const std::shared_ptr<const Armature> armature = editor.document().armature;
+const ClipOnRig* clip_on_rig(Context& context) {
+  auto& prepared = context.timeline->prepared;
+  const std::shared_ptr<const Clip> clip = clip_part(context.document());
+  const std::shared_ptr<const Armature> armature = context.document().armature;
   if (!clip || !armature) prepared.reset();
   else if (!prepared || prepared->clip() != clip || prepared->armature() != armature)
     prepared = std::make_unique<ClipOnRig>(clip, armature, prepared.get());
   return prepared.get();
 }
 
-void show_frame(Editor& editor, int frame) {
-  editor.timeline->frame = frame;
-  const ClipOnRig* clip = clip_on_rig(editor);
+void show_frame(Context& context, int frame) {
+  context.timeline->frame = frame;
+  const ClipOnRig* clip = clip_on_rig(context);
   // At the document's frame the views show the document's pose, not the clip's, because the user may have changed the
   // document's pose.
-  if (frame == editor.document().frame && !editor.timeline->play.on) drop_shown_pose(editor);
-  else if (clip && moves(*clip)) show_pose(editor, clip->at(frame));
-  editor.touch();
+  if (frame == context.document().frame && !context.timeline->play.on) drop_shown_pose(context);
+  else if (clip && moves(*clip)) show_pose(context, clip->at(frame));
+  context.ui->touch();
 }
 
-void settle_frame(Editor& editor) {
-  Timeline& timeline = *editor.timeline;
+void settle_frame(Context& context) {
+  Timeline& timeline = *context.timeline;
   if (!timeline.frame) return;
-  Document next = editor.document();
+  Document next = context.document();
   next.frame = *timeline.frame;
-  if (const ClipOnRig* clip = clip_on_rig(editor); clip && moves(*clip))
+  if (const ClipOnRig* clip = clip_on_rig(context); clip && moves(*clip))
     next.pose = pose_part(*next.armature, clip->at(next.frame));
-  drop_frame(editor);
-  if (next.frame == editor.document().frame) return;
+  drop_frame(context);
+  if (next.frame == context.document().frame) return;
   const std::string label = "Frame " + std::to_string(next.frame);
-  if (timeline.revision == editor.history.revision()) editor.history.amend(label, std::move(next));
-  else editor.history.commit(label, std::move(next));
-  timeline.revision = editor.history.revision();
+  if (timeline.revision == context.history->revision()) context.history->amend(label, std::move(next));
+  else context.history->commit(label, std::move(next));
+  timeline.revision = context.history->revision();
 }
 
-void drop_frame(Editor& editor) {
-  if (!editor.timeline->frame) return;
-  editor.timeline->frame.reset();
-  drop_shown_pose(editor);
+void drop_frame(Context& context) {
+  if (!context.timeline->frame) return;
+  context.timeline->frame.reset();
+  drop_shown_pose(context);
 }
 
-void go_to_frame(Editor& editor, int frame) {
-  show_frame(editor, frame);
-  settle_frame(editor);
+void go_to_frame(Context& context, int frame) {
+  show_frame(context, frame);
+  settle_frame(context);
 }
 
-void play(Editor& editor, int direction) {
-  auto& play = editor.timeline->play;
-  const FrameRange range = playing_range(editor);
-  int from = shown_frame(editor);
+void play(Context& context, int direction) {
+  auto& play = context.timeline->play;
+  const FrameRange range = playing_range(context.document());
+  int from = shown_frame(context);
   const int begin = direction > 0 ? range.low : range.high, end = direction > 0 ? range.high : range.low;
   if (from < range.low || from > range.high || (from == end && play.at_end == AtEnd::Stop)) from = begin;
   play.on = true;
   play.direction = direction;
-  play.since = play.counted_since = editor.now;
+  play.since = play.counted_since = context.ui->now;
   play.from = from;
   play.pictures = 0;
   play.pictures_per_second = 0;
-  show_frame(editor, from);
+  show_frame(context, from);
 }
 
-void stop_playing(Editor& editor) {
-  if (!editor.timeline->play.on) return;
-  editor.timeline->play.on = false;
-  settle_frame(editor);
-  editor.touch();
+void stop_playing(Context& context) {
+  if (!context.timeline->play.on) return;
+  context.timeline->play.on = false;
+  settle_frame(context);
+  context.ui->touch();
 }
 
-void advance_time(Editor& editor) {
-  Timeline& timeline = *editor.timeline;
+void advance_time(Context& context) {
+  Timeline& timeline = *context.timeline;
   if (!timeline.play.on) return;
-  if (editor.modal || (editor.drag && editor.drag->button == MouseButton::Left)) return stop_playing(editor);
-  const FrameRange range = playing_range(editor);
+  if (context.interaction->modal ||
+      (context.interaction->drag && context.interaction->drag->button == MouseButton::Left))
+    return stop_playing(context);
+  const FrameRange range = playing_range(context.document());
   const auto& play = timeline.play;
   const bool forwards = play.direction > 0;
   const double begun = forwards ? play.from - range.low : range.high - play.from;
   // 1e-6 frames are added, so that rounding errors do not delay a frame that is due exactly now.
-  const double passed = (editor.now - play.since) * frame_rate(editor) * play.speed + 1e-6;
+  const double passed = (context.ui->now - play.since) * frame_rate(context.document()) * play.speed + 1e-6;
   const auto step = frame_after(begun + passed, range.high - range.low + 1, play.at_end);
   if (!step) {
     timeline.frame = forwards ? range.high : range.low;
-    return stop_playing(editor);
+    return stop_playing(context);
   }
   const int frame = forwards ? range.low + *step : range.high - *step;
   if (timeline.frame != frame) {
-    show_frame(editor, frame);
-    count_picture(editor);
+    show_frame(context, frame);
+    count_picture(context);
   }
 }
 
-void await_next_frame(Editor& editor) {
-  const auto& play = editor.timeline->play;
+void await_next_frame(Context& context) {
+  const auto& play = context.timeline->play;
   if (!play.on) return;
-  const double per_second = frame_rate(editor) * play.speed;
-  const double passed = (editor.now - play.since) * per_second;
-  editor.wake_at(play.since + (std::floor(passed + 1e-6) + 1) / per_second);
+  const double per_second = frame_rate(context.document()) * play.speed;
+  const double passed = (context.ui->now - play.since) * per_second;
+  context.ui->wake_at(play.since + (std::floor(passed + 1e-6) + 1) / per_second);
 }
 
 std::shared_ptr<const Pose> pose_at_frame(const Document& document, std::unique_ptr<ClipOnRig>* prepared) {
@@ -198,11 +205,11 @@ void add_clip(Document& document, Clip clip) {
   document.pose = pose_at_frame(document);
 }
 
-void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit) {
-  settle_frame(editor);
-  Document next = editor.document();
+void edit_clip(Context& context, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit) {
+  settle_frame(context);
+  Document next = context.document();
   const std::optional<Pose> free =
-      pose == PoseThen::Stays && is_constrained(next) ? std::optional(unconstrained_pose(editor)) : std::nullopt;
+      pose == PoseThen::Stays && is_constrained(next) ? std::optional(unconstrained_pose(context)) : std::nullopt;
   if (next.clips.empty()) next.clips.push_back(std::make_shared<const Clip>(Clip{.name = "Keys"}));
   auto& shown = next.clips[static_cast<std::size_t>(next.clip)];
   Clip clip = *shown;
@@ -212,13 +219,13 @@ void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const st
     const double moment = shown->start + std::round((next.frame - shown->start) * clip.rate / shown->rate);
     next.frame = static_cast<int>(std::clamp<double>(moment, left.low, left.high));
     if (next.frame != moment)
-      editor.messages.info("The play head is at frame " + std::to_string(next.frame),
-                           "Its old frame is no longer in the clip");
+      context.messages->info("The play head is at frame " + std::to_string(next.frame),
+                             "Its old frame is no longer in the clip");
   }
   shown = std::make_shared<const Clip>(std::move(clip));
-  if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &editor.timeline->prepared);
-  if (free) remember_free_pose(editor, next, pose_of(next), *free);
-  commit(editor, label, std::move(next));
+  if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &context.timeline->prepared);
+  if (free) remember_free_pose(context.timeline, next, pose_of(next), *free);
+  commit(context, label, std::move(next));
 }
 
 void key_changes(Document& document, const Pose& before, const Pose& pose) {

@@ -19,13 +19,16 @@
 #include <vector>
 
 #include "core/motion/clip.h"
-#include "editor/context/editor.h"
-#include "editor/context/frame_timing.h"
+#include "core/project/document.h"
+#include "editor/ui/rect.h"
 
 namespace limber::editor {
 
+struct Context;
+
 enum class AtEnd { Stop, Loop, PingPong };
 
+class FrameLog;
 struct OnionOutlines;
 struct MotionPaths;
 struct Graph;
@@ -93,32 +96,32 @@ struct Timeline {
 };
 
 // ---- The shown clip and frame
-const Clip* shown_clip(const Editor& editor);  // returns nullptr if no clip is shown
-int shown_frame(const Editor& editor);
+const Clip* shown_clip(const Document& document);  // returns nullptr if no clip is shown
+int shown_frame(const Context& context);
 struct FrameRange {
   int low, high;
 };
-FrameRange playing_range(const Editor& editor);
+FrameRange playing_range(const Document& document);
 // Returns the smallest range of frames that contains the clip's motion or strips, playing range, keys and markers.
 FrameRange all_frames(const Clip& clip);
-double frame_rate(const Editor& editor);
+double frame_rate(const Document& document);
 // Returns the shown clip retargeted to the document's rig, which gives the rig's pose at each frame; nullptr without a
 // clip or a rig.
-const ClipOnRig* clip_on_rig(Editor& editor);
+const ClipOnRig* clip_on_rig(Context& context);
 
 // ---- Going to another frame
-void show_frame(Editor& editor, int frame);  // previews the frame without an edit
-void settle_frame(Editor& editor);           // commits the previewed frame to the document
-void drop_frame(Editor& editor);             // discards the previewed frame and shows the document's frame
-void go_to_frame(Editor& editor, int frame);
+void show_frame(Context& context, int frame);  // previews the frame without an edit
+void settle_frame(Context& context);           // commits the previewed frame to the document
+void drop_frame(Context& context);             // discards the previewed frame and shows the document's frame
+void go_to_frame(Context& context, int frame);
 
 // ---- Playing
-void play(Editor& editor, int direction);
-void stop_playing(Editor& editor);
+void play(Context& context, int direction);
+void stop_playing(Context& context);
 // The editor calls these two functions once per drawn frame. advance_time(), called before the views are drawn, goes to
 // the playing clip's current frame. await_next_frame() asks the editor to wake up when the next frame is due.
-void advance_time(Editor& editor);
-void await_next_frame(Editor& editor);
+void advance_time(Context& context);
+void await_next_frame(Context& context);
 
 // ---- Edits
 
@@ -132,7 +135,7 @@ void add_clip(Document& document, Clip clip);
 // When the edit removes frames of the motion or changes the frame rate, the play head keeps its time in seconds. If the
 // clip no longer has that time, the play head moves to the nearest frame of the clip.
 enum class PoseThen { FromClip, Stays };
-void edit_clip(Editor& editor, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit);
+void edit_clip(Context& context, const std::string& label, PoseThen pose, const std::function<void(Clip&)>& edit);
 // Inserts keys at the document's frame for the bones in which `pose` differs from `before`.
 void key_changes(Document& document, const Pose& before, const Pose& pose);
 

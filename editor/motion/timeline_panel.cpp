@@ -6,8 +6,13 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "editor/context/context.h"
+#include "editor/context/field_edit.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/motion/graph_panel.h"
 #include "editor/motion/strip_panel.h"
 #include "editor/motion/timeline.h"
@@ -17,6 +22,7 @@
 #include "editor/shown/shown_pose.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
+#include "editor/ui/messages.h"
 
 namespace limber::editor {
 
@@ -37,9 +43,9 @@ std::string number_text(int value) {
 
 class Transport {
  public:
-  Transport(Editor& editor, const Rect& bar)
-      : editor_(editor),
-        look_(editor.look),
+  Transport(Context& context, const Rect& bar)
+      : context_(context),
+        look_(context.ui->look),
         bar_(bar),
         x_(bar.low.x + look_.px(8)),
         right_(bar.high.x - look_.px(8)) {}
@@ -48,18 +54,18 @@ class Transport {
     fill(bar_, look_.theme.head);
     fill({{bar_.low.x, bar_.high.y - look_.line()}, bar_.high}, look_.theme.void_);
     draw_right();
-    const bool playing = editor_.timeline->play.on;
+    const bool playing = context_.timeline->play.on;
     tool("motion.first");
     tool("motion.frame_back");
     {
-      const Operator* op = find_operator(editor_, "motion.play");
+      const Operator* op = find_operator(context_.operators, "motion.play");
       const Rect place = next(28);
-      const std::string why = disabled_reason(editor_, *op);
-      if (button(editor_, "motion.play", place,
+      const std::string why = disabled_reason(context_, *op);
+      if (button(context_.ui, "motion.play", place,
                  {playing ? icon::kPause : icon::kPlay, "", playing ? ButtonStyle::Soft : ButtonStyle::Plain,
                   why.empty()}))
-        run(editor_, *op);
-      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor_, *op, place);
+        run(context_, *op);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(context_, *op, place);
     }
     tool("motion.frame_forward");
     tool("motion.last");
@@ -83,9 +89,9 @@ class Transport {
   }
   bool fits(float width) const { return x_ + look_.px(width) < right_; }
   void tool(const char* id) {
-    const Operator* op = find_operator(editor_, id);
-    const bool on = op->checked && op->checked(editor_);
-    operator_button(editor_, id, next(28), "", on ? ButtonStyle::Soft : ButtonStyle::Plain);
+    const Operator* op = find_operator(context_.operators, id);
+    const bool on = op->checked && op->checked(context_);
+    operator_button(context_, id, next(28), "", on ? ButtonStyle::Soft : ButtonStyle::Plain);
   }
   void line() {
     x_ += look_.px(4);
@@ -94,7 +100,7 @@ class Transport {
   }
   void words(const std::string& text) {
     const float width = text_size(look_.fonts.regular, text).x;
-    put_text(editor_, look_.fonts.regular, look_.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}},
+    put_text(context_.ui, look_.fonts.regular, look_.theme.text2, Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}},
              text);
     x_ += width + look_.px(8);
   }
@@ -102,22 +108,22 @@ class Transport {
   void draw_right() {
     const bool wide = bar_.width() > look_.px(900);
     for (const char* id : {"motion.retarget", "file.import_motion"}) {
-      const Operator* op = find_operator(editor_, id);
+      const Operator* op = find_operator(context_.operators, id);
       if (!op) continue;
       const std::string label = !wide ? "" : std::string_view(id) == "file.import_motion" ? "Import BVH..." : op->label;
       const char* sign = std::string_view(id) == "file.import_motion" ? icon::kMotion : op->icon;
-      const ButtonLook face{sign, label, ButtonStyle::Plain, disabled_reason(editor_, *op).empty()};
-      const float width = label.empty() ? look_.px(30) : width_of_button(editor_, face), height = look_.px(26),
+      const ButtonLook face{sign, label, ButtonStyle::Plain, disabled_reason(context_, *op).empty()};
+      const float width = label.empty() ? look_.px(30) : width_of_button(context_.ui, face), height = look_.px(26),
                   y = std::round(bar_.centre().y - height / 2);
       const Rect place{{right_ - width, y}, {right_, y + height}};
-      if (button(editor_, id, place, face)) run(editor_, *op);
-      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(editor_, *op, place);
+      if (button(context_.ui, id, place, face)) run(context_, *op);
+      if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(context_, *op, place);
       right_ = place.low.x - look_.px(6);
     }
   }
 
   void draw_speed() {
-    const auto& playing = editor_.timeline->play;
+    const auto& playing = context_.timeline->play;
     char text[24];
     const bool slow = playing.on && playing.pictures_per_second > 0;
     if (slow) std::snprintf(text, sizeof text, "%.0f fps", playing.pictures_per_second);
@@ -126,23 +132,23 @@ class Transport {
                     playing.speed < 1 && playing.speed != 0.5 && playing.speed != 0.1 ? "%.2f\u00d7" : "%.1f\u00d7",
                     playing.speed);
     const Rect place = next(74);
-    const Pressed pressed = press_area(editor_, "speed", place);
+    const Pressed pressed = press_area(context_.ui, "speed", place);
     fill(place, pressed.hovered ? look_.theme.hover : look_.theme.raised, look_.px(4));
-    put_text(editor_, look_.fonts.mono, slow ? look_.theme.warn : look_.theme.text,
+    put_text(context_.ui, look_.fonts.mono, slow ? look_.theme.warn : look_.theme.text,
              Rect{{place.low.x + look_.px(8), place.low.y}, {place.high.x - look_.px(20), place.high.y}}, text);
     put_icon(look_.fonts.regular, look_.theme.text2, Rect{{place.high.x - look_.px(20), place.low.y}, place.high},
              icon::kOpened);
     if (pressed.hovered)
-      tooltip(editor_, place, "Speed",
+      tooltip(context_.ui, place, "Speed",
               slow ? "Drawn frames per second: some frames are skipped to keep the clip's speed."
                    : "Playing speed relative to the clip's own rate.");
     if (pressed.clicked) ImGui::OpenPopup("speeds");
     if (!ImGui::BeginPopup("speeds", ImGuiWindowFlags_NoMove)) return;
-    editor_.place.region = Region::Popup;
+    context_.ui->place.region = Region::Popup;
     for (const char* id : {"motion.faster", "motion.slower", "motion.play_at_file_rate", "motion.loop",
                            "motion.ping_pong", "motion.show_seconds"})
-      operator_menu_item(editor_, id);
-    editor_.place.region = Region::Bottom;
+      operator_menu_item(context_, id);
+    context_.ui->place.region = Region::Bottom;
     ImGui::EndPopup();
   }
 
@@ -154,10 +160,10 @@ class Transport {
     const float height = look_.px(22), y = std::round(bar_.centre().y - height / 2), width = look_.px(62);
     const Rect place{{x_, y}, {x_ + width, y + height}};
     x_ += width + look_.px(4);
-    auto& edited = editor_.edited_number;
+    auto& edited = context_.field_edit->number;
     double number = edited.name == name ? edited.value : value;
     bool committed = false;
-    if (number_field(editor_, name, place, number, -1e6, 1e6, "%.0f", "", false, committed)) {
+    if (number_field(context_.ui, name, place, number, -1e6, 1e6, "%.0f", "", false, committed)) {
       edited = {name, number};
       if (moved) moved(static_cast<int>(std::round(number)));
     }
@@ -169,15 +175,15 @@ class Transport {
 
   void draw_frame() {
     words("Frame");
-    number("Frame", shown_frame(editor_), {}, [this](int frame) {
-      stop_playing(editor_);
+    number("Frame", shown_frame(context_), {}, [this](int frame) {
+      stop_playing(context_);
       // A typed frame outside a clip that has a motion moves to the clip's nearest frame. A clip without a motion has
       // no such limits, because keys may be set at any frame.
-      const Clip* clip = shown_clip(editor_);
+      const Clip* clip = shown_clip(context_.document());
       const FrameRange all = clip && clip->motion ? all_frames(*clip) : FrameRange{frame, frame};
-      go_to_frame(editor_, std::clamp(frame, all.low, all.high));
+      go_to_frame(context_, std::clamp(frame, all.low, all.high));
       if (frame < all.low || frame > all.high)
-        editor_.messages.info(
+        context_.messages->info(
             "Frame " + std::to_string(frame) + " is outside the clip",
             clip->name + " has frames " + std::to_string(all.low) + " to " + std::to_string(all.high));
     });
@@ -186,35 +192,35 @@ class Transport {
 
   void draw_range() {
     words("Range");
-    const FrameRange range = playing_range(editor_);
+    const FrameRange range = playing_range(context_.document());
     number("Range start", range.low, {}, [&](int frame) {
       set(std::min(frame, range.high), range.high);
       if (frame > range.high)
-        editor_.messages.info("The range begins at frame " + std::to_string(range.high),
-                              "A range cannot begin after its end");
+        context_.messages->info("The range begins at frame " + std::to_string(range.high),
+                                "A range cannot begin after its end");
     });
     number("Range end", range.high, {}, [&](int frame) {
       set(range.low, std::max(range.low, frame));
       if (frame < range.low)
-        editor_.messages.info("The range ends at frame " + std::to_string(range.low),
-                              "A range cannot end before its beginning");
+        context_.messages->info("The range ends at frame " + std::to_string(range.low),
+                                "A range cannot end before its beginning");
     });
   }
   // Sets the playing range, which may reach beyond the clip's frames, and zooms out if part of it is not visible.
   void set(int low, int high) {
-    edit_clip(editor_, "Set range", PoseThen::Stays, [&](Clip& clip) {
+    edit_clip(context_, "Set range", PoseThen::Stays, [&](Clip& clip) {
       clip.range_start = low;
       clip.range_end = high;
     });
-    const auto& window = editor_.timeline->window;
-    if (low < window.low || high > window.low + window.count) fit_window(editor_);
+    const auto& window = context_.timeline->window;
+    if (low < window.low || high > window.low + window.count) fit_window(context_);
   }
 
   void draw_keying() {
-    const Operator* op = find_operator(editor_, "motion.insert_key");
-    const bool enabled = disabled_reason(editor_, *op).empty(), long_form = fits(170);
+    const Operator* op = find_operator(context_.operators, "motion.insert_key");
+    const bool enabled = disabled_reason(context_, *op).empty(), long_form = fits(170);
     const Rect place = next(long_form ? 124 : 30);
-    const Pressed pressed = press_area(editor_, "motion.insert_key", place, enabled);
+    const Pressed pressed = press_area(context_.ui, "motion.insert_key", place, enabled);
     fill(place,
          pressed.hovered && enabled ? look_.theme.hover
          : enabled                  ? look_.theme.raised
@@ -223,27 +229,28 @@ class Transport {
     put_icon(look_.fonts.regular, enabled ? look_.theme.select : look_.theme.text3,
              Rect{{place.low.x + look_.px(7), place.low.y}, {place.low.x + look_.px(23), place.high.y}}, icon::kKey);
     if (long_form) {
-      put_text(editor_, look_.fonts.regular, enabled ? look_.theme.text : look_.theme.text3,
+      put_text(context_.ui, look_.fonts.regular, enabled ? look_.theme.text : look_.theme.text3,
                Rect{{place.low.x + look_.px(29), place.low.y}, place.high}, "Insert key");
-      put_key_caps(editor_, place.high.x - look_.px(7) - width_of_key_caps(editor_, {"I"}), place.centre().y, {"I"});
+      put_key_caps(context_.ui, place.high.x - look_.px(7) - width_of_key_caps(context_.ui, {"I"}), place.centre().y,
+                   {"I"});
     }
-    if (pressed.hovered) operator_tooltip(editor_, *op, place);
-    if (pressed.clicked) run(editor_, *op);
+    if (pressed.hovered) operator_tooltip(context_, *op, place);
+    if (pressed.clicked) run(context_, *op);
     if (!fits(30)) return;
-    const Operator* automatic = find_operator(editor_, "motion.auto_key");
+    const Operator* automatic = find_operator(context_.operators, "motion.auto_key");
     const Rect dot = next(28);
-    const Pressed on = press_area(editor_, "motion.auto_key", dot);
+    const Pressed on = press_area(context_.ui, "motion.auto_key", dot);
     fill(dot,
-         on.hovered                   ? look_.theme.hover
-         : editor_.timeline->auto_key ? look_.theme.accent_soft
-                                      : look_.theme.raised,
+         on.hovered                    ? look_.theme.hover
+         : context_.timeline->auto_key ? look_.theme.accent_soft
+                                       : look_.theme.raised,
          look_.px(4));
-    put_icon(look_.fonts.regular, editor_.timeline->auto_key ? look_.theme.error : look_.theme.text3, dot, icon::kDot);
-    if (on.hovered) operator_tooltip(editor_, *automatic, dot);
-    if (on.clicked) run(editor_, *automatic);
+    put_icon(look_.fonts.regular, context_.timeline->auto_key ? look_.theme.error : look_.theme.text3, dot, icon::kDot);
+    if (on.hovered) operator_tooltip(context_, *automatic, dot);
+    if (on.clicked) run(context_, *automatic);
   }
 
-  Editor& editor_;
+  Context& context_;
   const Look& look_;
   Rect bar_;
   float x_, right_;
@@ -254,10 +261,10 @@ class Transport {
 // Draws the markers with their names and returns the rectangles that they cover. A marker's name stands on its right
 // and is cut off before the next marker. The name of the last shown marker is drawn on its left if it does not fit on
 // its right and there is more room on its left.
-std::vector<Rect> draw_markers(Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const Clip* clip = shown_clip(editor);
+std::vector<Rect> draw_markers(Context& context) {
+  const Look& look = context.ui->look;
+  const Timeline& timeline = *context.timeline;
+  const Clip* clip = shown_clip(context.document());
   std::vector<Rect> covered;
   if (!clip || timeline.marks.empty()) return covered;
   const Rect& row = timeline.marks;
@@ -276,7 +283,7 @@ std::vector<Rect> draw_markers(Editor& editor) {
     const Rect name = at_left
                           ? Rect{{x - gap - std::min(width, left), row.low.y}, {x - gap, row.high.y}}
                           : Rect{{x + gap, row.low.y}, {x + gap + std::min(width, std::max(0.0f, right)), row.high.y}};
-    put_text(editor, look.fonts.small, look.theme.ok, name, marker.name);
+    put_text(context.ui, look.fonts.small, look.theme.ok, name, marker.name);
     covered.push_back({{std::min(x - half, name.low.x), row.low.y}, {std::max(x + half, name.high.x), row.high.y}});
     begin = covered.back().high.x + gap;
   }
@@ -296,12 +303,12 @@ float degrees_from_rest(const Pose& pose, int bone) {
 
 // Adds up to kAtOnce samples to the curve of the active bone's angle. While samples are missing, asks the editor to
 // draw another frame, in which the next samples are added.
-void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& lane) {
-  Timeline& timeline = *editor.timeline;
+void sample_curve(Context& context, const ClipOnRig& clip, int bone, const Rect& lane) {
+  Timeline& timeline = *context.timeline;
   auto& curve = timeline.curve;
   // Samples lie at integer frames, because a motion has no poses between frames.
   const double per_pixel = timeline.window.count / std::max(1.0f, lane.width());
-  const int step = static_cast<int>(std::clamp(std::ceil(kPerSample * editor.look.scale * per_pixel), 1.0, 1e7));
+  const int step = static_cast<int>(std::clamp(std::ceil(kPerSample * context.ui->look.scale * per_pixel), 1.0, 1e7));
   const int first = static_cast<int>(std::clamp(std::floor(timeline.window.low / step) * step, -1e8, 1e8));
   if (curve.clip != clip.clip().get() || curve.bone != bone || curve.first != first || curve.step != step)
     curve = {clip.clip().get(), bone, first, step, {}};
@@ -311,36 +318,37 @@ void sample_curve(Editor& editor, const ClipOnRig& clip, int bone, const Rect& l
     const Pose pose = clip.at(first + step * static_cast<int>(curve.angles.size()));
     curve.angles.emplace_back(degrees_from_rest(pose, bone), parent >= 0 ? degrees_from_rest(pose, parent) : 0.0f);
   }
-  if (curve.angles.size() < wanted) editor.touch();
+  if (curve.angles.size() < wanted) context.ui->touch();
 }
 
-void draw_curve(Editor& editor, const Rect& bar) {
-  const Timeline& timeline = *editor.timeline;
-  const ClipOnRig* clip = clip_on_rig(editor);
-  const int bone = editor.selection.bone.value_or(-1);
-  if (!clip || bone < 0 || bone >= std::ssize(clip->armature()->bones) || bar.height() < editor.look.px(40)) return;
-  sample_curve(editor, *clip, bone, timeline.lane);
+void draw_curve(Context& context, const Rect& bar) {
+  const Timeline& timeline = *context.timeline;
+  const ClipOnRig* clip = clip_on_rig(context);
+  const int bone = context.selection->bone.value_or(-1);
+  if (!clip || bone < 0 || bone >= std::ssize(clip->armature()->bones) || bar.height() < context.ui->look.px(40))
+    return;
+  sample_curve(context, *clip, bone, timeline.lane);
   const auto& angles = timeline.curve.angles;
   float most = 1;
   for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
   // The curve is lower than the bar, so that there is room for the clip's name above the curve.
-  const float low = bar.high.y - editor.look.px(5), height = bar.height() - editor.look.px(32);
+  const float low = bar.high.y - context.ui->look.px(5), height = bar.height() - context.ui->look.px(32);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::PushClipRect(im(bar.low), im(bar.high), true);
-  const Colour colours[] = {kAngle, with_alpha(editor.look.theme.text3, 0.7f)};
+  const Colour colours[] = {kAngle, with_alpha(context.ui->look.theme.text3, 0.7f)};
   for (int line = clip->armature()->bones[bone].parent >= 0 ? 1 : 0; line >= 0; --line) {
     for (std::size_t i = 0; i < angles.size(); ++i)
       list.PathLineTo({x_of(timeline, timeline.curve.first + static_cast<double>(i) * timeline.curve.step),
                        low - height * angles[i][line] / most});
-    list.PathStroke(colours[line], 0, (line == 0 ? 1.5f : 1.0f) * editor.look.scale);
+    list.PathStroke(colours[line], 0, (line == 0 ? 1.5f : 1.0f) * context.ui->look.scale);
   }
   ImGui::PopClipRect();
 }
 
-void draw_lane(Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const Clip* clip = shown_clip(editor);
+void draw_lane(Context& context) {
+  const Look& look = context.ui->look;
+  const Timeline& timeline = *context.timeline;
+  const Clip* clip = shown_clip(context.document());
   if (!clip || (!clip->motion && !clip->strips)) return;
   const Rect& lane = timeline.lane;
   StripSpan span{clip->start, clip->end()};
@@ -350,36 +358,37 @@ void draw_lane(Editor& editor) {
   if (bar.empty()) return;
   fill(bar, look.theme.accent_soft, look.px(3));
   outline(bar, look.theme.accent, look.px(3), look.line());
-  draw_curve(editor, bar);
+  draw_curve(context, bar);
   const float y = bar.low.y + look.px(3), right = bar.high.x - look.px(6);
   float x = bar.low.x + look.px(10);
   const float name = std::min(text_size(look.fonts.semibold, clip->name).x + 1, right - x);
   if (name < look.px(20)) return;
-  put_text(editor, look.fonts.semibold, look.theme.accent_text, Rect{{x, y}, {x + name, y + look.px(18)}}, clip->name);
+  put_text(context.ui, look.fonts.semibold, look.theme.accent_text, Rect{{x, y}, {x + name, y + look.px(18)}},
+           clip->name);
   x += name + look.px(14);
   char facts[128];
   const std::string frames = number_text(span.last - span.first + 1);
-  const Document& document = editor.document();
-  const int bone = editor.selection.bone.value_or(-1);
+  const Document& document = context.document();
+  const int bone = context.selection->bone.value_or(-1);
   const bool chosen = document.armature && bone >= 0 && bone < std::ssize(document.armature->bones);
   std::snprintf(facts, sizeof facts, "%.5g fps \u00b7 %s frames%s%.40s%s", clip->rate, frames.c_str(),
                 chosen ? " \u00b7 " : "", chosen ? document.armature->bones[bone].name.c_str() : "",
                 chosen ? " angle" : "");
   if (right - x > look.px(40))
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, y}, {right, y + look.px(18)}}, facts);
+    put_text(context.ui, look.fonts.small, look.theme.text2, Rect{{x, y}, {right, y + look.px(18)}}, facts);
 }
 
-void draw_keys(Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const Clip* clip = shown_clip(editor);
+void draw_keys(Context& context) {
+  const Look& look = context.ui->look;
+  const Timeline& timeline = *context.timeline;
+  const Clip* clip = shown_clip(context.document());
   if (!clip) return;
   const float y = std::round(timeline.keys.centre().y), half = look.px(6);
   for (int frame : frames_of(clip->keys)) {
     const auto moving = timeline.moving.find(frame);
     const float x = std::round(x_of(timeline, moving == timeline.moving.end() ? frame : moving->second));
     if (x < timeline.keys.low.x - half || x > timeline.keys.high.x + half) continue;
-    const bool chosen = timeline.chosen.contains(frame) || frame == shown_frame(editor);
+    const bool chosen = timeline.chosen.contains(frame) || frame == shown_frame(context);
     ImGui::GetWindowDrawList()->AddQuadFilled({x, y - half}, {x + half, y}, {x, y + half}, {x - half, y},
                                               chosen ? look.theme.select : look.theme.text);
   }
@@ -389,9 +398,9 @@ void draw_keys(Editor& editor) {
   outline(box, look.theme.select, 0, look.line());
 }
 
-void place_rows(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
-  Timeline& timeline = *editor.timeline;
+void place_rows(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
+  Timeline& timeline = *context.timeline;
   const float left = rect.low.x + look.px(kLabels), right = rect.high.x - look.px(kRulerEnds);
   float y = rect.low.y;
   const auto row = [&](float height) {
@@ -399,7 +408,7 @@ void place_rows(Editor& editor, const Rect& rect) {
     y = place.high.y;
     return place;
   };
-  editor.timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
+  context.screen->timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
   timeline.ruler = row(look.px(kRulerHeight));
   // If the timeline is low, its rows are thinner. If it is very low, the row of markers is left out.
   const float rest = rect.high.y - y;
@@ -413,54 +422,55 @@ void place_rows(Editor& editor, const Rect& rect) {
 
 }  // namespace
 
-void draw_timeline(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
-  Timeline& timeline = *editor.timeline;
-  const PathScope path(editor, "timeline");
+void draw_timeline(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
+  Timeline& timeline = *context.timeline;
+  const PathScope path(context.ui, "timeline");
   const Rect bar{rect.low, {rect.high.x, rect.low.y + look.px(kTransport)}};
-  Transport(editor, bar).draw();
+  Transport(context, bar).draw();
   const Rect rows{{rect.low.x, bar.high.y}, rect.high};
-  const Clip* clip = shown_clip(editor);
+  const Clip* clip = shown_clip(context.document());
   if (!clip) {
-    editor.timeline_area = timeline.area = timeline.ruler = timeline.marks = timeline.lane = timeline.keys = {};
-    editor.graph_area = {};
-    if (empty_state(editor, rows, "No clip", "Import BVH...")) run(editor, "file.import_motion");
+    context.screen->timeline_area = timeline.area = timeline.ruler = timeline.marks = timeline.lane =
+        timeline.keys = {};
+    context.screen->graph_area = {};
+    if (empty_state(context.ui, rows, "No clip", "Import BVH...")) run(context, "file.import_motion");
     return;
   }
-  editor.graph_area = {};
-  if (!timeline.shows_graph && !timeline.shows_strips) place_rows(editor, rows);
+  context.screen->graph_area = {};
+  if (!timeline.shows_graph && !timeline.shows_strips) place_rows(context, rows);
   const std::string fitted = clip->name + std::to_string(clip->start) + "+" + std::to_string(clip->end());
   if (timeline.window.clip != fitted) {
     timeline.window.clip = fitted;
     timeline.window.followed.reset();
     timeline.chosen.clear();
-    fit_window(editor);
+    fit_window(context);
   }
-  follow_head(editor);
+  follow_head(context);
   // The switch beside the ruler selects the rows, the graph editor or the strips.
   const bool wide = timeline.shows_graph || timeline.shows_strips;
   const glm::vec2 corner = rows.low + glm::vec2(look.px(wide ? 12 : 2), look.px(1));
-  draw_face_switch(editor, {corner, corner + glm::vec2(look.px(wide ? 64 : 53), look.px(kRulerHeight - 2))});
-  if (!shown_clip(editor)) return;
-  if (timeline.shows_graph) return draw_graph(editor, rows);
-  if (timeline.shows_strips) return draw_strips(editor, rows);
+  draw_face_switch(context, {corner, corner + glm::vec2(look.px(wide ? 64 : 53), look.px(kRulerHeight - 2))});
+  if (!shown_clip(context.document())) return;
+  if (timeline.shows_graph) return draw_graph(context, rows);
+  if (timeline.shows_strips) return draw_strips(context, rows);
   for (const auto& [name, place] :
        {std::pair<const char*, Rect>{"Marks", timeline.marks}, {"Clip", timeline.lane}, {"Keys", timeline.keys}})
     if (!place.empty())
-      put_text(editor, look.fonts.small, look.theme.text3,
+      put_text(context.ui, look.fonts.small, look.theme.text3,
                Rect{{rect.low.x + look.px(12), place.low.y}, {place.low.x - look.px(4), place.high.y}}, name);
   for (const auto& [name, place] : {std::pair<const char*, Rect>{"ruler", timeline.ruler},
                                     {"marks", timeline.marks},
                                     {"lane", timeline.lane},
                                     {"keys", timeline.keys}})
-    register_widget(editor, name, place);
+    register_widget(context.ui, name, place);
   ImGui::PushClipRect(im(timeline.area.low - glm::vec2(look.px(26), 0)),
                       im(timeline.area.high + glm::vec2(look.px(kRulerEnds), 0)), true);
-  draw_ruler(editor);
-  draw_lane(editor);
-  const std::vector<Rect> covered = draw_markers(editor);
-  draw_keys(editor);
-  draw_play_head(editor, covered);
+  draw_ruler(context);
+  draw_lane(context);
+  const std::vector<Rect> covered = draw_markers(context);
+  draw_keys(context);
+  draw_play_head(context, covered);
   ImGui::PopClipRect();
 }
 

@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/motion/timeline.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/ui/draw.h"
 
@@ -32,11 +35,11 @@ struct Head {
   Rect tab;
 };
 
-Head head_of(const Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const int frame = shown_frame(editor);
-  const std::string seconds = seconds_text(frame, frame_rate(editor));
+Head head_of(const Context& context) {
+  const Look& look = context.ui->look;
+  const Timeline& timeline = *context.timeline;
+  const int frame = shown_frame(context);
+  const std::string seconds = seconds_text(frame, frame_rate(context.document()));
   Head head{std::round(x_of(timeline, frame)),
             0,
             timeline.seconds ? seconds : std::to_string(frame),
@@ -59,11 +62,11 @@ double round_step(double least) {
   return 10 * power;
 }
 
-void draw_ruler(Editor& editor) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
+void draw_ruler(Context& context) {
+  const Look& look = context.ui->look;
+  const Timeline& timeline = *context.timeline;
   const Rect& ruler = timeline.ruler;
-  const FrameRange range = playing_range(editor);
+  const FrameRange range = playing_range(context.document());
   fill(ruler, look.theme.field);
   const Rect inside =
       intersection(ruler, {{x_of(timeline, range.low), ruler.low.y}, {x_of(timeline, range.high), ruler.high.y}});
@@ -73,12 +76,12 @@ void draw_ruler(Editor& editor) {
     if (x >= ruler.low.x && x < ruler.high.x)
       fill({{x, ruler.low.y}, {x + look.line(), timeline.area.high.y}}, look.theme.line2);
   }
-  const double unit = timeline.seconds ? frame_rate(editor) : 1,
+  const double unit = timeline.seconds ? frame_rate(context.document()) : 1,
                per_pixel = timeline.window.count / std::max(1.0f, ruler.width());
   double step = round_step(look.px(kLeastTicks) * per_pixel / unit);
   if (!timeline.seconds) step = std::max(1.0, step);
   const double minor = step / 5, end = (timeline.window.low + timeline.window.count) / unit;
-  const Rect tab = head_of(editor).tab;
+  const Rect tab = head_of(context).tab;
   for (auto i = static_cast<std::int64_t>(std::ceil(timeline.window.low / unit / minor));
        static_cast<double>(i) * minor <= end; ++i) {
     const double at = static_cast<double>(i) * minor;
@@ -92,14 +95,14 @@ void draw_ruler(Editor& editor) {
     const Rect place{corner - look.px(3), corner + text_size(look.fonts.small_mono, text) + look.px(3)};
     // A number is not drawn if the play head's tab would cover it or the ruler's end would cut it off.
     if (intersection(place, tab).empty() && place.high.x <= ruler.high.x + look.px(kRulerEnds))
-      put_text(editor, look.fonts.small_mono, look.theme.text2, corner, text);
+      put_text(context.ui, look.fonts.small_mono, look.theme.text2, corner, text);
   }
 }
 
-void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
-  const Look& look = editor.look;
-  const Timeline& timeline = *editor.timeline;
-  const Head head = head_of(editor);
+void draw_play_head(Context& context, const std::vector<Rect>& covered) {
+  const Look& look = context.ui->look;
+  const Timeline& timeline = *context.timeline;
+  const Head head = head_of(context);
   fill(head.tab, look.theme.select, look.px(4));
   if (head.beyond) {
     const float side = static_cast<float>(head.beyond),
@@ -108,11 +111,11 @@ void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
                                                   {tip - side * look.px(6), y + look.px(5)}, look.theme.on_select);
     const Rect rest = side > 0 ? Rect{head.tab.low, {tip - look.px(6), head.tab.high.y}}
                                : Rect{{tip + look.px(6), head.tab.low.y}, head.tab.high};
-    return put_text(editor, look.fonts.small_mono, look.theme.on_select, rest, head.text, Align::Centre);
+    return put_text(context.ui, look.fonts.small_mono, look.theme.on_select, rest, head.text, Align::Centre);
   }
   const float half = std::max(1.0f, std::round(look.scale));
   fill({{head.x - half, timeline.ruler.low.y}, {head.x + half, timeline.area.high.y}}, look.theme.select);
-  put_text(editor, look.fonts.small_mono, look.theme.on_select, head.tab, head.text, Align::Centre);
+  put_text(context.ui, look.fonts.small_mono, look.theme.on_select, head.tab, head.text, Align::Centre);
   if (timeline.marks.empty()) return;
   const Rect& row = timeline.marks;
   const float width = text_size(look.fonts.small_mono, head.other).x + 1;
@@ -121,14 +124,14 @@ void draw_play_head(Editor& editor, const std::vector<Rect>& covered) {
     const bool free = std::none_of(covered.begin(), covered.end(),
                                    [&](const Rect& other) { return !intersection(place, other).empty(); });
     if (free && place.low.x >= row.low.x && place.high.x <= row.high.x + look.px(kRulerEnds))
-      return put_text(editor, look.fonts.small_mono, look.theme.select, place, head.other);
+      return put_text(context.ui, look.fonts.small_mono, look.theme.select, place, head.other);
   }
 }
 
-void follow_head(Editor& editor) {
-  auto& window = editor.timeline->window;
-  const int frame = shown_frame(editor);
-  if (window.followed == frame || editor.drag) return;
+void follow_head(Context& context) {
+  auto& window = context.timeline->window;
+  const int frame = shown_frame(context);
+  if (window.followed == frame || context.interaction->drag) return;
   const bool first = !window.followed;
   window.followed = frame;
   if (first) return;

@@ -2,6 +2,8 @@
 #include "editor/pose/body_pose_cards.h"
 
 #include "core/pose/body_poses.h"
+#include "core/project/document.h"
+#include "editor/context/context.h"
 #include "editor/context/transform_settings.h"
 #include "editor/file_browser/thumbnails.h"
 #include "editor/volume/body_picture.h"
@@ -26,16 +28,16 @@ void draw_pictures(const std::shared_ptr<const Armature>& armature, PoseLibrary&
 
 }  // namespace
 
-const PoseLibrary& body_pose_cards(const Editor& editor) {
-  auto& known = editor.transform_settings->body_poses;
-  const std::shared_ptr<const Armature>& armature = editor.document().armature;
+const PoseLibrary& body_pose_cards(const Context& context) {
+  auto& known = context.transform_settings->body_poses;
+  const std::shared_ptr<const Armature>& armature = context.document().armature;
   if (known.armature != armature) known = {armature, armature ? body_pose_library(*armature) : PoseLibrary{}};
   return known.poses;
 }
 
-const PoseLibrary& pictured_body_pose_cards(const Editor& editor) {
-  body_pose_cards(editor);
-  auto& known = editor.transform_settings->body_poses;
+const PoseLibrary& pictured_body_pose_cards(const Context& context) {
+  body_pose_cards(context);
+  auto& known = context.transform_settings->body_poses;
   if (!known.poses.empty() && known.poses.front()->picture.empty()) draw_pictures(known.armature, known.poses);
   return known.poses;
 }

@@ -6,15 +6,16 @@
 #include <string>
 
 #include "core/pose/pose_library.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
 
+struct Context;
+
 // Returns the built-in poses for the open rig. They are computed again when the rig changes. The library is empty
 // without a rig, or when the names of the rig's bones are not recognised.
-const PoseLibrary& body_pose_cards(const Editor& editor);
+const PoseLibrary& body_pose_cards(const Context& context);
 // Returns the built-in poses for the open rig with their pictures. The pictures are drawn at the first call.
-const PoseLibrary& pictured_body_pose_cards(const Editor& editor);
+const PoseLibrary& pictured_body_pose_cards(const Context& context);
 
 // Returns the name by which TransformSettings::library_pose refers to a built-in pose. No pose of the user can have
 // this name.

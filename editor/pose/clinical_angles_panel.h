@@ -8,6 +8,8 @@
 
 namespace limber::editor {
 
-void draw_clinical_angles(Editor& editor, Column& column);
+struct Context;
+
+void draw_clinical_angles(Context& context, Column& column);
 
 }  // namespace limber::editor

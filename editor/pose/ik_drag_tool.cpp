@@ -5,8 +5,13 @@
 
 #include "core/rig/inverse_kinematics.h"
 #include "core/rig/mirror.h"
+#include "editor/context/context.h"
+#include "editor/context/layout.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/selection.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_tools.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -18,17 +23,17 @@ constexpr double kPinWeight = 10;  // IK weight of a pinned joint's target; the 
 
 class Dragging final : public TransformTool {
  public:
-  Dragging(Editor& editor, const Grip& grip)
-      : TransformTool(editor, grip),
-        armature_(editor.document().armature),
-        before_(pose_of(editor.document())),
-        bone_(editor.selection.bone.value_or(0)) {
+  Dragging(Context& context, const Grip& grip)
+      : TransformTool(context, grip),
+        armature_(context.document().armature),
+        before_(pose_of(context.document())),
+        bone_(context.selection->bone.value_or(0)) {
     const Bone& bone = armature_->bones[bone_];
     is_root_ = bone.parent < 0;
     const auto posed = posed_from_rest(*armature_, before_);
     from_ = target_ = posed[bone_] * (is_root_ ? bone.head : bone.tail);
-    chain_ = editor.transform_settings->auto_ik ? limb_of(*armature_, bone_) : 1;
-    const Anchors& anchors = anchors_of(editor.document());
+    chain_ = context.transform_settings->auto_ik ? limb_of(*armature_, bone_) : 1;
+    const Anchors& anchors = anchors_of(context.document());
     for (const std::string& name : anchors.pins)
       if (const auto pin = armature_->find(name); pin && *pin != bone_)
         pins_.push_back({.bone = *pin,
@@ -38,9 +43,9 @@ class Dragging final : public TransformTool {
     if (const auto pole = anchors.poles.find(bone.name); pole != anchors.poles.end()) pole_ = pole->second;
   }
 
-  bool wheel(Editor& editor, float steps) override {
+  bool wheel(Context& context, float steps) override {
     chain_ = std::clamp(chain_ + (steps > 0 ? 1 : -1), 1, depth_of(bone_));
-    show(editor);
+    show(context);
     return true;
   }
 
@@ -52,19 +57,19 @@ class Dragging final : public TransformTool {
     return text;
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     auto hints = shared_hints();
     if (!is_root_) hints.insert(hints.begin(), {{"Wheel"}, "Length of the chain"});
     return hints;
   }
 
-  void cancel(Editor& editor) override { drop_shown_pose(editor); }
+  void cancel(Context& context) override { drop_shown_pose(context); }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
-    const GizmoPainter painter(editor, view_);
-    const Theme& theme = editor.look.theme;
-    const auto posed = posed_from_rest(*armature_, seen_pose(editor));
+    const GizmoPainter painter(context, view_);
+    const Theme& theme = context.ui->look.theme;
+    const auto posed = posed_from_rest(*armature_, seen_pose(context));
     int bone = bone_;
     for (int i = 0; !is_root_ && i < chain_ && bone >= 0; ++i, bone = armature_->bones[bone].parent)
       painter.line(posed[bone] * armature_->bones[bone].head, posed[bone] * armature_->bones[bone].tail, kViewAccent,
@@ -93,12 +98,12 @@ class Dragging final : public TransformTool {
     return depth;
   }
 
-  Pose pose(Editor& editor) {
-    target_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
+  Pose pose(Context& context) {
+    target_ = dragged(context, from_, kSnapMillimetres, kSnapFineMillimetres);
     ReachSettings settings;
-    settings.keep_limits = editor.posing.keep_limits;
+    settings.keep_limits = context.posing->keep_limits;
     // The IK solver starts from the shown pose, so that the limb does not jump from one drawn frame to the next.
-    Pose start = shown_pose(editor);
+    Pose start = shown_pose(context);
     std::vector<ReachGoal> goals = pins_;
     if (is_root_) {
       start.root_translation = before_.root_translation + target_ - from_;
@@ -110,7 +115,7 @@ class Dragging final : public TransformTool {
     const Reach found = reach(*armature_, start, goals, settings);
     reached_ = found.reached;
     short_of_ = found.distance;
-    const Pose next = mirrored_too(editor, before_, found.pose);
+    const Pose next = mirrored_too(context, before_, found.pose);
     mirrored_ = changed_bones(found.pose, next);
     return next;
   }
@@ -127,13 +132,13 @@ class Dragging final : public TransformTool {
     if (!is_root_) chain_ = static_cast<int>(std::round(fields[4].value));
   }
 
-  void show(Editor& editor) override {
-    const Pose next = pose(editor);
-    preview_pose(editor, next, mirrored_);
+  void show(Context& context) override {
+    const Pose next = pose(context);
+    preview_pose(context, next, mirrored_);
   }
-  void keep(Editor& editor) override {
-    const Pose next = pose(editor);
-    commit_pose(editor, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, next, mirrored_);
+  void keep(Context& context) override {
+    const Pose next = pose(context);
+    commit_pose(context, is_root_ ? "Move body" : "Reach with " + armature_->bones[bone_].name, next, mirrored_);
   }
 
   std::shared_ptr<const Armature> armature_;
@@ -152,38 +157,38 @@ class Dragging final : public TransformTool {
 // image, if that limb has a pole.
 class DraggingPole final : public TransformTool {
  public:
-  DraggingPole(Editor& editor, const Grip& grip)
-      : TransformTool(editor, grip),
-        armature_(editor.document().armature),
-        before_(pose_of(editor.document())),
-        bone_(*editor.selection.bone),
-        from_(anchors_of(editor.document()).poles.at(armature_->bones[bone_].name)) {
+  DraggingPole(Context& context, const Grip& grip)
+      : TransformTool(context, grip),
+        armature_(context.document().armature),
+        before_(pose_of(context.document())),
+        bone_(*context.selection->bone),
+        from_(anchors_of(context.document()).poles.at(armature_->bones[bone_].name)) {
     const int other = mirror_pairs(*armature_)[bone_];
-    if (editor.transform_settings->x_mirror && other != bone_ &&
-        anchors_of(editor.document()).poles.contains(armature_->bones[other].name))
+    if (context.transform_settings->x_mirror && other != bone_ &&
+        anchors_of(context.document()).poles.contains(armature_->bones[other].name))
       other_ = other;
   }
 
   std::string title() const override { return "Turn to pole" + lock_text("along"); }
-  std::vector<KeyHint> hints(const Editor&) const override { return shared_hints(); }
-  void cancel(Editor& editor) override {
-    editor.transform_settings->shown_pole = {};
-    drop_shown_pose(editor);
+  std::vector<KeyHint> hints(const Context&) const override { return shared_hints(); }
+  void cancel(Context& context) override {
+    context.transform_settings->shown_pole = {};
+    drop_shown_pose(context);
   }
 
  private:
   glm::dmat3 axes(Space space) const override { return axes_of(space, *armature_, before_, bone_, view_); }
 
-  Pose pose(Editor& editor) {
-    to_ = dragged(editor, from_, kSnapMillimetres, kSnapFineMillimetres);
-    const Pose one = turned(editor, before_, bone_, to_);
-    return other_ ? turned(editor, one, *other_, mirrored()) : one;
+  Pose pose(Context& context) {
+    to_ = dragged(context, from_, kSnapMillimetres, kSnapFineMillimetres);
+    const Pose one = turned(context, before_, bone_, to_);
+    return other_ ? turned(context, one, *other_, mirrored()) : one;
   }
 
-  Pose turned(const Editor& editor, const Pose& pose, int bone, const glm::dvec3& pole) const {
+  Pose turned(const Context& context, const Pose& pose, int bone, const glm::dvec3& pole) const {
     const glm::dvec3 end = posed_from_rest(*armature_, before_)[bone] * armature_->bones[bone].tail;
     return reach(*armature_, pose, {{.bone = bone, .target = end, .chain = limb_of(*armature_, bone)}},
-                 {.keep_limits = editor.posing.keep_limits, .pole = pole})
+                 {.keep_limits = context.posing->keep_limits, .pole = pole})
         .pose;
   }
 
@@ -199,19 +204,19 @@ class DraggingPole final : public TransformTool {
   std::vector<FormField> parameters() const override { return fields_of_way(to_ - from_); }
   void set(const std::vector<FormField>& fields) override { set_way(fields); }
 
-  void show(Editor& editor) override {
-    preview_pose(editor, pose(editor));
-    editor.transform_settings->shown_pole = {armature_->bones[bone_].name, to_};
+  void show(Context& context) override {
+    preview_pose(context, pose(context));
+    context.transform_settings->shown_pole = {armature_->bones[bone_].name, to_};
   }
-  void keep(Editor& editor) override {
-    Pose turned = pose(editor);
-    Document next = editor.document();
+  void keep(Context& context) override {
+    Pose turned = pose(context);
+    Document next = context.document();
     Anchors anchors = anchors_of(next);
     anchors.poles[armature_->bones[bone_].name] = to_;
     if (other_) anchors.poles[armature_->bones[*other_].name] = mirrored();
     if (anchors != anchors_of(next)) next.anchors = std::make_shared<const Anchors>(std::move(anchors));
-    editor.transform_settings->shown_pole = {};
-    commit_pose(editor, "Turn to pole", std::move(turned), std::move(next));
+    context.transform_settings->shown_pole = {};
+    commit_pose(context, "Turn to pole", std::move(turned), std::move(next));
   }
 
   std::shared_ptr<const Armature> armature_;
@@ -223,12 +228,12 @@ class DraggingPole final : public TransformTool {
 
 }  // namespace
 
-std::unique_ptr<TransformTool> begin_dragging_pole(Editor& editor, const Grip& grip) {
-  return std::make_unique<DraggingPole>(editor, grip);
+std::unique_ptr<TransformTool> begin_dragging_pole(Context& context, const Grip& grip) {
+  return std::make_unique<DraggingPole>(context, grip);
 }
 
-std::unique_ptr<TransformTool> begin_dragging(Editor& editor, const Grip& grip) {
-  return std::make_unique<Dragging>(editor, grip);
+std::unique_ptr<TransformTool> begin_dragging(Context& context, const Grip& grip) {
+  return std::make_unique<Dragging>(context, grip);
 }
 
 }  // namespace limber::editor

@@ -5,7 +5,8 @@
 #include <utility>
 
 #include "core/report/metrics.h"
-#include "editor/context/editor.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/pose/live_preview.h"
 #include "editor/volume/body_seams.h"
 #include "editor/volume/tissue_edits.h"
@@ -43,27 +44,27 @@ PoseMetrics measure(const DenseWish& wish, Progress& progress) {
   return metrics;
 }
 
-void LiveMetrics::stop(Editor& editor) {
-  if (job_) editor.jobs.cancel(job_);
+void LiveMetrics::stop(Context& context) {
+  if (job_) context.jobs->cancel(job_);
   job_ = 0;
 }
 
-void LiveMetrics::follow(Editor& editor, const std::optional<DenseWish>& wish, bool settled) {
+void LiveMetrics::follow(Context& context, const std::optional<DenseWish>& wish, bool settled) {
   const bool wanted = std::exchange(wanted_, false);
   if (!wish || !(*wish == of_)) {
-    stop(editor);
+    stop(context);
     is_known_ = false;
     trouble_.clear();
     of_ = wish.value_or(DenseWish{});
   }
-  if (!wanted) return stop(editor);
+  if (!wanted) return stop(context);
   if (!wish || is_known_ || job_ || !settled || !trouble_.empty()) return;
   job_ = start_task(
-      editor, "",
+      context, "",
       [wish = *wish](Progress& progress) -> Finish {
         auto metrics = std::make_shared<PoseMetrics>(measure(wish, progress));
-        return [wish, metrics](Editor& e) {
-          LiveMetrics& mine = e.live->metrics();
+        return [wish, metrics](Context& c) {
+          LiveMetrics& mine = c.live->metrics();
           if (!(mine.of_ == wish)) return;
           mine.metrics_ = std::move(*metrics);
           mine.metrics_of_ = wish.volume;
@@ -71,8 +72,8 @@ void LiveMetrics::follow(Editor& editor, const std::optional<DenseWish>& wish, b
           mine.job_ = 0;
         };
       },
-      [wish = *wish](Editor& e, const std::string& error) {
-        LiveMetrics& mine = e.live->metrics();
+      [wish = *wish](Context& c, const std::string& error) {
+        LiveMetrics& mine = c.live->metrics();
         if (!(mine.of_ == wish)) return;
         mine.trouble_ = error;
         mine.job_ = 0;

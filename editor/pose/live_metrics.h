@@ -18,7 +18,7 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 
 // A body, and the pose in which its tissue volumes are measured. Equal pointers mean equal contents.
 struct DenseWish {
@@ -55,7 +55,7 @@ class LiveMetrics {
   // changes or no panel shows the numbers.
   //   wish     the body and the pose to measure; nothing: nothing is measured
   //   settled  whether the pose has stopped changing
-  void follow(Editor& editor, const std::optional<DenseWish>& wish, bool settled);
+  void follow(Context& context, const std::optional<DenseWish>& wish, bool settled);
   void want() { wanted_ = true; }  // called by a panel in each drawn frame that shows the numbers
   // Returns the metrics of the shown pose; null until measuring has ended.
   const PoseMetrics* known() const { return is_known_ ? &metrics_ : nullptr; }
@@ -65,7 +65,7 @@ class LiveMetrics {
   const std::string& trouble() const { return trouble_; }  // why measuring failed; "": it has not failed
 
  private:
-  void stop(Editor& editor);
+  void stop(Context& context);
 
   DenseWish of_;  // the body and pose of the current or last measurement, also of a failed one
   PoseMetrics metrics_;

@@ -8,11 +8,13 @@
 #include "core/base/background.h"
 #include "core/base/error.h"
 #include "core/resample/pose_path.h"
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/workspace.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/preview_blend.h"
 #include "editor/shown/test_pose.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/body_seams.h"
 
 namespace limber::editor {
@@ -185,17 +187,17 @@ std::shared_ptr<MapMaker> LivePose::lend() {
   return thorough_;
 }
 
-void LivePose::follow(Editor& editor) {
-  if (auto made = swift_.take()) coarse_ = std::move(*made), editor.touch();
+void LivePose::follow(Context& context) {
+  if (auto made = swift_.take()) coarse_ = std::move(*made), context.ui->touch();
   if (was_lent_ && !is_lent()) {
     was_lent_ = false;
     thorough_->forget();
-    editor.touch();
+    context.ui->touch();
   }
   if (!was_lent_)
-    if (auto made = thorough_->take()) fine_ = std::move(*made), editor.touch();
-  const std::optional<DenseWish> dense = choose(editor);
-  metrics_.follow(editor, dense, shown_ && shown_ == fine_.map);
+    if (auto made = thorough_->take()) fine_ = std::move(*made), context.ui->touch();
+  const std::optional<DenseWish> dense = choose(context);
+  metrics_.follow(context, dense, shown_ && shown_ == fine_.map);
 }
 
 void LivePose::show(const MapMaker::Made& made) {
@@ -222,22 +224,22 @@ void LivePose::follow(const Solve& solve, double now) {
 // Selects the preview map that the views show. Returns the body and the pose in which LiveMetrics measures the tissue
 // volumes; nothing at rest, in the Skin workspace, during a finite element solve, and when the volume cannot follow the
 // pose.
-std::optional<DenseWish> LivePose::choose(Editor& editor) {
+std::optional<DenseWish> LivePose::choose(Context& context) {
   shown_ = nullptr;
   seen_ = {};
   posed_ = false;
   trouble_.clear();
-  if (const Solve* solve = watched_solve(editor)) {
-    follow(*solve, editor.now);
+  if (const Solve* solve = watched_solve(context)) {
+    follow(*solve, context.ui->now);
     return {};
   }
-  const Document& document = editor.document();
-  const bool painting = editor.workspace == Workspace::Skin;
-  if (!shows_pose(editor)) return {};
+  const Document& document = context.document();
+  const bool painting = context.workspace() == Workspace::Skin;
+  if (!shows_pose(context)) return {};
   const PosedBody body{document.volume,   document.tissues, document.weights,
                        document.armature, document.seams,   document.bone_map};
-  PoseWish wish{body, {}, preview_blend(editor)};
-  const Pose pose = wish.pose = shown_pose(editor);
+  PoseWish wish{body, {}, preview_blend(context.resampling)};
+  const Pose pose = wish.pose = shown_pose(context);
   wish.rig_motions = posed_from_rest(*document.armature, pose);
   seen_ = wish;
   if (!document.volume || !document.tissues) return {};
@@ -251,7 +253,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
   }
   if (!(wish == wish_)) {
     wish_ = std::move(wish);
-    since_ = editor.now;
+    since_ = context.ui->now;
   }
   swift_.ask(wish_);
   if (pose == rest_pose(*document.armature)) {
@@ -272,7 +274,7 @@ std::optional<DenseWish> LivePose::choose(Editor& editor) {
     seen_.rig_motions.clear();
   }
   if (fine_.wish == wish_ && fine_.map) show(fine_);
-  else if (editor.now < since_ + kRest) editor.wake_at(since_ + kRest);
+  else if (context.ui->now < since_ + kRest) context.ui->wake_at(since_ + kRest);
   else if (shown_ && !was_lent_) thorough_->ask(wish_);
   if (painting) return {};
   return DenseWish{document.volume, document.tissues, document.armature, document.weights, pose,

@@ -20,11 +20,12 @@
 
 #include "core/bones/bone_identity.h"
 #include "core/deform/preview_map.h"
+#include "core/project/document.h"
 #include "editor/pose/live_metrics.h"
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 struct Solve;
 
 // A body for which preview maps (PreviewMap) are computed. Equal pointers mean equal contents.
@@ -93,7 +94,7 @@ class LivePose {
   explicit LivePose(const std::function<void()>& wake);
 
   // Called once per drawn frame: takes over finished preview maps, selects the map to show and requests new ones.
-  void follow(Editor& editor);
+  void follow(Context& context);
   // Returns the preview map to show: the map of the shown pose, or of an earlier pose until that map is computed; null
   // at rest and when the volume cannot follow the pose.
   const std::shared_ptr<const PreviewMap>& map() const { return shown_; }
@@ -116,7 +117,7 @@ class LivePose {
   bool is_lent() const { return thorough_.use_count() > 1; }
 
  private:
-  std::optional<DenseWish> choose(Editor& editor);
+  std::optional<DenseWish> choose(Context& context);
   void follow(const Solve& solve, double now);
   void show(const MapMaker::Made& made);
 
@@ -125,7 +126,7 @@ class LivePose {
   bool was_lent_ = false;
   MapMaker::Made coarse_, fine_;  // newest coarse map, from swift_, and newest fine map, from thorough_
   PoseWish wish_;
-  double since_ = 0;  // Editor::now when wish_ changed last, s
+  double since_ = 0;  // Ui::now when wish_ changed last, s
   std::shared_ptr<const PreviewMap> shown_;
   PoseWish seen_;  // the body and pose that the views show
   std::string trouble_;

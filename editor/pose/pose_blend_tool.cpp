@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "core/rig/joint_limits.h"
+#include "editor/context/context.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_tools.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -28,45 +30,45 @@ glm::dquat along(const glm::dquat& from, const glm::dquat& to, double share) {
 
 class Blending final : public TransformTool {
  public:
-  Blending(Editor& editor, Blend blend)
-      : TransformTool(editor, {}),
+  Blending(Context& context, Blend blend)
+      : TransformTool(context, {}),
         blend_(std::move(blend)),
-        armature_(editor.document().armature),
-        before_(pose_of(editor.document())),
-        bones_(chosen_bones(editor)),
+        armature_(context.document().armature),
+        before_(pose_of(context.document())),
+        bones_(chosen_bones(context)),
         amount_(blend_.begin),
-        scale_(editor.look.scale) {
-    show(editor);
+        scale_(context.ui->look.scale) {
+    show(context);
   }
 
   std::string title() const override {
     return blend_.label + " " + (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
   }
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"0-9"}, "Type percent"},
             {{"Ctrl"}, "Snap"},
             {{"Shift"}, "Precise"},
             {{"Enter"}, "Confirm"},
             {{"Esc"}, "Cancel"}};
   }
-  void cancel(Editor& editor) override { drop_shown_pose(editor); }
+  void cancel(Context& context) override { drop_shown_pose(context); }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
     const int bone = bones_.front();
-    const glm::dvec3 pivot = posed_from_rest(*armature_, seen_pose(editor))[bone] * armature_->bones[bone].head;
+    const glm::dvec3 pivot = posed_from_rest(*armature_, seen_pose(context))[bone] * armature_->bones[bone].head;
     const std::string number = (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
-    GizmoPainter(editor, view_).read_out(pivot, number, blend_.label, blend_.words, editor.look.theme.view_text2);
+    GizmoPainter(context, view_).read_out(pivot, number, blend_.label, blend_.words, context.ui->look.theme.view_text2);
   }
 
  private:
   glm::dmat3 axes(Space) const override { return glm::dmat3(1); }
 
-  Pose pose(Editor& editor) {
+  Pose pose(Context& context) {
     const double dragged = blend_.begin + (pointer_.x - start_.x) / (kPixels * scale_);
     amount_ = number_.typed() ? number_.value() / 100
-                              : std::clamp(snapped(editor, dragged, kSnap, kSnapFine), blend_.back ? -blend_.most : 0.0,
-                                           blend_.most);
+                              : std::clamp(snapped(context, dragged, kSnap, kSnapFine),
+                                           blend_.back ? -blend_.most : 0.0, blend_.most);
     const bool back = blend_.back && amount_ < 0;
     const double share = back ? -amount_ : blend_.base + blend_.slope * amount_;
     const Pose& to = back ? *blend_.back : blend_.to;
@@ -76,7 +78,7 @@ class Blending final : public TransformTool {
       if (armature_->bones[bone].parent < 0)
         next.root_translation = glm::mix(blend_.from.root_translation, to.root_translation, share);
     }
-    return limited(editor, std::move(next), bones_);
+    return limited(context, std::move(next), bones_);
   }
 
   std::vector<FormField> parameters() const override {
@@ -85,8 +87,8 @@ class Blending final : public TransformTool {
   }
   void set(const std::vector<FormField>& fields) override { number_.set(fields[0].value); }
 
-  void show(Editor& editor) override { preview_pose(editor, pose(editor)); }
-  void keep(Editor& editor) override { commit_pose(editor, blend_.label, pose(editor)); }
+  void show(Context& context) override { preview_pose(context, pose(context)); }
+  void keep(Context& context) override { commit_pose(context, blend_.label, pose(context)); }
 
   Blend blend_;
   std::shared_ptr<const Armature> armature_;
@@ -98,8 +100,8 @@ class Blending final : public TransformTool {
 
 }  // namespace
 
-std::unique_ptr<TransformTool> begin_blending(Editor& editor, const Blend& blend) {
-  return std::make_unique<Blending>(editor, blend);
+std::unique_ptr<TransformTool> begin_blending(Context& context, const Blend& blend) {
+  return std::make_unique<Blending>(context, blend);
 }
 
 }  // namespace limber::editor

@@ -7,7 +7,11 @@
 
 #include "core/rig/anatomical_position.h"
 #include "core/rig/joint_angle.h"
+#include "editor/context/context.h"
+#include "editor/context/field_edit.h"
 #include "editor/context/operator_button.h"
+#include "editor/context/selection.h"
+#include "editor/input/keymap_overrides.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/ui/axis_fields.h"
@@ -22,38 +26,38 @@ constexpr double kFar = 1e5;  // the offset of the body from rest is limited to 
 // Draws a field for one number of the pose, such as an angle, with the range from -farthest to +farthest. The views
 // show the changed pose while the user edits the number, and one edit is committed at the end.
 //   set  called with a pose and the new number; changes the pose
-void draw_number(Editor& editor, const Rect& rect, const std::string& name, const std::string& label, double shown,
+void draw_number(Context& context, const Rect& rect, const std::string& name, const std::string& label, double shown,
                  double farthest, const char* format, const char* unit, const std::function<void(Pose&, double)>& set) {
-  auto& edited = editor.edited_number;
+  auto& edited = context.field_edit->number;
   double value = edited.name == name ? edited.value : shown;
   bool committed = false;
   const auto changed = [&](double number) {
-    const Pose before = pose_of(editor.document());
+    const Pose before = pose_of(context.document());
     Pose pose = before;
     set(pose, number);
-    return limited(editor, mirrored_too(editor, before, std::move(pose)), {*editor.selection.bone});
+    return limited(context, mirrored_too(context, before, std::move(pose)), {*context.selection->bone});
   };
-  if (number_field(editor, name, rect, value, -farthest, farthest, format, unit, false, committed)) {
-    stop_playing(editor);
-    settle_frame(editor);
+  if (number_field(context.ui, name, rect, value, -farthest, farthest, format, unit, false, committed)) {
+    stop_playing(context);
+    settle_frame(context);
     edited = {name, value};
     const Pose pose = changed(value);
-    preview_pose(editor, pose, changed_bones(pose_of(editor.document()), pose));
+    preview_pose(context, pose, changed_bones(pose_of(context.document()), pose));
   }
   if (!committed || edited.name != name) return;
   const double number = edited.value;
   edited = {};
   const Pose pose = changed(number);
-  commit_pose(editor, label, pose, changed_bones(pose_of(editor.document()), pose));
+  commit_pose(context, label, pose, changed_bones(pose_of(context.document()), pose));
 }
 
 // Draws number fields for x, y and z in one row.
-void draw_three(Editor& editor, Column& column, const std::string& title, const std::string& label,
+void draw_three(Context& context, Column& column, const std::string& title, const std::string& label,
                 const glm::dvec3& shown, double farthest, const std::function<void(Pose&, int axis, double)>& set) {
-  const std::array<Rect, 3> fields = lay_axis_fields(editor.look, column, title);
+  const std::array<Rect, 3> fields = lay_axis_fields(context.ui->look, column, title);
   for (int axis = 0; axis < 3; ++axis)
-    draw_number(editor, fields[static_cast<std::size_t>(axis)], title + " " + "XYZ"[axis], label, shown[axis], farthest,
-                "%.1f", "", [&](Pose& pose, double number) { set(pose, axis, number); });
+    draw_number(context, fields[static_cast<std::size_t>(axis)], title + " " + "XYZ"[axis], label, shown[axis],
+                farthest, "%.1f", "", [&](Pose& pose, double number) { set(pose, axis, number); });
 }
 
 // Returns the rotation with one component of its quaternion set to `value`, and the other three scaled so that the
@@ -69,8 +73,8 @@ glm::dquat with_part(const glm::dquat& rotation, int part, double value) {
 }
 
 // Draws four fields for the components w, x, y and z of the bone's quaternion.
-void draw_quaternion(Editor& editor, Column& column, const std::string& label, int bone, const glm::dquat& rotation) {
-  const Look& look = editor.look;
+void draw_quaternion(Context& context, Column& column, const std::string& label, int bone, const glm::dquat& rotation) {
+  const Look& look = context.ui->look;
   Rect rect = column.property("W X Y Z");
   rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(180)));
   const glm::dquat shown = rotation.w < 0 ? -rotation : rotation;
@@ -78,7 +82,7 @@ void draw_quaternion(Editor& editor, Column& column, const std::string& label, i
   const float width = (rect.width() - 3 * look.px(2)) / 4;
   for (int part = 0; part < 4; ++part) {
     const float x = std::round(rect.low.x + static_cast<float>(part) * (width + look.px(2)));
-    draw_number(editor, {{x, rect.low.y}, {std::round(x + width), rect.high.y}},
+    draw_number(context, {{x, rect.low.y}, {std::round(x + width), rect.high.y}},
                 std::string("Quaternion ") + "WXYZ"[part], label, parts[part], 1, "%.2f", "",
                 [&](Pose& next, double value) {
                   next.rotation[bone] =
@@ -87,11 +91,11 @@ void draw_quaternion(Editor& editor, Column& column, const std::string& label, i
   }
 }
 
-void draw_ik(Editor& editor, Column& column) {
+void draw_ik(Context& context, Column& column) {
   const Rect rect = column.property("IK");
   const float middle = std::round(rect.low.x + 0.58f * rect.width());
-  operator_box(editor, "pose.pin", {rect.low, {middle - editor.look.px(4), rect.high.y}}, "Pin joint");
-  operator_box(editor, "pose.pole", {{middle, rect.low.y}, rect.high}, "Pole");
+  operator_box(context, "pose.pin", {rect.low, {middle - context.ui->look.px(4), rect.high.y}}, "Pin joint");
+  operator_box(context, "pose.pole", {{middle, rect.low.y}, rect.high}, "Pole");
 }
 
 std::string text_of(const char* format, double radians) {
@@ -118,28 +122,28 @@ std::string words_of(const JointLimits& limits, double at_rest) {
 
 }  // namespace
 
-void draw_posed_bone(Editor& editor, Column& column) {
-  const std::shared_ptr<const Armature> rig = editor.document().armature;
-  const auto chosen = editor.selection.bone;
+void draw_posed_bone(Context& context, Column& column) {
+  const std::shared_ptr<const Armature> rig = context.document().armature;
+  const auto chosen = context.selection->bone;
   if (!rig || !chosen || *chosen >= std::ssize(rig->bones)) return;
   const int index = *chosen;
   const Bone& bone = rig->bones[index];
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   if (column.begin_section("Bone", bone.name)) {
     column.space(6);
-    const Pose pose = shown_pose(editor);
+    const Pose pose = shown_pose(context);
     const std::string label = "Rotate " + bone.name;
     const glm::dvec3 at_rest = turn_at_rest(*rig, index);
     const double zero = glm::dot(at_rest, bone.limits.axis);  // hinge angle in the rest pose, radians
     if (bone.limits.type == JointLimits::Type::Hinge) {
       const glm::dvec3 axis = bone.limits.axis;
-      draw_number(editor, column.property("Angle"), "Angle", label,
+      draw_number(context, column.property("Angle"), "Angle", label,
                   glm::degrees(swing_twist(pose.rotation[index], axis).twist + zero), 360, "%.1f", "\u00b0",
                   [&](Pose& next, double degrees) {
                     next.rotation[index] = glm::angleAxis(glm::radians(degrees) - zero, axis);
                   });
     } else {
-      draw_three(editor, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180,
+      draw_three(context, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180,
                  [&](Pose& next, int axis, double degrees) {
                    // The other two angles are computed from the pose before the change, so that they stay the same
                    // during a drag. Angles that are computed from the changed rotation would jump when the angle about
@@ -149,15 +153,15 @@ void draw_posed_bone(Editor& editor, Column& column) {
                    next.rotation[index] = turned_by_own_angles(bone, angles);
                  });
     }
-    draw_quaternion(editor, column, label, index, pose.rotation[index]);
+    draw_quaternion(context, column, label, index, pose.rotation[index]);
     if (bone.parent < 0)
-      draw_three(editor, column, "Offset, mm", "Move body", pose.root_translation, kFar,
+      draw_three(context, column, "Offset, mm", "Move body", pose.root_translation, kFar,
                  [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
-    draw_ik(editor, column);
+    draw_ik(context, column);
     const std::string beyond = excess_text(bone, pose.rotation[index], at_rest);
     Rect limits = column.property("Limits");
     limits.low.x = std::round(limits.high.x - std::max(limits.width(), look.px(200)));
-    put_text(editor, look.fonts.regular, beyond.empty() ? look.theme.text2 : look.theme.warn, limits,
+    put_text(context.ui, look.fonts.regular, beyond.empty() ? look.theme.text2 : look.theme.warn, limits,
              beyond.empty() ? words_of(bone.limits, zero) : beyond, Align::Right);
     column.space(6);
   }

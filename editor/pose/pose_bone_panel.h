@@ -8,6 +8,8 @@
 
 namespace limber::editor {
 
-void draw_posed_bone(Editor& editor, Column& column);
+struct Context;
+
+void draw_posed_bone(Context& context, Column& column);
 
 }  // namespace limber::editor

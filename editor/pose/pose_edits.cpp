@@ -6,19 +6,23 @@
 
 #include "core/rig/joint_limits.h"
 #include "core/rig/mirror.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/pose_editing.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/workspace.h"
 #include "editor/motion/constrained_pose.h"
+#include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
 #include "editor/shown/shown_result.h"
 #include "editor/shown/test_pose.h"
 
 namespace limber::editor {
 
-Pose seen_pose(const Editor& editor) {
-  const Pose& seen = editor.live->pose();
-  const bool is_of_rig = seen.rotation.size() == editor.document().armature->bones.size();
-  return is_of_rig && !shown_result(editor) ? seen : shown_pose(editor);
+Pose seen_pose(const Context& context) {
+  const Pose& seen = context.live->pose();
+  const bool is_of_rig = seen.rotation.size() == context.document().armature->bones.size();
+  return is_of_rig && !shown_result(context) ? seen : shown_pose(context);
 }
 
 int limb_of(const Armature& armature, int bone) {
@@ -33,9 +37,9 @@ int limb_of(const Armature& armature, int bone) {
   return length;
 }
 
-Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
-  if (!editor.transform_settings->x_mirror) return next;
-  const Armature& armature = *editor.document().armature;
+Pose mirrored_too(const Context& context, const Pose& before, Pose next) {
+  if (!context.transform_settings->x_mirror) return next;
+  const Armature& armature = *context.document().armature;
   const std::vector<int> pairs = mirror_pairs(armature);
   const MirrorPlane plane = mirror_plane(armature);
   const Pose turned = next;
@@ -46,42 +50,42 @@ Pose mirrored_too(const Editor& editor, const Pose& before, Pose next) {
         turned.rotation[other] != before.rotation[other])
       continue;
     next.rotation[other] = plane.rotation(turned.rotation[bone]);
-    if (editor.posing.keep_limits) next.rotation[other] = within_limits(armature.bones[other], next.rotation[other]);
+    if (context.posing->keep_limits) next.rotation[other] = within_limits(armature.bones[other], next.rotation[other]);
   }
   return next;
 }
 
-Pose limited(const Editor& editor, Pose pose, const std::vector<int>& bones) {
-  if (!editor.posing.keep_limits) return pose;
-  const Armature& armature = *editor.document().armature;
+Pose limited(const Context& context, Pose pose, const std::vector<int>& bones) {
+  if (!context.posing->keep_limits) return pose;
+  const Armature& armature = *context.document().armature;
   for (int bone : bones) pose.rotation[bone] = within_limits(armature.bones[bone], pose.rotation[bone]);
   return pose;
 }
 
-void preview_pose(Editor& editor, const Pose& pose, const std::vector<int>& set) {
-  show_pose(editor, held_by_constraints(editor, pose, set));
+void preview_pose(Context& context, const Pose& pose, const std::vector<int>& set) {
+  show_pose(context, held_by_constraints(context, pose, set));
 }
 
-void commit_pose(Editor& editor, const std::string& label, Pose pose, const std::vector<int>& set) {
-  commit_pose(editor, label, std::move(pose), editor.document(), set);
+void commit_pose(Context& context, const std::string& label, Pose pose, const std::vector<int>& set) {
+  commit_pose(context, label, std::move(pose), context.document(), set);
 }
 
-void commit_pose(Editor& editor, const std::string& label, Pose pose, Document next, const std::vector<int>& set) {
-  drop_shown_pose(editor);
+void commit_pose(Context& context, const std::string& label, Pose pose, Document next, const std::vector<int>& set) {
+  drop_shown_pose(context);
   // In the Skin workspace, lets the views show the document's pose instead of a test pose, so that the user sees the
   // change.
-  if (editor.workspace == Workspace::Skin) *editor.trial = {.posed = true};
+  if (context.workspace() == Workspace::Skin) *context.trial = {.posed = true};
   if (const Pose before = pose_of(next); pose != before) {
-    const bool constrains = is_constrained(editor.document());
-    const Pose free = unconstrained_pose(editor, pose, set);
-    if (editor.timeline->auto_key) key_changes(next, constrains ? unconstrained_pose(editor) : before, free);
+    const bool constrains = is_constrained(context.document());
+    const Pose free = unconstrained_pose(context, pose, set);
+    if (context.timeline->auto_key) key_changes(next, constrains ? unconstrained_pose(context) : before, free);
     if (constrains) {
-      pose = held_by_constraints(editor, pose, set);
-      remember_free_pose(editor, next, pose, free);
+      pose = held_by_constraints(context, pose, set);
+      remember_free_pose(context.timeline, next, pose, free);
     }
     next.pose = pose == rest_pose(*next.armature) ? nullptr : std::make_shared<const Pose>(std::move(pose));
   }
-  if (next != editor.document()) commit(editor, label, std::move(next));
+  if (next != context.document()) commit(context, label, std::move(next));
 }
 
 std::vector<int> changed_bones(const Pose& before, const Pose& after) {

@@ -4,25 +4,25 @@
 #pragma once
 
 #include "core/pose/pose_library.h"
-#include "editor/context/editor.h"
 #include "editor/context/operator.h"
 
 namespace limber::editor {
 
 class Column;
+struct Context;
 
-const NamedPose* chosen_pose(const Editor& editor);  // the selected pose of the library; nullptr: none
+const NamedPose* chosen_pose(const Context& context);  // the selected pose of the library; nullptr: none
 
 // Returns the document's pose with the selected bones blended towards the named pose.
 //   share  blend factor, [0, 1]; 1: the named pose
-Pose on_the_way_to(const Editor& editor, const NamedPose& named, double share);
+Pose on_the_way_to(const Context& context, const NamedPose& named, double share);
 // Returns the bones whose rotations on_the_way_to() sets to a value, for the argument `set` of preview_pose(). If
 // `share` is 1, these are the selected bones. If it is smaller, there are none, because the bones are only turned
 // towards the named pose.
-std::vector<int> set_on_the_way(const Editor& editor, double share);
-void apply_pose(Editor& editor, const NamedPose& named, double share);
+std::vector<int> set_on_the_way(const Context& context, double share);
+void apply_pose(Context& context, const NamedPose& named, double share);
 
 std::vector<Operator> pose_library_operators();
-void draw_pose_library(Editor& editor, Column& column);
+void draw_pose_library(Context& context, Column& column);
 
 }  // namespace limber::editor

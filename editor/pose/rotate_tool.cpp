@@ -7,8 +7,13 @@
 
 #include "core/rig/anatomical_position.h"
 #include "core/rig/joint_angle.h"
+#include "editor/context/context.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/selection.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_tools.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/angle_drag.h"
 #include "editor/viewport/gizmo_draw.h"
 
@@ -20,9 +25,9 @@ constexpr double kPi = std::numbers::pi;
 
 // Returns the axis of the bone's hinge in the pose, world coordinates; nothing when the joint is no hinge or while Keep
 // to joint limits is off.
-std::optional<glm::dvec3> hinge_of(const Editor& editor, const Armature& armature, const Pose& pose, int bone) {
+std::optional<glm::dvec3> hinge_of(const PoseEditing& posing, const Armature& armature, const Pose& pose, int bone) {
   const Bone& b = armature.bones[bone];
-  if (!editor.posing.keep_limits || b.limits.type != JointLimits::Type::Hinge) return std::nullopt;
+  if (!posing.keep_limits || b.limits.type != JointLimits::Type::Hinge) return std::nullopt;
   return b.parent < 0 ? b.limits.axis : posed_from_rest(armature, pose)[b.parent].rotation * b.limits.axis;
 }
 
@@ -42,20 +47,20 @@ constexpr double kLimitArc = 96;  // radius of the arc that shows the limits, pi
 
 class Turning final : public TransformTool {
  public:
-  Turning(Editor& editor, const Grip& grip)
-      : TransformTool(editor, grip),
-        armature_(editor.document().armature),
-        before_(pose_of(editor.document())),
-        bones_(topmost(*armature_, chosen_bones(editor))),
-        active_(editor.selection.bone.value_or(bones_.front())),
+  Turning(Context& context, const Grip& grip)
+      : TransformTool(context, grip),
+        armature_(context.document().armature),
+        before_(pose_of(context.document())),
+        bones_(topmost(*armature_, chosen_bones(context))),
+        active_(context.selection->bone.value_or(bones_.front())),
         trackball_(grip.trackball),
         by_ring_(grip.held && !grip.trackball && grip.lock.axis >= 0),
-        scale_(editor.look.scale),
+        scale_(context.ui->look.scale),
         drag_(view_, scale_, pivot_of_active(), grip.held && !grip.trackball),
         at_rest_(turn_at_rest(*armature_, active_)) {
-    if (by_ring_) ring_axes_ = axes_of_rings(editor, lock_.space, *armature_, before_, active_, view_);
-    on_hinge_ = by_ring_ && hinge_of(editor, *armature_, before_, active_) &&
-                nearest_axis(ring_axes_, *hinge_of(editor, *armature_, before_, active_)) == lock_.axis;
+    if (by_ring_) ring_axes_ = axes_of_rings(context.posing, lock_.space, *armature_, before_, active_, view_);
+    on_hinge_ = by_ring_ && hinge_of(context.posing, *armature_, before_, active_) &&
+                nearest_axis(ring_axes_, *hinge_of(context.posing, *armature_, before_, active_)) == lock_.axis;
     if (const int parent = armature_->bones[active_].parent; parent >= 0)
       above_ = posed_from_rest(*armature_, before_)[parent].rotation;
     drag_.about(axis(), start_, pointer_);
@@ -66,23 +71,23 @@ class Turning final : public TransformTool {
     return "Rotate " + (number_.typed() ? number_.text() : text_of_number("%.1f", shown_)) + "\u00b0" + about();
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     auto hints = shared_hints();
     hints.insert(hints.begin() + 1, {{"R"}, "Trackball"});
     if (held_) hints.insert(hints.begin(), {{}, held_text()});
     return hints;
   }
 
-  void cancel(Editor& editor) override { drop_shown_pose(editor); }
+  void cancel(Context& context) override { drop_shown_pose(context); }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
-    const GizmoPainter painter(editor, view_);
+    const GizmoPainter painter(context, view_);
     if (trackball_ && !number_.typed())
-      return painter.read_out(pivot(), text_of_number("%.1f\u00b0", turned_), "trackball", limit_text(editor),
-                              editor.look.theme.view_text2);
-    const Theme& theme = editor.look.theme;
-    draw_limit(editor, painter);
+      return painter.read_out(pivot(), text_of_number("%.1f\u00b0", turned_), "trackball", limit_text(context),
+                              context.ui->look.theme.view_text2);
+    const Theme& theme = context.ui->look.theme;
+    draw_limit(context, painter);
     if (drag_.on_ring() && lock_.axis >= 0)
       for (const int other : {(lock_.axis + 1) % 3, (lock_.axis + 2) % 3})
         painter.ring(ring_of(view_, scale_, pivot(), axes(lock_.space)[other], AngleDrag::kRing),
@@ -93,7 +98,7 @@ class Turning final : public TransformTool {
                      lock_.axis < 0          ? "view"
                      : on_hinge_ && by_ring_ ? "hinge"
                                              : lock_text("").substr(1),
-                     limit_text(editor), limit_colour(editor));
+                     limit_text(context), limit_colour(context));
   }
 
  private:
@@ -111,36 +116,36 @@ class Turning final : public TransformTool {
     return posed_from_rest(*armature_, before_)[active_] * armature_->bones[active_].head;
   }
 
-  void follow(Editor& editor, const glm::dvec2& from, const glm::dvec2& to) override {
+  void follow(Context& context, const glm::dvec2& from, const glm::dvec2& to) override {
     drag_.follow(from, to);
-    rolled_ += glm::dvec2(to - from) * (kTrackballPerPixel / editor.look.scale);
+    rolled_ += glm::dvec2(to - from) * (kTrackballPerPixel / context.ui->look.scale);
   }
 
-  bool own_key(Editor&, Key key) override {
+  bool own_key(Context&, Key key) override {
     if (key != Key::R) return false;
     trackball_ = !trackball_;
     if (trackball_) lock_ = {};
     return true;
   }
 
-  void locked(Editor&) override {
+  void locked(Context&) override {
     trackball_ = by_ring_ = false;
     drag_.leave_ring();
     drag_.about(axis(), start_, pointer_);
   }
 
-  glm::dquat turn(Editor& editor) {
+  glm::dquat turn(Context& context) {
     if (trackball_ && !number_.typed()) {
       const glm::dquat turn = glm::angleAxis(rolled_.x, view_.up) * glm::angleAxis(rolled_.y, view_.right);
       turned_ = glm::degrees(glm::angle(turn.w < 0 ? -turn : turn));
       return turn;
     }
-    shown_ = number_.typed() ? number_.value() : snapped(editor, drag_.degrees(), kSnapDegrees, kSnapFine);
+    shown_ = number_.typed() ? number_.value() : snapped(context, drag_.degrees(), kSnapDegrees, kSnapFine);
     return glm::angleAxis(glm::radians(shown_), axis());
   }
 
-  Pose pose(Editor& editor) {
-    const glm::dquat world = turn(editor);
+  Pose pose(Context& context) {
+    const glm::dquat world = turn(context);
     const auto posed = posed_from_rest(*armature_, before_);
     Pose next = before_;
     for (int bone : bones_) {
@@ -149,9 +154,9 @@ class Turning final : public TransformTool {
       next.rotation[bone] = glm::normalize(glm::conjugate(above) * world * above * before_.rotation[bone]);
     }
     const Pose asked = next;
-    next = mirrored_too(editor, before_, std::move(next));
+    next = mirrored_too(context, before_, std::move(next));
     mirrored_ = changed_bones(asked, next);
-    next = limited(editor, std::move(next), bones_);
+    next = limited(context, std::move(next), bones_);
     held_.reset();
     for (int bone : bones_) {
       if (held_ != active_ && is_held(bone, asked, next)) held_ = bone;
@@ -207,16 +212,16 @@ class Turning final : public TransformTool {
     if (lock_.axis != before.axis || lock_.space != before.space) by_ring_ = false;
   }
 
-  void show(Editor& editor) override {
-    const Pose next = pose(editor);
-    preview_pose(editor, next, mirrored_);
+  void show(Context& context) override {
+    const Pose next = pose(context);
+    preview_pose(context, next, mirrored_);
   }
-  void keep(Editor& editor) override {
+  void keep(Context& context) override {
     const std::string what =
         bones_.size() == 1 ? armature_->bones[bones_[0]].name : std::to_string(bones_.size()) + " bones";
-    Pose next = pose(editor);
-    if (held_ && number_.typed()) editor.messages.info(held_text());
-    commit_pose(editor, "Rotate " + what, std::move(next), mirrored_);
+    Pose next = pose(context);
+    if (held_ && number_.typed()) context.messages->info(held_text());
+    commit_pose(context, "Rotate " + what, std::move(next), mirrored_);
   }
 
   // Returns the active joint's angle and limits in a pose. Both are measured about the axis that the tool turns about.
@@ -229,28 +234,28 @@ class Turning final : public TransformTool {
   //   start  the joint's angle and limits before the turn
   double asked(const JointReading& start) const { return start.angle + start.sense * glm::radians(shown_); }
 
-  Colour limit_colour(const Editor& editor) const {
+  Colour limit_colour(const Context& context) const {
     const auto start = reading(before_);
-    if (!start) return editor.look.theme.view_text2;
+    if (!start) return context.ui->look.theme.view_text2;
     const double angle = asked(*start), near = glm::radians(kNearLimit);
     if (angle < start->minimum - 1e-6 || angle > start->maximum + 1e-6) return kViewError;
     return angle < start->minimum + near || angle > start->maximum - near ? kViewWarn : kViewOk;
   }
 
-  std::string limit_text(const Editor& editor) const {
-    const auto now = reading(shown_pose(editor));
+  std::string limit_text(const Context& context) const {
+    const auto now = reading(shown_pose(context));
     if (!now)
       return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Not the hinge's axis";
     return text_of(*now);
   }
 
-  void draw_limit(Editor& editor, const GizmoPainter& painter) const {
+  void draw_limit(Context& context, const GizmoPainter& painter) const {
     const auto start = reading(before_);
     if (!start || start->maximum - start->minimum <= 0 || start->maximum - start->minimum >= 2 * kPi) return;
     Ring arc = drag_.ring();
     arc.radius *= kLimitArc / AngleDrag::kRing;
     painter.arc(arc, drag_.start() + start->sense * (start->minimum - start->angle),
-                drag_.start() + start->sense * (start->maximum - start->angle), limit_colour(editor), 3);
+                drag_.start() + start->sense * (start->maximum - start->angle), limit_colour(context), 3);
   }
 
   std::shared_ptr<const Armature> armature_;
@@ -271,10 +276,10 @@ class Turning final : public TransformTool {
 
 }  // namespace
 
-glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& armature, const Pose& pose, int bone,
+glm::dmat3 axes_of_rings(const PoseEditing& posing, Space space, const Armature& armature, const Pose& pose, int bone,
                          const ViewProjection& view) {
   glm::dmat3 axes = axes_of(space, armature, pose, bone, view);
-  const auto hinge = hinge_of(editor, armature, pose, bone);
+  const auto hinge = hinge_of(posing, armature, pose, bone);
   if (!hinge) return axes;
   const int nearest = nearest_axis(axes, *hinge);
   const glm::dvec3 along = glm::normalize(*hinge) * (glm::dot(axes[nearest], *hinge) < 0 ? -1.0 : 1.0);
@@ -283,8 +288,8 @@ glm::dmat3 axes_of_rings(const Editor& editor, Space space, const Armature& arma
   return axes;
 }
 
-std::unique_ptr<TransformTool> begin_turning(Editor& editor, const Grip& grip) {
-  return std::make_unique<Turning>(editor, grip);
+std::unique_ptr<TransformTool> begin_turning(Context& context, const Grip& grip) {
+  return std::make_unique<Turning>(context, grip);
 }
 
 }  // namespace limber::editor

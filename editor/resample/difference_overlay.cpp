@@ -2,13 +2,18 @@
 #include "editor/resample/difference_overlay.h"
 
 #include "editor/context/background_task.h"
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/resample/fem_overlay.h"
 #include "editor/resample/overlap_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/mark_colours.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/tissue_edits.h"
 #include "render/scene/weight_colormap.h"
 
@@ -16,9 +21,9 @@ namespace limber::editor {
 
 namespace {
 
-std::shared_ptr<const LabelVolume> volume_of(const Editor& editor, const std::string& name) {
-  const auto result = result_named(editor.document(), name);
-  return result ? result->volume : editor.document().volume;
+std::shared_ptr<const LabelVolume> volume_of(const Context& context, const std::string& name) {
+  const auto result = result_named(context.document(), name);
+  return result ? result->volume : context.document().volume;
 }
 
 ComparedSide compared(const std::shared_ptr<const LabelVolume>& volume, const LabelVolume& other,
@@ -58,57 +63,57 @@ MarkColours marks_of(bool side_a) {
   return {colour, glm::mix(colour, glm::vec3(1), 0.6f)};
 }
 
-bool shows_difference(const Editor& editor) {
-  return editor.difference->shown && editor.workspace == Workspace::Resample && !watched_solve(editor) &&
-         why_no_comparison(editor).empty();
+bool shows_difference(const Context& context) {
+  return context.difference->shown && context.workspace() == Workspace::Resample && !watched_solve(context) &&
+         why_no_comparison(context).empty();
 }
 
-void show_difference_overlay(Editor& editor, bool on) {
-  editor.difference->shown = on;
+void show_difference_overlay(Context& context, bool on) {
+  context.difference->shown = on;
   if (!on) return;
-  editor.fem_overlay->measure.reset();
-  editor.overlap->shown = false;
+  context.fem_overlay->measure.reset();
+  context.overlap->shown = false;
 }
 
-const ComparedVolumes* compared_volumes(const Editor& editor) {
-  const auto& made = editor.difference->made;
-  const bool fits = made && made->a.volume == volume_of(editor, editor.comparison.a) &&
-                    made->b.volume == volume_of(editor, editor.comparison.b) &&
-                    made->tissues == editor.document().tissues;
+const ComparedVolumes* compared_volumes(const Context& context) {
+  const auto& made = context.difference->made;
+  const bool fits = made && made->a.volume == volume_of(context, context.comparison->a) &&
+                    made->b.volume == volume_of(context, context.comparison->b) &&
+                    made->tissues == context.document().tissues;
   return fits ? made.get() : nullptr;
 }
 
-void show_difference(Editor& editor) {
-  DifferenceView& view = *editor.difference;
-  if (!shows_difference(editor)) {
+void show_difference(Context& context) {
+  DifferenceView& view = *context.difference;
+  if (!shows_difference(context)) {
     if (!view.shown) view.made.reset();
     return;
   }
-  const ComparedVolumes* made = compared_volumes(editor);
+  const ComparedVolumes* made = compared_volumes(context);
   if (!made) {
-    if (view.task && editor.tasks.contains(*view.task)) return;
-    const auto a = volume_of(editor, editor.comparison.a), b = volume_of(editor, editor.comparison.b);
-    view.task = start_task(editor, "", [a, b, tissues = editor.document().tissues](Progress&) -> Finish {
+    if (view.task && context.background->tasks.contains(*view.task)) return;
+    const auto a = volume_of(context, context.comparison->a), b = volume_of(context, context.comparison->b);
+    view.task = start_task(context, "", [a, b, tissues = context.document().tissues](Progress&) -> Finish {
       auto both = std::make_shared<const ComparedVolumes>(
           ComparedVolumes{compared(a, *b, *tissues, true), compared(b, *a, *tissues, false), tissues});
-      return [both](Editor& e) {
-        e.difference->made = both;
-        e.touch();
+      return [both](Context& c) {
+        c.difference->made = both;
+        c.ui->touch();
       };
     });
     return;
   }
-  Views& views = *editor.views;
-  const bool a_alone = !views.other_scene && editor.comparison.shows_a;
+  Views& views = *context.views;
+  const bool a_alone = !views.other_scene && context.comparison->shows_a;
   put_into(views.scene, made->side(a_alone));
   if (views.other_scene) put_into(*views.other_scene, made->a);
 }
 
-std::string other_side_text_at(const Editor& editor, const glm::ivec3& voxel) {
-  const ComparedVolumes* made = shows_difference(editor) ? compared_volumes(editor) : nullptr;
-  const ViewPlace* view = hovered_view(editor);
+std::string other_side_text_at(const Context& context, const glm::ivec3& voxel) {
+  const ComparedVolumes* made = shows_difference(context) ? compared_volumes(context) : nullptr;
+  const ViewPlace* view = hovered_view(context);
   if (!made || !view) return "";
-  const bool on_a = editor.views->other_scene ? over_side_a(editor, *view) : editor.comparison.shows_a;
+  const bool on_a = context.views->other_scene ? over_side_a(context, *view) : context.comparison->shows_a;
   const LabelVolume &here = *made->side(on_a).volume, &there = *made->side(!on_a).volume;
   const glm::dvec3 place = voxel_from_world(there.grid) * (world_from_voxel(here.grid) * glm::dvec3(voxel));
   const Label label = there.at_or_air(glm::ivec3(glm::floor(place + 0.5)));

@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "core/report/volume_difference.h"
-#include "editor/context/editor.h"
+#include "core/tissue/tissue_table.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // One of the two compared volumes, with its differing voxels and the colours of all its tissue voxels.
 struct ComparedSide {
@@ -45,15 +47,15 @@ MarkColours marks_of(bool side_a);
 
 // Returns whether the difference is shown. It is shown in the Resample workspace while there are two volumes to
 // compare.
-bool shows_difference(const Editor& editor);
+bool shows_difference(const Context& context);
 // Turns the overlay on or off. Turning it on turns off the other overlays that colour voxels.
-void show_difference_overlay(Editor& editor, bool on);
+void show_difference_overlay(Context& context, bool on);
 // Puts the colours of the differing voxels into the scenes of this frame.
-void show_difference(Editor& editor);
+void show_difference(Context& context);
 // Returns the comparison of the current volumes A and B; null: not computed yet.
-const ComparedVolumes* compared_volumes(const Editor& editor);
+const ComparedVolumes* compared_volumes(const Context& context);
 // Returns the tissue that the other volume has at the voxel under the pointer, such as "in B: Fat"; "" if the
 // difference is not shown.
-std::string other_side_text_at(const Editor& editor, const glm::ivec3& voxel);
+std::string other_side_text_at(const Context& context, const glm::ivec3& voxel);
 
 }  // namespace limber::editor

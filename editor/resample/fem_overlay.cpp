@@ -10,11 +10,16 @@
 #include "core/base/parallel.h"
 #include "core/mesh/mesh_cut.h"
 #include "editor/context/background_task.h"
-#include "editor/context/editor.h"
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/shown/fem_live_view.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "render/scene/weight_colormap.h"
 
 namespace limber::editor {
@@ -43,14 +48,14 @@ std::optional<ShownMesh> mesh_of(const std::shared_ptr<const Result>& result) {
 
 // Returns the mesh that the views show. If `other_side`, returns the mesh of side A of the comparison. Returns nothing
 // when there is no mesh, and in workspaces other than Resample and Pose.
-std::optional<ShownMesh> shown_mesh(const Editor& editor, bool other_side) {
-  if (editor.workspace != Workspace::Resample && editor.workspace != Workspace::Pose) return std::nullopt;
-  if (other_side) return mesh_of(result_named(editor.document(), editor.comparison.a));
-  if (const Solve* solve = watched_solve(editor)) {
+std::optional<ShownMesh> shown_mesh(const Context& context, bool other_side) {
+  if (context.workspace() != Workspace::Resample && context.workspace() != Workspace::Pose) return std::nullopt;
+  if (other_side) return mesh_of(result_named(context.document(), context.comparison->a));
+  if (const Solve* solve = watched_solve(context)) {
     const SolveFeed::Seen seen = solve->feed->seen();
     return ShownMesh{solve->from.volume, seen.rest, seen.mesh.posed, true};
   }
-  return mesh_of(shown_result(editor));
+  return mesh_of(shown_result(context));
 }
 
 // Computes the colours of a mesh for a measure such as the volume ratio. If `before` is the same mesh with other node
@@ -101,35 +106,35 @@ std::shared_ptr<const MeasuredMesh> known(const FemOverlay& overlay, const Shown
   return nullptr;
 }
 
-const MeasuredMesh* measured_in(const Editor& editor, const render::Scene& scene) {
+const MeasuredMesh* measured_in(const FemOverlay& fem_overlay, const render::Scene& scene) {
   if (!scene.weights || !scene.weights->field) return nullptr;
-  for (const auto& made : editor.fem_overlay->made)
+  for (const auto& made : fem_overlay.made)
     if (made->field == scene.weights->field) return made.get();
   return nullptr;
 }
 
-void put_into(Editor& editor, render::Scene& scene, const ShownMesh& of) {
-  FemOverlay& overlay = *editor.fem_overlay;
+void put_into(Context& context, render::Scene& scene, const ShownMesh& of) {
+  FemOverlay& overlay = *context.fem_overlay;
   const auto made = known(overlay, of);
-  if ((!made || made->of.posed != of.posed) && !(overlay.task && editor.tasks.contains(*overlay.task))) {
+  if ((!made || made->of.posed != of.posed) && !(overlay.task && context.background->tasks.contains(*overlay.task))) {
     std::shared_ptr<const MeasuredMesh> before;
     for (const auto& one : overlay.made)
       if (one->of.rest == of.rest && one->of.volume == of.volume && one->tissue) before = one;
     overlay.task = start_task(
-        editor, "",
+        context, "",
         [of, before, measure = overlay.measure](Progress&) -> Finish {
-          return [made = measured(of, measure, before)](Editor& e) {
-            auto& all = e.fem_overlay->made;
+          return [made = measured(of, measure, before)](Context& c) {
+            auto& all = c.fem_overlay->made;
             if (made->of.settling) std::erase_if(all, [](const auto& one) { return one->of.settling; });
             all.push_back(made);
             if (all.size() > kRemembered) all.erase(all.begin());
-            e.touch();
+            c.ui->touch();
           };
         },
-        [](Editor& e, const std::string& error) {
-          e.fem_overlay->measure.reset();
-          e.fem_overlay->tets = false;
-          e.messages.show_error(error, "Overlay of finite elements");
+        [](Context& c, const std::string& error) {
+          c.fem_overlay->measure.reset();
+          c.fem_overlay->tets = false;
+          c.messages->show_error(error, "Overlay of finite elements");
         });
   }
   if (!made || scene.volume != of.volume) return;
@@ -195,36 +200,37 @@ std::string range_text(const MeasuredMesh& shown) {
   return *shown.measure == FemMeasure::EnergyDensity ? "up to " + most : least + " \u2013 " + most;
 }
 
-std::string why_no_fem_overlay(const Editor& editor) {
-  if (editor.workspace != Workspace::Resample && editor.workspace != Workspace::Pose)
+std::string why_no_fem_overlay(const Context& context) {
+  if (context.workspace() != Workspace::Resample && context.workspace() != Workspace::Pose)
     return "Switch to the Resample or Pose workspace first";
-  if (shown_mesh(editor, false) || (comparing(editor) && shown_mesh(editor, true))) return "";
-  const auto& results = editor.document().results;
+  if (shown_mesh(context, false) || (comparing(context) && shown_mesh(context, true))) return "";
+  const auto& results = context.document().results;
   if (std::none_of(results.begin(), results.end(), [](const auto& result) { return result->solved != nullptr; }))
     return "Resample by FEM first";
   return "Show a FEM result first";
 }
 
-void show_fem(Editor& editor) {
-  const FemOverlay& overlay = *editor.fem_overlay;
-  Views& views = *editor.views;
+void show_fem(Context& context) {
+  const FemOverlay& overlay = *context.fem_overlay;
+  Views& views = *context.views;
   views.scene.mesh.reset();
   if (views.other_scene) views.other_scene->mesh.reset(), views.other_scene->weights.reset();
   if (!overlay.measure && !overlay.tets) return;
-  if (const auto mesh = shown_mesh(editor, false)) put_into(editor, views.scene, *mesh);
+  if (const auto mesh = shown_mesh(context, false)) put_into(context, views.scene, *mesh);
   if (!views.other_scene) return;
-  if (const auto mesh = shown_mesh(editor, true)) put_into(editor, *views.other_scene, *mesh);
+  if (const auto mesh = shown_mesh(context, true)) put_into(context, *views.other_scene, *mesh);
 }
 
-const MeasuredMesh* shown_measure(const Editor& editor) {
-  const Views& views = *editor.views;
-  const MeasuredMesh* shown = measured_in(editor, views.scene);
-  return shown || !views.other_scene ? shown : measured_in(editor, *views.other_scene);
+const MeasuredMesh* shown_measure(const Context& context) {
+  const Views& views = *context.views;
+  const MeasuredMesh* shown = measured_in(context.fem_overlay, views.scene);
+  return shown || !views.other_scene ? shown : measured_in(context.fem_overlay, *views.other_scene);
 }
 
-std::string measure_text_at(const Editor& editor, const glm::ivec3& voxel) {
-  const ViewPlace* view = hovered_view(editor);
-  const MeasuredMesh* shown = measured_in(editor, view ? scene_at_pointer(editor, *view) : editor.views->scene);
+std::string measure_text_at(const Context& context, const glm::ivec3& voxel) {
+  const ViewPlace* view = hovered_view(context);
+  const MeasuredMesh* shown =
+      measured_in(context.fem_overlay, view ? scene_at_pointer(context, *view) : context.views->scene);
   if (!shown || !shown->of.volume->grid.contains(voxel)) return "";
   const std::int64_t place = shown->tissue->index_of(voxel);
   if (place < 0) return "";

@@ -15,7 +15,7 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 
 // The colour scale of a measure. It is the same for all results, so that results can be compared. Values beyond an end
 // of the scale have the colour of that end.
@@ -67,13 +67,13 @@ struct FemOverlay {
 };
 
 // Returns why there is no FEM mesh to show, such as "Resample by FEM first"; "" when there is a mesh.
-std::string why_no_fem_overlay(const Editor& editor);
+std::string why_no_fem_overlay(const Context& context);
 // Puts the FEM colours and tets into the scenes of this frame. Call it after show_posed(), which puts the result or the
 // watched solve into the scenes.
-void show_fem(Editor& editor);
+void show_fem(Context& context);
 // Returns the mesh whose colours the views show; null: none.
-const MeasuredMesh* shown_measure(const Editor& editor);
+const MeasuredMesh* shown_measure(const Context& context);
 // Returns the shown measure's value at a voxel of the shown volume, such as "det F 0.93"; "" if no measure is shown.
-std::string measure_text_at(const Editor& editor, const glm::ivec3& voxel);
+std::string measure_text_at(const Context& context, const glm::ivec3& voxel);
 
 }  // namespace limber::editor

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <array>
 
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
 #include "editor/context/panels.h"
+#include "editor/context/views.h"
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/overlap_overlay.h"
 #include "editor/resample/results.h"
@@ -31,17 +34,17 @@ struct Legend {
   std::string note;  // text below the rows; may be empty
 };
 
-void draw_row(Editor& editor, const Rect& row, const Row& words) {
-  const Look& look = editor.look;
+void draw_row(Context& context, const Rect& row, const Row& words) {
+  const Look& look = context.ui->look;
   const float left = row.high.x - look.px(2 * kNumber);
-  put_text(editor, look.fonts.semibold, look.theme.view_text, Rect{row.low, {row.low.x + look.px(18), row.high.y}},
+  put_text(context.ui, look.fonts.semibold, look.theme.view_text, Rect{row.low, {row.low.x + look.px(18), row.high.y}},
            words.letter);
-  put_text(editor, look.fonts.regular, look.theme.view_text,
+  put_text(context.ui, look.fonts.regular, look.theme.view_text,
            Rect{{row.low.x + look.px(words.letter.empty() ? 0 : 18), row.low.y}, {left, row.high.y}}, words.name);
   for (std::size_t column = 0; words.counts && column < 2; ++column) {
     const float right = left + look.px(kNumber) * static_cast<float>(column + 1);
     const std::string digits = grouped((*words.counts)[column]);
-    put_text(editor, look.fonts.mono, look.theme.view_text,
+    put_text(context.ui, look.fonts.mono, look.theme.view_text,
              Rect{{right - look.px(kNumber), row.low.y}, {right, row.high.y}}, digits, Align::Right);
     if (!words.marks) continue;
     const glm::vec3& mark = (*words.marks)[column];
@@ -50,15 +53,15 @@ void draw_row(Editor& editor, const Rect& row, const Row& words) {
   }
 }
 
-bool draw_legend(Editor& editor, const Rect& view, const Legend& legend) {
-  const Look& look = editor.look;
+bool draw_legend(Context& context, const Rect& view, const Legend& legend) {
+  const Look& look = context.ui->look;
   if (view.width() < look.px(300) || view.height() < look.px(180)) return false;
   const float lines = static_cast<float>(1 + legend.rows.size() + !legend.note.empty());
   const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + lines * kRow + 8)};
   const Rect box{
       low, low + glm::vec2(std::min(look.px(kWidth), view.width() - look.px(2 * kMargin)), look.px(lines * kRow + 8))};
   fill(box, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
-  register_widget(editor, "legend", box);
+  register_widget(context.ui, "legend", box);
   float y = box.low.y + look.px(4);
   const auto next = [&] {
     const Rect row{{box.low.x + look.px(kPad), y}, {box.high.x - look.px(kPad), y + look.px(kRow)}};
@@ -66,31 +69,31 @@ bool draw_legend(Editor& editor, const Rect& view, const Legend& legend) {
     return row;
   };
   const Rect head = next();
-  put_text(editor, look.fonts.regular, look.theme.view_text,
+  put_text(context.ui, look.fonts.regular, look.theme.view_text,
            Rect{head.low, {head.high.x - look.px(2 * kNumber), head.high.y}}, legend.title);
   for (std::size_t column = 0; column < 2; ++column) {
     const float right = head.high.x - look.px(kNumber) * static_cast<float>(1 - column);
-    put_text(editor, look.fonts.small, look.theme.view_text2,
+    put_text(context.ui, look.fonts.small, look.theme.view_text2,
              Rect{{right - look.px(kNumber), head.low.y}, {right, head.high.y}}, legend.columns[column], Align::Right);
   }
-  for (const Row& row : legend.rows) draw_row(editor, next(), row);
-  if (!legend.note.empty()) put_text(editor, look.fonts.small, look.theme.view_text2, next(), legend.note);
+  for (const Row& row : legend.rows) draw_row(context, next(), row);
+  if (!legend.note.empty()) put_text(context.ui, look.fonts.small, look.theme.view_text2, next(), legend.note);
   return true;
 }
 
 // Draws the legend of the difference. The legend always has four lines, so that its size stays the same while the
 // pointer moves.
-bool draw_difference(Editor& editor, const Rect& view) {
-  const ComparedVolumes* made = compared_volumes(editor);
-  const Comparison& comparison = editor.comparison;
+bool draw_difference(Context& context, const Rect& view) {
+  const ComparedVolumes* made = compared_volumes(context);
+  const Comparison& comparison = context.comparison;
   Legend legend{made ? "Voxels that differ" : "Comparing...", {"only here", "other tissue"}, {}, ""};
   for (const bool a : {true, false}) {
-    Row row{a ? "A" : "B", name_of_side(editor, a ? comparison.a : comparison.b), std::nullopt,
+    Row row{a ? "A" : "B", name_of_side(context.document(), a ? comparison.a : comparison.b), std::nullopt,
             std::array{marks_of(a).air, marks_of(a).tissue}};
     if (made) row.counts = {made->side(a).differing.total.air, made->side(a).differing.total.other_tissue};
     legend.rows.push_back(row);
   }
-  const Hover& hover = editor.views->hover;
+  const Hover& hover = context.views->hover;
   const Tissue* tissue = made && hover.inside ? made->tissues->find(hover.label) : nullptr;
   if (!tissue) legend.note = "Point at a tissue to count its voxels";
   if (tissue) {
@@ -103,10 +106,10 @@ bool draw_difference(Editor& editor, const Rect& view) {
       }
     legend.rows.push_back({"", shown_name(*tissue) + ", A and B", both, std::nullopt});
   }
-  return draw_legend(editor, view, legend);
+  return draw_legend(context, view, legend);
 }
 
-bool draw_overlap(Editor& editor, const Rect& view) {
+bool draw_overlap(Context& context, const Rect& view) {
   Legend legend{"Voxels that overlap", {"by tissue", "by two bones"}, {}, ""};
   const auto add = [&](const char* letter, const std::shared_ptr<const Result>& result, const std::string& name) {
     if (result && result->overlap)
@@ -116,18 +119,19 @@ bool draw_overlap(Editor& editor, const Rect& view) {
                              std::array{mark_of_overlap(false), mark_of_overlap(true)}});
     else legend.rows.push_back({letter, result ? name + ": not stored" : name + ": none", std::nullopt, std::nullopt});
   };
-  const auto shown = shown_result(editor);
-  if (comparing(editor))
-    add("A", result_named(editor.document(), editor.comparison.a), name_of_side(editor, editor.comparison.a));
-  add(comparing(editor) ? "B" : "", shown, shown ? shown->name : "At rest");
-  return draw_legend(editor, view, legend);
+  const auto shown = shown_result(context);
+  if (comparing(context))
+    add("A", result_named(context.document(), context.comparison->a),
+        name_of_side(context.document(), context.comparison->a));
+  add(comparing(context) ? "B" : "", shown, shown ? shown->name : "At rest");
+  return draw_legend(context, view, legend);
 }
 
 }  // namespace
 
-float draw_marks_legend(Editor& editor, const Rect& view) {
-  if (shows_difference(editor)) return draw_difference(editor, view) ? 104 : 0;
-  if (shows_overlap(editor)) return draw_overlap(editor, view) ? (comparing(editor) ? 82 : 60) : 0;
+float draw_marks_legend(Context& context, const Rect& view) {
+  if (shows_difference(context)) return draw_difference(context, view) ? 104 : 0;
+  if (shows_overlap(context)) return draw_overlap(context, view) ? (comparing(context) ? 82 : 60) : 0;
   return 0;
 }
 

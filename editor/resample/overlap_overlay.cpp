@@ -4,11 +4,16 @@
 #include <algorithm>
 
 #include "editor/context/background_task.h"
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/fem_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/mark_colours.h"
+#include "editor/ui/ui.h"
 #include "render/scene/weight_colormap.h"
 
 namespace limber::editor {
@@ -37,10 +42,10 @@ std::shared_ptr<const MarkedOverlap> marked(const Result& result, const std::sha
   return made;
 }
 
-void put_into(Editor& editor, render::Scene& scene, const std::shared_ptr<const Result>& result) {
+void put_into(Context& context, render::Scene& scene, const std::shared_ptr<const Result>& result) {
   if (!result || !result->overlap || scene.volume != result->volume) return;
-  OverlapView& view = *editor.overlap;
-  const auto& tissues = editor.document().tissues;
+  OverlapView& view = *context.overlap;
+  const auto& tissues = context.document().tissues;
   const auto found = std::find_if(view.made.begin(), view.made.end(), [&](const auto& one) {
     return one->overlap == result->overlap && one->volume == result->volume && one->tissues == tissues;
   });
@@ -55,13 +60,13 @@ void put_into(Editor& editor, render::Scene& scene, const std::shared_ptr<const 
                                          .contours = false};
     return;
   }
-  if (view.task && editor.tasks.contains(*view.task)) return;
-  view.task = start_task(editor, "", [result, tissues](Progress&) -> Finish {
-    return [made = marked(*result, tissues)](Editor& e) {
-      auto& all = e.overlap->made;
+  if (view.task && context.background->tasks.contains(*view.task)) return;
+  view.task = start_task(context, "", [result, tissues](Progress&) -> Finish {
+    return [made = marked(*result, tissues)](Context& c) {
+      auto& all = c.overlap->made;
       all.push_back(made);
       if (all.size() > kRemembered) all.erase(all.begin());
-      e.touch();
+      c.ui->touch();
     };
   });
 }
@@ -70,32 +75,33 @@ void put_into(Editor& editor, render::Scene& scene, const std::shared_ptr<const 
 
 glm::vec3 mark_of_overlap(bool of_bones) { return render::srgb(of_bones ? 0xF3CF45 : 0xFF3EA5); }
 
-std::string why_no_overlap(const Editor& editor) {
-  if (editor.document().results.empty()) return "Resample a pose first";
+std::string why_no_overlap(const Context& context) {
+  if (context.document().results.empty()) return "Resample a pose first";
   const auto kept = [&](const std::shared_ptr<const Result>& result) { return result && result->overlap; };
-  if (kept(chosen_result(editor)) || (comparing(editor) && kept(result_named(editor.document(), editor.comparison.a))))
+  if (kept(chosen_result(context)) ||
+      (comparing(context) && kept(result_named(context.document(), context.comparison->a))))
     return "";
   return "The overlap of this result is not stored: resample its pose again";
 }
 
-bool shows_overlap(const Editor& editor) {
-  return editor.overlap->shown && editor.workspace == Workspace::Resample && !watched_solve(editor) &&
-         why_no_overlap(editor).empty();
+bool shows_overlap(const Context& context) {
+  return context.overlap->shown && context.workspace() == Workspace::Resample && !watched_solve(context) &&
+         why_no_overlap(context).empty();
 }
 
-void show_overlap_overlay(Editor& editor, bool on) {
-  editor.overlap->shown = on;
+void show_overlap_overlay(Context& context, bool on) {
+  context.overlap->shown = on;
   if (!on) return;
-  editor.fem_overlay->measure.reset();
-  editor.difference->shown = false;
+  context.fem_overlay->measure.reset();
+  context.difference->shown = false;
 }
 
-void show_overlap(Editor& editor) {
-  if (!editor.overlap->shown) editor.overlap->made.clear();
-  if (!shows_overlap(editor)) return;
-  Views& views = *editor.views;
-  put_into(editor, views.scene, shown_result(editor));
-  if (views.other_scene) put_into(editor, *views.other_scene, result_named(editor.document(), editor.comparison.a));
+void show_overlap(Context& context) {
+  if (!context.overlap->shown) context.overlap->made.clear();
+  if (!shows_overlap(context)) return;
+  Views& views = *context.views;
+  put_into(context, views.scene, shown_result(context));
+  if (views.other_scene) put_into(context, *views.other_scene, result_named(context.document(), context.comparison->a));
 }
 
 }  // namespace limber::editor

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
+#include "core/project/document.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // A result's overlapping voxels, and a colour for each tissue voxel of the result, which shows where tissue overlaps.
 struct MarkedOverlap {
@@ -32,11 +34,11 @@ struct OverlapView {
 glm::vec3 mark_of_overlap(bool of_bones);
 
 // Returns why there is no overlap to show, such as "Resample a pose first"; "" when there is an overlap.
-std::string why_no_overlap(const Editor& editor);
-bool shows_overlap(const Editor& editor);
+std::string why_no_overlap(const Context& context);
+bool shows_overlap(const Context& context);
 // Turns the overlay on or off. Turning it on turns off the other overlays that colour voxels.
-void show_overlap_overlay(Editor& editor, bool on);
+void show_overlap_overlay(Context& context, bool on);
 // Puts the colours of the overlapping voxels into the scenes of this frame.
-void show_overlap(Editor& editor);
+void show_overlap(Context& context);
 
 }  // namespace limber::editor

@@ -14,9 +14,15 @@
 #include "core/skin/weights_io.h"
 #include "core/study/text.h"
 #include "core/volume_io/volume_io.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/preferences.h"
+#include "editor/context/resampling_settings.h"
 #include "editor/file_browser/temp_folder.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/body_seams.h"
 #include "editor/volume/shown_image.h"
 #include "editor/volume/tissue_edits.h"
@@ -190,25 +196,25 @@ Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Pro
   };
 }
 
-void tell(Editor& editor, const std::string& name) {
-  for (const auto& result : editor.document().results) {
+void tell(Context& context, const std::string& name) {
+  for (const auto& result : context.document().results) {
     if (result->name != name) continue;
-    const auto facts = facts_of(editor, result);
+    const auto facts = facts_of(context, result);
     char line[64], detail[96];
     std::snprintf(line, sizeof line, "resampled in %.1f s", facts->seconds);
     if (facts->change_percent)
       std::snprintf(detail, sizeof detail, "volume %+.2f %%, %s overlap voxels", *facts->change_percent,
                     grouped(facts->overlap_voxels).c_str());
     else std::snprintf(detail, sizeof detail, "%s overlap voxels", grouped(facts->overlap_voxels).c_str());
-    editor.messages.ok(name + " " + line, detail, "result.show_last");
-    for (const std::string& warning : facts->warnings) editor.messages.warn(name, capitalized(warning));
+    context.messages->ok(name + " " + line, detail, "result.show_last");
+    for (const std::string& warning : facts->warnings) context.messages->warn(name, capitalized(warning));
   }
 }
 
 }  // namespace
 
-std::string why_no_resampling(const Editor& editor) {
-  const Document& document = editor.document();
+std::string why_no_resampling(const Context& context) {
+  const Document& document = context.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
   if (!document.armature) return "Import a rig first";
   if (!document.weights) return "Compute the weights first";
@@ -217,45 +223,45 @@ std::string why_no_resampling(const Editor& editor) {
   return "";
 }
 
-void start_resampling(Editor& editor) {
-  Request request{editor.document(),
-                  editor.resampling.method,
-                  editor.resampling.spacing,
-                  editor.resampling.bones_apart,
-                  editor.resampling.mass_exact,
-                  editor.resampling.contact,
-                  editor.resampling.quality,
-                  editor.views->image ? editor.views->image_path : Path(),
-                  editor.preferences.scratch_folder,
+void start_resampling(Context& context) {
+  Request request{context.document(),
+                  context.resampling->method,
+                  context.resampling->spacing,
+                  context.resampling->bones_apart,
+                  context.resampling->mass_exact,
+                  context.resampling->contact,
+                  context.resampling->quality,
+                  context.views->image ? context.views->image_path : Path(),
+                  context.preferences->scratch_folder,
                   {},
                   {}};
   if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
   if (request.method == "fem") request.feed = std::make_shared<SolveFeed>();
-  request.worker.program = editor.worker_program;
-  request.worker.yields = editor.workers_yield;
-  request.worker.memory_limit_mb = editor.preferences.worker_memory_mb;
-  request.worker.time_limit = editor.preferences.worker_minutes * 60.0;
+  request.worker.program = context.background->worker_program;
+  request.worker.yields = context.background->workers_yield;
+  request.worker.memory_limit_mb = context.preferences->worker_memory_mb;
+  request.worker.time_limit = context.preferences->worker_minutes * 60.0;
   const auto made = std::make_shared<Made>();
   const std::string label = "Resample " + name_of_pose(*request.from.armature, *request.from.pose);
-  const int id = editor.jobs.start(
+  const int id = context.jobs->start(
       label, [request, made](Progress& progress) mutable { return resample_in_worker(request, made, progress); },
       request.feed ? Lane::Long : Lane::Common);
-  editor.step_of_job[id] = StepOfWork::Resample;
+  context.background->step_of_job[id] = StepOfWork::Resample;
   if (request.feed) {
-    editor.fem->solves[id] = {request.from, largest_angle_degrees(*request.from.pose), request.feed};
-    watch(editor);
+    context.fem->solves[id] = {request.from, largest_angle_degrees(*request.from.pose), request.feed};
+    watch(context);
   }
-  editor.after_job[id] = [made](Editor& e, const JobStatus& job) {
-    const bool was_watched = e.fem->watched == job.id;
-    e.fem->solves.erase(job.id);
-    if (was_watched) stop_watching(e);
+  context.background->after_job[id] = [made](Context& c, const JobStatus& job) {
+    const bool was_watched = c.fem->watched == job.id;
+    c.fem->solves.erase(job.id);
+    if (was_watched) stop_watching(c.fem);
     if (job.state != JobState::Done) return;
-    if (!made->image_problem.empty()) e.messages.warn("The posed image is not shown", made->image_problem);
-    if (made->image.levels) keep_posed_image(*e.views, std::move(made->image));
-    tell(e, made->name);
-    if (was_watched && e.workspace == Workspace::Resample) show_result(e, made->name);
+    if (!made->image_problem.empty()) c.messages->warn("The posed image is not shown", made->image_problem);
+    if (made->image.levels) keep_posed_image(*c.views, std::move(made->image));
+    tell(c, made->name);
+    if (was_watched && c.workspace() == Workspace::Resample) show_result(c, made->name);
   };
-  editor.touch();
+  context.ui->touch();
 }
 
 }  // namespace limber::editor

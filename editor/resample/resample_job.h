@@ -6,14 +6,16 @@
 
 #include <string>
 
-#include "editor/context/editor.h"
+#include "core/resample/deformation_method.h"
 
 namespace limber::editor {
 
+struct Context;
+
 // Starts the job that resamples the current pose. The document must have a volume, tissues, an armature and weights.
-void start_resampling(Editor& editor);
+void start_resampling(Context& context);
 // Returns what is missing for resampling, such as "Import a rig first"; "" when nothing is missing.
-std::string why_no_resampling(const Editor& editor);
+std::string why_no_resampling(const Context& context);
 
 // Returns the ids of the operators that select a deformation method, in the order of deformation_methods().
 std::vector<std::string> method_operators(Methods which);

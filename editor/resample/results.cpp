@@ -9,13 +9,18 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/json_text.h"
+#include "core/project/history.h"
 #include "core/report/report.h"
 #include "core/resample/deformation_method.h"
-#include "editor/context/editor.h"
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
 #include "editor/pose/live_preview.h"
 #include "editor/pose/pose_edits.h"
+#include "editor/resample/result_list.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/test_pose.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/shown_image.h"
 
 namespace limber::editor {
@@ -142,8 +147,8 @@ ResultFacts facts_of_report(const std::string& text) {
   return facts;
 }
 
-std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result) {
-  auto& known = editor.known_results;
+std::shared_ptr<const ResultFacts> facts_of(Context& context, const std::shared_ptr<const Result>& result) {
+  auto& known = context.results->known;
   std::erase_if(known, [](const KnownResult& one) { return one.result.expired(); });
   const auto found =
       std::find_if(known.begin(), known.end(), [&](const KnownResult& one) { return one.result.lock() == result; });
@@ -242,51 +247,51 @@ void show_rest(Comparison& comparison) {
   if (!comparison.shows_a) comparison.b.clear();
 }
 
-void show_result(Editor& editor, const std::string& name) {
-  stop_watching(editor);
-  if (name.empty()) show_rest(editor.comparison);
-  else editor.comparison.b = name, editor.comparison.shows_a = false;
+void show_result(Context& context, const std::string& name) {
+  stop_watching(context.fem);
+  if (name.empty()) show_rest(context.comparison);
+  else context.comparison->b = name, context.comparison->shows_a = false;
   // Other workspaces may show the body itself or another pose. Switches to the Resample workspace, so that the result
   // is visible.
-  if (result_named(editor.document(), name) && !shown_result(editor)) editor.workspace = Workspace::Resample;
+  if (result_named(context.document(), name) && !shown_result(context)) context.screen->workspace = Workspace::Resample;
 }
 
-void show_result_of_pose(Editor& editor) {
-  const Document& document = editor.document();
-  const Comparison& comparison = editor.comparison;
+void show_result_of_pose(Context& context) {
+  const Document& document = context.document();
+  const Comparison& comparison = context.comparison;
   if (comparison.views != Comparison::Views::One || comparison.shows_a) return;
   const auto shown = result_named(document, comparison.b);
   if (shown && is_of_this_pose(document, *shown)) return;
   const auto fresh = std::find_if(document.results.rbegin(), document.results.rend(), [&](const auto& result) {
     return is_of_this_pose(document, *result) && stale_reason(document, *result).empty();
   });
-  if (fresh != document.results.rend()) editor.comparison.b = (*fresh)->name;
+  if (fresh != document.results.rend()) context.comparison->b = (*fresh)->name;
 }
 
-void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name) {
-  Document next = editor.document();
+void rename_result(Context& context, const std::shared_ptr<const Result>& result, const std::string& name) {
+  Document next = context.document();
   const auto place = std::find(next.results.begin(), next.results.end(), result);
   if (place == next.results.end() || name.empty() || name == result->name) return;
   auto renamed = std::make_shared<Result>(*result);
   renamed->name = unique_name(next.results, name);
   *place = renamed;
-  for (std::string* side : {&editor.comparison.a, &editor.comparison.b})
+  for (std::string* side : {&context.comparison->a, &context.comparison->b})
     if (*side == result->name) *side = renamed->name;
-  editor.history.commit("Rename " + result->name, std::move(next));
-  editor.touch();
+  context.history->commit("Rename " + result->name, std::move(next));
+  context.ui->touch();
 }
 
 namespace {
 
 // Puts a result into the scene. If `result` is null, the scene shows the document's volume, deformed by the current
 // pose or by the watched FEM solve, if any.
-void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<const Result>& result) {
-  const Document& document = editor.document();
+void put_into(render::Scene& scene, const Context& context, const std::shared_ptr<const Result>& result) {
+  const Document& document = context.document();
   scene.posed_from_rest.clear();
   scene.pose = nullptr;
   if (result && document.volume) {
     scene.volume = result->volume;
-    const PosedImage* image = posed_image_of(*editor.views, result->volume);
+    const PosedImage* image = posed_image_of(*context.views, result->volume);
     if (scene.grey && image) scene.grey->image = image->levels;
     else scene.grey.reset();
     if (scene.clip.box) {
@@ -296,23 +301,23 @@ void put_into(render::Scene& scene, const Editor& editor, const std::shared_ptr<
     }
     if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
-  } else if (watched_solve(editor) || shows_pose(editor)) {
-    scene.pose = editor.live->map();
-    scene.posed_from_rest = editor.live->rig_motions();
+  } else if (watched_solve(context) || shows_pose(context)) {
+    scene.pose = context.live->map();
+    scene.posed_from_rest = context.live->rig_motions();
   }
 }
 
 }  // namespace
 
-void show_posed(Editor& editor) {
-  Views& views = *editor.views;
-  if (comparing(editor)) {
+void show_posed(Context& context) {
+  Views& views = *context.views;
+  if (comparing(context)) {
     views.other_scene = views.scene;
-    put_into(*views.other_scene, editor, result_named(editor.document(), editor.comparison.a));
+    put_into(*views.other_scene, context, result_named(context.document(), context.comparison->a));
   } else {
     views.other_scene.reset();
   }
-  put_into(views.scene, editor, shown_result(editor));
+  put_into(views.scene, context, shown_result(context));
 }
 
 }  // namespace limber::editor

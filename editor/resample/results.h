@@ -14,7 +14,8 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Comparison;
+struct Context;
 
 struct ResultTissue {
   std::string name;
@@ -40,7 +41,7 @@ struct ResultFacts {
 };
 ResultFacts facts_of_report(const std::string& json);  // reads a report; a figure that the report lacks stays empty
 
-std::shared_ptr<const ResultFacts> facts_of(Editor& editor, const std::shared_ptr<const Result>& result);
+std::shared_ptr<const ResultFacts> facts_of(Context& context, const std::shared_ptr<const Result>& result);
 // Returns the report as readable text, 100 columns wide: gates, tissues, provenance.
 std::string text_of_report(const std::string& name, const ResultFacts& facts);
 
@@ -57,13 +58,13 @@ std::string unique_name(const std::vector<std::shared_ptr<const Result>>& result
 
 // Shows the newest result of the current pose that is not stale, if the views show a result of another pose, or the
 // volume at rest without the user having selected it. Otherwise changes nothing.
-void show_result_of_pose(Editor& editor);
-void show_result(Editor& editor, const std::string& name);  // shows a result by its name; "": the volume at rest
+void show_result_of_pose(Context& context);
+void show_result(Context& context, const std::string& name);  // shows a result by its name; "": the volume at rest
 // Makes the views show the volume at rest, and marks it as selected by the user: show_result_of_pose() then keeps it.
 void show_rest(Comparison& comparison);
 // Renames a result as one edit; makes the name unique among the results.
-void rename_result(Editor& editor, const std::shared_ptr<const Result>& result, const std::string& name);
+void rename_result(Context& context, const std::shared_ptr<const Result>& result, const std::string& name);
 // Puts the shown result or the current pose into this frame's scene, and side A of a comparison into the second scene.
-void show_posed(Editor& editor);
+void show_posed(Context& context);
 
 }  // namespace limber::editor

@@ -5,8 +5,12 @@
 #include <cstdio>
 #include <utility>
 
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/resample/result_list.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/ui/icons.h"
@@ -26,17 +30,17 @@ constexpr float kColumns[] = {60, 84, 70, 64};  // px: widths of the columns tim
 constexpr float kState = 190, kNarrowState = 116, kNarrow = 640, kRoomy = 780;
 
 // Draws the texts of a row: name, method, numbers, state. A narrow row omits the number of inverted tets.
-void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>& words,
-               const std::array<Colour, 7>& colours, ImFont* first, ImFont* digits) {
-  const Look& look = editor.look;
+void put_cells(Ui& ui, const Rect& row, const std::array<std::string, 7>& words, const std::array<Colour, 7>& colours,
+               ImFont* first, ImFont* digits) {
+  const Look& look = ui.look;
   float right = row.high.x - look.px(10);
   const float state = look.px(row.width() > look.px(kNarrow) ? kState : kNarrowState);
-  put_text(editor, look.fonts.regular, colours[6], Rect{{right - state + look.px(14), row.low.y}, {right, row.high.y}},
+  put_text(ui, look.fonts.regular, colours[6], Rect{{right - state + look.px(14), row.low.y}, {right, row.high.y}},
            words[6]);
   right -= state;
   for (int i = row.width() > look.px(kRoomy) ? 5 : 4; i >= 2; --i) {
     const float width = look.px(kColumns[i - 2]);
-    put_text(editor, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
+    put_text(ui, digits, colours[i], Rect{{right - width, row.low.y}, {right, row.high.y}}, words[i], Align::Right);
     right -= width;
   }
   // Width of the method's name, px: enough for "FEM with contact", or in a narrow row for the start of this name.
@@ -46,14 +50,14 @@ void put_cells(Editor& editor, const Rect& row, const std::array<std::string, 7>
   const float missing = text_size(first, words[0]).x + 1 - (right - method - gap - name);
   const float unused = method - text_size(look.fonts.regular, words[1]).x - gap;
   method -= std::max(0.0f, std::min(missing, unused));
-  put_text(editor, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
-  put_text(editor, first, colours[0], Rect{{name, row.low.y}, {right - method - gap, row.high.y}}, words[0]);
+  put_text(ui, look.fonts.regular, colours[1], Rect{{right - method, row.low.y}, {right, row.high.y}}, words[1]);
+  put_text(ui, first, colours[0], Rect{{name, row.low.y}, {right - method - gap, row.high.y}}, words[0]);
 }
 
-std::string side_of(const Editor& editor, const std::shared_ptr<const Result>& result) {
-  const Comparison& comparison = editor.comparison;
-  const bool a = result_named(editor.document(), comparison.a) == result,
-             b = result_named(editor.document(), comparison.b) == result;
+std::string side_of(const Context& context, const std::shared_ptr<const Result>& result) {
+  const Comparison& comparison = context.comparison;
+  const bool a = result_named(context.document(), comparison.a) == result,
+             b = result_named(context.document(), comparison.b) == result;
   if (a && b) return "";
   return a ? "A" : b ? "B" : "";
 }
@@ -67,12 +71,12 @@ std::string state_of(const std::string& side, bool shown) {
 }
 
 // Makes the result side B of the comparison, or side A if Shift is held.
-void choose_side(Editor& editor, const std::string& name) {
-  stop_watching(editor);
-  Comparison& comparison = editor.comparison;
-  if (editor.input.modifiers().shift) {
+void choose_side(Context& context, const std::string& name) {
+  stop_watching(context.fem);
+  Comparison& comparison = context.comparison;
+  if (context.ui->input.modifiers().shift) {
     comparison.a = name;
-  } else if (comparison.b == name && !comparison.shows_a && !comparing(editor)) {
+  } else if (comparison.b == name && !comparison.shows_a && !comparing(context)) {
     show_rest(comparison);
   } else {
     comparison.b = comparison.b == name && !comparison.shows_a ? "" : name;
@@ -81,52 +85,52 @@ void choose_side(Editor& editor, const std::string& name) {
 }
 
 // Draws the result's name as a text field. Enter or a click elsewhere accepts the new name, Escape cancels.
-void draw_renaming(Editor& editor, const Rect& row, const std::shared_ptr<const Result>& result) {
-  const Look& look = editor.look;
-  auto& renaming = editor.renaming_result;
+void draw_renaming(Context& context, const Rect& row, const std::shared_ptr<const Result>& result) {
+  const Look& look = context.ui->look;
+  auto& renaming = context.results->renaming;
   const Rect field{{row.low.x + look.px(28), row.low.y + look.px(1)},
                    {row.low.x + std::min(look.px(320), row.width() * 0.6f), row.high.y - look.px(1)}};
-  const bool entered = text_field(editor, "name", field, renaming.text, "", !std::exchange(renaming.focused, true));
+  const bool entered = text_field(context.ui, "name", field, renaming.text, "", !std::exchange(renaming.focused, true));
   if (!ImGui::IsItemDeactivated()) return;
   const std::string name = std::exchange(renaming, {}).text;
-  if (entered) rename_result(editor, result, name);
+  if (entered) rename_result(context, result, name);
 }
 
-void draw_rest_row(Editor& editor, Column& column, int index) {
-  const Look& look = editor.look;
-  const bool shown = !shown_result(editor);
+void draw_rest_row(Context& context, Column& column, int index) {
+  const Look& look = context.ui->look;
+  const bool shown = !shown_result(context);
   Rect row;
   if (!column.list_row(row, index, shown, kList)) return;
-  const PathScope path(editor, "At rest");
-  const Pressed pressed = press_area(editor, "row", row);
-  const std::string side = side_of(editor, nullptr);
+  const PathScope path(context.ui, "At rest");
+  const Pressed pressed = press_area(context.ui, "row", row);
+  const std::string side = side_of(context, nullptr);
   put_icon(look.fonts.regular, colour_of_side(look.theme, side, shown),
            Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}}, icon::kVolume);
   const Colour plain = look.theme.text, second = look.theme.text2;
-  put_cells(editor, row, {"At rest", "", "", "", "", "", state_of(side, shown)},
+  put_cells(context.ui, row, {"At rest", "", "", "", "", "", state_of(side, shown)},
             {plain, second, second, second, second, second, second}, shown ? look.fonts.semibold : look.fonts.regular,
             look.fonts.mono);
   if (pressed.hovered)
-    tooltip(editor, row, "At rest",
+    tooltip(context.ui, row, "At rest",
             "The volume at rest. Click to show it; Shift+click to make it side A of the comparison.");
   if (!pressed.clicked) return;
-  focus_list(editor, kList, index);
-  choose_side(editor, "");
+  focus_list(context.ui, kList, index);
+  choose_side(context, "");
 }
 
-void draw_result_row(Editor& editor, Column& column, int index, const std::shared_ptr<const Result>& result,
+void draw_result_row(Context& context, Column& column, int index, const std::shared_ptr<const Result>& result,
                      bool& open_menu) {
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const Theme& theme = look.theme;
-  const bool shown = shown_result(editor) == result;
-  const std::string side = side_of(editor, result);
+  const bool shown = shown_result(context) == result;
+  const std::string side = side_of(context, result);
   Rect row;
   if (!column.list_row(row, index, shown || !side.empty(), kList)) return;
-  const PathScope path(editor, result->name);
-  if (editor.renaming_result.result == result->name) return draw_renaming(editor, row, result);
-  const Pressed pressed = press_area(editor, "row", row);
-  const std::string reason = stale_reason(editor.document(), *result);
-  const auto facts = facts_of(editor, result);
+  const PathScope path(context.ui, result->name);
+  if (context.results->renaming.result == result->name) return draw_renaming(context, row, result);
+  const Pressed pressed = press_area(context.ui, "row", row);
+  const std::string reason = stale_reason(context.document(), *result);
+  const auto facts = facts_of(context, result);
   put_icon(look.fonts.regular, !reason.empty() ? theme.warn : colour_of_side(theme, side, shown),
            Rect{{row.low.x + look.px(10), row.low.y}, {row.low.x + look.px(28), row.high.y}},
            reason.empty() ? icon::kResample : icon::kWaiting);
@@ -137,7 +141,7 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
   const std::string state =
       reason.empty() ? state_of(side, shown)
                      : (side.empty() ? "" : side + ", ") + "stale: " + reason.substr(0, reason.find(" changed"));
-  put_cells(editor, row,
+  put_cells(context.ui, row,
             {result->name, method_name(result->method), seconds, percent(facts->change_percent),
              grouped(facts->overlap_voxels), facts->inverted ? grouped(*facts->inverted) : "-", state},
             {plain, second, plain, colour_of_change(theme, facts->change_percent),
@@ -148,38 +152,38 @@ void draw_result_row(Editor& editor, Column& column, int index, const std::share
              reason.empty() ? second : theme.warn},
             shown || !side.empty() ? look.fonts.semibold : look.fonts.regular, look.fonts.mono);
   if (pressed.hovered)
-    tooltip(editor, row, result->name,
+    tooltip(context.ui, row, result->name,
             std::string(shown ? "Shown now. Click to show the volume at rest."
                               : "Click to show this result in the views.") +
                 " Shift+click to make it side A of the comparison; double-click to rename it." +
                 (reason.empty() ? "" : "\nStale: " + reason));
   if (pressed.double_clicked) {
-    editor.comparison.b = result->name;
-    editor.renaming_result = {result->name, result->name};
-    await_field(editor);
+    context.comparison->b = result->name;
+    context.results->renaming = {result->name, result->name};
+    await_field(context.ui);
   } else if (pressed.clicked) {
-    focus_list(editor, kList, index);
-    choose_side(editor, result->name);
+    focus_list(context.ui, kList, index);
+    choose_side(context, result->name);
   }
   if (pressed.right_clicked) {
-    editor.comparison.b = result->name;
-    editor.comparison.shows_a = false;
+    context.comparison->b = result->name;
+    context.comparison->shows_a = false;
     open_menu = true;
   }
 }
 
 }  // namespace
 
-void draw_results(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
-  const auto results = editor.document().results;  // a copy, because renaming a result replaces the document's list
+void draw_results(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
+  const auto results = context.document().results;  // a copy, because renaming a result replaces the document's list
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}};
   fill(head, look.theme.head);
   fill({head.low, {head.high.x, head.low.y + look.line()}}, look.theme.void_);
   const float x =
-      put_text(editor, look.fonts.semibold, look.theme.text,
+      put_text(context.ui, look.fonts.semibold, look.theme.text,
                glm::vec2(head.low.x + look.px(12), head.centre().y - look.fonts.semibold->FontSize / 2), "Results");
-  put_text(editor, look.fonts.regular, look.theme.text2,
+  put_text(context.ui, look.fonts.regular, look.theme.text2,
            Rect{{x + look.px(8), head.low.y}, {x + look.px(60), head.high.y}}, std::to_string(results.size()));
   const float top = head.low.y + look.px(4), bottom = head.high.y - look.px(3);
   float right = head.high.x - look.px(8);
@@ -187,32 +191,32 @@ void draw_results(Editor& editor, const Rect& rect) {
     const bool closes = std::string_view(id) == "view.results";
     const Rect place{{right - look.px(26), top}, {right, bottom}};
     if (closes) {
-      if (button(editor, "Close results", place, {icon::kClose, "", ButtonStyle::Flat})) run(editor, id);
-      if (ImGui::IsItemHovered()) operator_tooltip(editor, *find_operator(editor, id), place);
+      if (button(context.ui, "Close results", place, {icon::kClose, "", ButtonStyle::Flat})) run(context, id);
+      if (ImGui::IsItemHovered()) operator_tooltip(context, *find_operator(context.operators, id), place);
     } else {
-      operator_button(editor, id, place, "", ButtonStyle::Flat);
+      operator_button(context, id, place, "", ButtonStyle::Flat);
     }
     right = place.low.x - look.px(4);
   }
   right -= look.px(6);
   for (const char* id : {"compare.show_b", "compare.show_a"}) {
-    const Operator* op = find_operator(editor, id);
+    const Operator* op = find_operator(context.operators, id);
     const float width =
         // A pressed button has a wider label. Every button gets the width of a pressed one, so that no button moves
         // when one is pressed.
-        width_of_button(editor, {op->icon, op->label, ButtonStyle::Chosen});
-    operator_button(editor, id, {{right - width, top}, {right, bottom}}, op->label,
-                    op->checked(editor) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+        width_of_button(context.ui, {op->icon, op->label, ButtonStyle::Chosen});
+    operator_button(context, id, {{right - width, top}, {right, bottom}}, op->label,
+                    op->checked(context) ? ButtonStyle::Chosen : ButtonStyle::Plain);
     right -= width + look.px(1);
   }
 
   const Rect body{{rect.low.x, head.high.y}, rect.high};
   if (results.empty()) {
-    const Operator* op = find_operator(editor, "resample.run");
-    if (disabled_reason(editor, *op).empty()) {
-      if (empty_state(editor, body, "No results", "Resample this pose")) run(editor, *op);
+    const Operator* op = find_operator(context.operators, "resample.run");
+    if (disabled_reason(context, *op).empty()) {
+      if (empty_state(context.ui, body, "No results", "Resample this pose")) run(context, *op);
     } else {
-      put_text(editor, look.fonts.regular, look.theme.text2, body, "No results. " + disabled_reason(editor, *op),
+      put_text(context.ui, look.fonts.regular, look.theme.text2, body, "No results. " + disabled_reason(context, *op),
                Align::Centre);
     }
     return;
@@ -223,46 +227,46 @@ void draw_results(Editor& editor, const Rect& rect) {
   const Colour grey = look.theme.text2;
   // As in the rows below, the columns do not extend under the scroll bar, so each head stands above its column.
   const Rect heads{table_head.low, {table_head.high.x - ImGui::GetStyle().ScrollbarSize, table_head.high.y}};
-  put_cells(editor, heads, {"Result", "Method", "Time", "Volume", "Overlap", "Inverted", "State"},
+  put_cells(context.ui, heads, {"Result", "Method", "Time", "Volume", "Overlap", "Inverted", "State"},
             {grey, grey, grey, grey, grey, grey, grey}, look.fonts.regular, look.fonts.regular);
   bool open_menu = false;
   {
-    Column column(editor, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
-    const ListKey key = list_key(editor, kList, static_cast<int>(results.size()) + 1);
-    const auto row = static_cast<std::size_t>(editor.list_focus.row);
+    Column column(context.ui, "results", {{body.low.x, table_head.high.y}, {middle, body.high.y}});
+    const ListKey key = list_key(context.ui, kList, static_cast<int>(results.size()) + 1);
+    const auto row = static_cast<std::size_t>(context.ui->list_focus.row);
     const std::string name = row == 0 || row > results.size() ? "" : results[results.size() - row]->name;
-    if (key == ListKey::Moved) show_result(editor, name);
-    if (key == ListKey::Activate) choose_side(editor, name);
+    if (key == ListKey::Moved) show_result(context, name);
+    if (key == ListKey::Activate) choose_side(context, name);
     if (key == ListKey::Rename && !name.empty()) {
-      editor.renaming_result = {name, name};
-      await_field(editor);
+      context.results->renaming = {name, name};
+      await_field(context.ui);
     }
     int index = 0;
-    draw_rest_row(editor, column, index++);
+    draw_rest_row(context, column, index++);
     for (auto result = results.rbegin(); result != results.rend(); ++result)
-      draw_result_row(editor, column, index++, *result, open_menu);
+      draw_result_row(context, column, index++, *result, open_menu);
   }
   if (open_menu) ImGui::OpenPopup("result menu");
   if (ImGui::BeginPopup("result menu", ImGuiWindowFlags_NoMove)) {
-    editor.place.region = Region::Popup;
-    push_path(editor, "result menu");
-    put_text(editor, look.fonts.semibold, look.theme.text2,
+    context.ui->place.region = Region::Popup;
+    push_path(context.ui, "result menu");
+    put_text(context.ui, look.fonts.semibold, look.theme.text2,
              from_im(ImGui::GetCursorScreenPos()) + glm::vec2(look.px(8), look.px(2)),
-             chosen_result(editor) ? chosen_result(editor)->name : "Result");
+             chosen_result(context) ? chosen_result(context)->name : "Result");
     ImGui::Dummy({look.px(190), look.px(22)});
     ImGui::Separator();
     for (const char* id : {"result.toggle", "compare.side_by_side", "compare.wipe", "compare.difference",
                            "result.overlap", "-", "report.open", "file.export", "result.copy_report", "-",
                            "result.rename", "result.delete", "result.delete_stale"})
       if (*id == '-') ImGui::Separator();
-      else operator_menu_item(editor, id);
-    pop_path(editor);
-    editor.place.region = Region::Bottom;
+      else operator_menu_item(context, id);
+    pop_path(context.ui);
+    context.ui->place.region = Region::Bottom;
     ImGui::EndPopup();
   }
   if (!wide) return;
   fill({{middle, body.low.y}, {middle + look.line(), body.high.y}}, look.theme.void_);
-  draw_change_plot(editor, {{middle + look.line(), body.low.y}, body.high});
+  draw_change_plot(context, {{middle + look.line(), body.low.y}, body.high});
 }
 
 }  // namespace limber::editor

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/context/comparison.h"
+#include "editor/context/context.h"
 #include "editor/context/panels.h"
 #include "editor/resample/results.h"
 #include "editor/volume/tissue_edits.h"
@@ -24,17 +26,17 @@ struct Series {
   Colour colour;
 };
 
-std::vector<Series> series_of(Editor& editor) {
+std::vector<Series> series_of(Context& context) {
   std::vector<Series> all;
   const auto add = [&](const std::string& letter, const std::shared_ptr<const Result>& result) {
     if (result)
       all.push_back(
-          {letter, method_name(result->method), facts_of(editor, result), letter == "A" ? kColourOfA : kColourOfB});
+          {letter, method_name(result->method), facts_of(context, result), letter == "A" ? kColourOfA : kColourOfB});
   };
-  const Comparison& comparison = editor.comparison;
-  const auto a = result_named(editor.document(), comparison.a), b = result_named(editor.document(), comparison.b);
+  const Comparison& comparison = context.comparison;
+  const auto a = result_named(context.document(), comparison.a), b = result_named(context.document(), comparison.b);
   if (a != b) add("A", a), add("B", b);
-  if (all.empty()) add("", chosen_result(editor));
+  if (all.empty()) add("", chosen_result(context));
   return all;
 }
 
@@ -83,10 +85,10 @@ std::string figure(const std::optional<double>& percent) {
   return text;
 }
 
-void draw_tissue(Editor& editor, const Rect& row, const std::string& name, const std::vector<Series>& all,
+void draw_tissue(Context& context, const Rect& row, const std::string& name, const std::vector<Series>& all,
                  const Axis& axis, float left, float width) {
-  const Look& look = editor.look;
-  put_text(editor, look.fonts.regular, look.theme.text2,
+  const Look& look = context.ui->look;
+  put_text(context.ui, look.fonts.regular, look.theme.text2,
            Rect{{row.low.x + look.px(kPad), row.low.y}, {left - look.px(8), row.high.y}}, capitalized(name));
   draw_lines(look, axis, left, width, row);
   const float count = static_cast<float>(all.size()), high = look.px(7),
@@ -98,7 +100,7 @@ void draw_tissue(Editor& editor, const Rect& row, const std::string& name, const
     const std::optional<double> percent = tissue ? tissue->change_percent : std::nullopt;
     const float end = std::round(left + width * static_cast<float>(axis.place(percent.value_or(0))));
     if (end != zero) fill({{std::min(zero, end), y}, {std::max(zero, end) + look.line(), y + high}}, one.colour);
-    put_text(editor, look.fonts.mono, colour_of_change(look.theme, percent),
+    put_text(context.ui, look.fonts.mono, colour_of_change(look.theme, percent),
              Rect{{x, row.low.y}, {x + look.px(kFigure), row.high.y}}, figure(percent), Align::Right);
     y += high + look.px(1);
     x += look.px(kFigure + 4);
@@ -109,22 +111,22 @@ void draw_tissue(Editor& editor, const Rect& row, const std::string& name, const
                     tissue->mm3_after / 1000);
     if (tissue) whole += (whole.empty() ? "" : "\n") + std::string(words);
   }
-  const PathScope path(editor, name);
-  if (press_area(editor, "row", row).hovered) tooltip(editor, row, capitalized(name), whole);
+  const PathScope path(context.ui, name);
+  if (press_area(context.ui, "row", row).hovered) tooltip(context.ui, row, capitalized(name), whole);
 }
 
 }  // namespace
 
-void draw_change_plot(Editor& editor, const Rect& rect) {
-  const std::vector<Series> all = series_of(editor);
+void draw_change_plot(Context& context, const Rect& rect) {
+  const std::vector<Series> all = series_of(context);
   if (all.empty()) return;
-  const Look& look = editor.look;
-  const PathScope path(editor, "change");
+  const Look& look = context.ui->look;
+  const PathScope path(context.ui, "change");
   const Axis axis = axis_of(all);
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kHead)}},
       foot{{rect.low.x, rect.high.y - look.px(kAxis)}, rect.high};
   const char* title = "Volume change, %";
-  put_text(editor, look.fonts.semibold, look.theme.text, Rect{{head.low.x + look.px(kPad), head.low.y}, head.high},
+  put_text(context.ui, look.fonts.semibold, look.theme.text, Rect{{head.low.x + look.px(kPad), head.low.y}, head.high},
            title);
   float right = head.high.x - look.px(kPad);
   const float title_end = head.low.x + look.px(kPad + 12) + text_size(look.fonts.semibold, title).x;
@@ -132,7 +134,7 @@ void draw_change_plot(Editor& editor, const Rect& rect) {
     const std::string words = one->letter.empty() ? one->method : one->letter + " " + one->method;
     const float width = std::min(text_size(look.fonts.regular, words).x + 1,
                                  (right - title_end) / (one == all.rbegin() ? float(all.size()) : 1.0f) - look.px(22));
-    put_text(editor, look.fonts.regular, look.theme.text2, Rect{{right - width, head.low.y}, {right, head.high.y}},
+    put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{{right - width, head.low.y}, {right, head.high.y}},
              words);
     put_swatch(look, {right - width - look.px(20), head.centre().y - look.px(7)}, one->colour);
     right -= width + look.px(32);
@@ -141,7 +143,7 @@ void draw_change_plot(Editor& editor, const Rect& rect) {
   const float left = rect.low.x + look.px(kPad + kName),
               width = rect.high.x - look.px(kPad + 14) - look.px(kFigure + 4) * static_cast<float>(all.size()) - left;
   {
-    Column column(editor, "tissues", {{rect.low.x, head.high.y}, {rect.high.x, foot.low.y}});
+    Column column(context.ui, "tissues", {{rect.low.x, head.high.y}, {rect.high.x, foot.low.y}});
     int index = 0;
     std::vector<std::string> names;
     for (const Series& one : all)
@@ -149,7 +151,7 @@ void draw_change_plot(Editor& editor, const Rect& rect) {
         if (std::find(names.begin(), names.end(), tissue.name) == names.end()) names.push_back(tissue.name);
     for (const std::string& name : names) {
       Rect row;
-      if (column.list_row(row, index++, false)) draw_tissue(editor, row, name, all, axis, left, width);
+      if (column.list_row(row, index++, false)) draw_tissue(context, row, name, all, axis, left, width);
     }
   }
   fill({{left, foot.low.y}, {left + width, foot.low.y + look.line()}}, look.theme.line2);
@@ -157,8 +159,8 @@ void draw_change_plot(Editor& editor, const Rect& rect) {
     const float x = left + width * static_cast<float>(axis.place(at)), half = look.px(24);
     char text[16];
     std::snprintf(text, sizeof text, "%g", std::abs(at) < axis.step / 2 ? 0 : std::round(at * 1e6) / 1e6);
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{x - half, foot.low.y}, {x + half, foot.high.y}}, text,
-             Align::Centre);
+    put_text(context.ui, look.fonts.small, look.theme.text2, Rect{{x - half, foot.low.y}, {x + half, foot.high.y}},
+             text, Align::Centre);
   }
 }
 

@@ -10,12 +10,16 @@
 #include "core/base/error.h"
 #include "core/rig_io/rig_templates.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/document_edits.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/shown/frame_all.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
@@ -35,8 +39,8 @@ Document with_rig(const Document& now, std::shared_ptr<const Armature> rig) {
   return next;
 }
 
-std::string what_goes(const Editor& editor) {
-  const Document& now = editor.document();
+std::string what_goes(const Document& document) {
+  const Document& now = document;
   std::string parts;
   for (const auto& [is_there, name] :
        {std::pair(now.armature != nullptr, "rig"), std::pair(now.weights != nullptr, "weights"),
@@ -53,10 +57,10 @@ std::vector<std::string> template_labels() {
 
 }  // namespace
 
-void start_auto_fit(Editor& editor, const std::string& which) {
-  const Document from = editor.document();
+void start_auto_fit(Context& context, const std::string& which) {
+  const Document from = context.document();
   auto fitted = std::make_shared<AutoFit>();
-  const int id = editor.jobs.start("Auto-fit skeleton", [from, which, fitted](Progress& progress) -> Edit {
+  const int id = context.jobs->start("Auto-fit skeleton", [from, which, fitted](Progress& progress) -> Edit {
     const Armature rig = which == "rig"
                              ? *from.armature
                              : rig_template(which.empty() ? suggest_template(*from.volume, progress) : which);
@@ -68,40 +72,40 @@ void start_auto_fit(Editor& editor, const std::string& which) {
       return with_rig(now, laid);
     };
   });
-  editor.step_of_job[id] = StepOfWork::Rig;
-  editor.after_job[id] = [fitted, before = from.armature](Editor& e, const JobStatus& job) {
+  context.background->step_of_job[id] = StepOfWork::Rig;
+  context.background->after_job[id] = [fitted, before = from.armature](Context& c, const JobStatus& job) {
     if (job.state != JobState::Done) return;
-    show_fit(e, *fitted);
-    if (before) warn_of_moved_targets(e, "Skeleton fitted", *before, bones_of(*before, *e.document().armature));
+    show_fit(c.messages, *fitted);
+    if (before) warn_of_moved_targets(c, "Skeleton fitted", *before, bones_of(*before, *c.document().armature));
   };
-  editor.touch();
+  context.ui->touch();
 }
 
-void offer_fit(Editor& editor, const std::string& file, double inside) {
-  const auto place = [](Editor& e) {
-    const Document from = e.document();
-    start_task(e, "Place the rig in the tissue", [from](Progress&) -> Finish {
+void offer_fit(Context& context, const std::string& file, double inside) {
+  const auto place = [](Context& c) {
+    const Document from = c.document();
+    start_task(c, "Place the rig in the tissue", [from](Progress&) -> Finish {
       auto rig = std::make_shared<const Armature>(placed_in_tissue(*from.volume, *from.armature));
-      return [from, rig](Editor& ed) {
-        if (ed.document().volume != from.volume || ed.document().armature != from.armature)
+      return [from, rig](Context& c) {
+        if (c.document().volume != from.volume || c.document().armature != from.armature)
           throw Error("the rig or the volume was changed meanwhile", "placing the rig", "start it again");
-        commit(ed, "Place rig", with_rig(ed.document(), rig));
-        warn_of_moved_targets(ed, "Place rig", *from.armature, bones_of(*from.armature, *rig));
-        frame_all(ed, true);
+        commit(c, "Place rig", with_rig(c.document(), rig));
+        warn_of_moved_targets(c, "Place rig", *from.armature, bones_of(*from.armature, *rig));
+        frame_all(c, true);
       };
     });
   };
-  ask(editor, {.title = "This rig does not lie in the body",
-               .lines = {percent(inside) + " of the length of its bones is in tissue. " + file +
-                             " may belong to another body or use other units.",
-                         "Fit rig finds the rig's joints in the volume if the names of its bones are recognised."},
-               .icon = icon::kWarning,
-               .answers = {{"Keep rig", {}},
-                           {"Only place and scale", place},
-                           {"Fit rig", [](Editor& e) { start_auto_fit(e, "rig"); }, true}}});
+  ask(context, {.title = "This rig does not lie in the body",
+                .lines = {percent(inside) + " of the length of its bones is in tissue. " + file +
+                              " may belong to another body or use other units.",
+                          "Fit rig finds the rig's joints in the volume if the names of its bones are recognised."},
+                .icon = icon::kWarning,
+                .answers = {{"Keep rig", {}},
+                            {"Only place and scale", place},
+                            {"Fit rig", [](Context& c) { start_auto_fit(c, "rig"); }, true}}});
 }
 
-void show_fit(Editor& editor, const AutoFit& fitted) {
+void show_fit(Messages& messages, const AutoFit& fitted) {
   const auto sure = std::count_if(fitted.joints.begin(), fitted.joints.end(),
                                   [](const JointFit& joint) { return joint.confidence >= 0.5; });
   std::vector<std::size_t> order(fitted.joints.size());
@@ -115,29 +119,29 @@ void show_fit(Editor& editor, const AutoFit& fitted) {
     std::snprintf(line, sizeof line, "%s: found by %s, confidence %.0f %%, may be %.0f mm off, %.0f %% in tissue",
                   fitted.armature.bones[b].name.c_str(), std::string(to_string(fitted.joints[b].how)).c_str(),
                   100 * fitted.joints[b].confidence, fitted.joints[b].error, 100 * fitted.check.share[b]);
-    editor.messages.log.push_back({Severity::Info, line});
+    messages.log.push_back({Severity::Info, line});
   }
-  for (const std::string& warning : fitted.warnings) editor.messages.warn("Check the fit", capitalized(warning));
+  for (const std::string& warning : fitted.warnings) messages.warn("Check the fit", capitalized(warning));
   const std::string result = std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) +
                              " joints found with confidence, " + percent(fitted.check.whole) +
                              " of bone length in tissue";
-  if (sure > 0 && fitted.check.whole >= kMostlyInside) editor.messages.ok("Skeleton fitted", result, "view.console");
+  if (sure > 0 && fitted.check.whole >= kMostlyInside) messages.ok("Skeleton fitted", result, "view.console");
   else
-    editor.messages.warn(
+    messages.warn(
         sure > 0 ? "Skeleton fitted, but partly outside the body" : "Skeleton placed, but every joint is uncertain",
         result);
 }
 
-void ask_auto_fit(Editor& editor) {
+void ask_auto_fit(Context& context) {
   std::vector<std::string> choices{"Automatic"};
   for (const std::string& label : template_labels()) choices.push_back(label);
-  if (editor.document().armature) choices.push_back("The current rig");
-  const auto outcome = [](const Editor& e, const std::vector<FormField>&) { return what_goes(e); };
-  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+  if (context.document().armature) choices.push_back("The current rig");
+  const auto outcome = [](const Context& c, const std::vector<FormField>&) { return what_goes(c.document()); };
+  const auto act = [](Context& c, const std::vector<FormField>& fields) {
     const std::size_t chosen = static_cast<std::size_t>(fields[0].chosen);
-    start_auto_fit(e, chosen == 0 ? "" : chosen <= rig_templates().size() ? rig_templates()[chosen - 1].name : "rig");
+    start_auto_fit(c, chosen == 0 ? "" : chosen <= rig_templates().size() ? rig_templates()[chosen - 1].name : "rig");
   };
-  editor.open_dialog(
+  context.dialogs->open(
       make_form({"Auto-fit skeleton",
                  "Finds the joints from the bone tissue, or from the body's shape where no bone is labelled.",
                  "Fit",
@@ -146,25 +150,26 @@ void ask_auto_fit(Editor& editor) {
                  act}));
 }
 
-void ask_template(Editor& editor) {
-  const auto outcome = [](const Editor& e, const std::vector<FormField>& fields) {
-    return rig_templates()[fields[0].chosen].about + ". " + what_goes(e);
+void ask_template(Context& context) {
+  const auto outcome = [](const Context& c, const std::vector<FormField>& fields) {
+    return rig_templates()[fields[0].chosen].about + ". " + what_goes(c.document());
   };
-  const auto act = [](Editor& e, const std::vector<FormField>& fields) {
+  const auto act = [](Context& c, const std::vector<FormField>& fields) {
     const RigTemplate& chosen = rig_templates()[fields[0].chosen];
-    auto rig = std::make_shared<const Armature>(scaled_to_tissue(*e.document().volume, rig_template(chosen.name)));
-    const std::shared_ptr<const Armature> before = e.document().armature;
-    e.history.commit("Template " + chosen.label, with_rig(e.document(), rig));
-    if (before) warn_of_moved_targets(e, "Template " + chosen.label, *before, bones_of(*before, *rig));
-    e.messages.ok("Template " + chosen.label,
-                  "The skeleton is scaled to the tissue. Use Auto-fit skeleton to find its joints");
+    auto rig = std::make_shared<const Armature>(scaled_to_tissue(*c.document().volume, rig_template(chosen.name)));
+    const std::shared_ptr<const Armature> before = c.document().armature;
+    c.history->commit("Template " + chosen.label, with_rig(c.document(), rig));
+    if (before) warn_of_moved_targets(c, "Template " + chosen.label, *before, bones_of(*before, *rig));
+    c.messages->ok("Template " + chosen.label,
+                   "The skeleton is scaled to the tissue. Use Auto-fit skeleton to find its joints");
   };
-  editor.open_dialog(make_form({"Templates",
-                                "Places a skeleton in the tissue's bounding box. You can then move its joints by hand.",
-                                "Place",
-                                {choice_of("Skeleton", "The skeleton to place in the volume.", template_labels())},
-                                outcome,
-                                act}));
+  context.dialogs->open(
+      make_form({"Templates",
+                 "Places a skeleton in the tissue's bounding box. You can then move its joints by hand.",
+                 "Place",
+                 {choice_of("Skeleton", "The skeleton to place in the volume.", template_labels())},
+                 outcome,
+                 act}));
 }
 
 }  // namespace limber::editor

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators that place a skeleton in the volume and fit the skeleton's joints.
+#include "core/project/document.h"
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/workspace.h"
 #include "editor/rig/auto_rig.h"
 #include "editor/rig/joint_axis_fit.h"
 #include "editor/ui/icons.h"
@@ -10,16 +15,16 @@ namespace limber::editor {
 
 namespace {
 
-std::string needs_joint_in_tissue(const Editor& editor) {
-  if (editor.workspace != Workspace::Rig) return "Switch to the Rig workspace first";
-  if (const std::string why = needs_bone(editor); !why.empty()) return why;
-  const Bone& bone = editor.document().armature->bones[*editor.selection.bone];
+std::string needs_joint_in_tissue(const Context& context) {
+  if (context.workspace() != Workspace::Rig) return "Switch to the Rig workspace first";
+  if (const std::string why = needs_bone(context); !why.empty()) return why;
+  const Bone& bone = context.document().armature->bones[*context.selection->bone];
   if (bone.parent < 0) return "A root bone has no joint: select a bone that has a parent";
-  return needs_volume(editor);
+  return needs_volume(context);
 }
 
-std::string needs_proposed_joint(const Editor& editor) {
-  return proposed_joint(editor) ? "" : "Fit a joint's axis first";
+std::string needs_proposed_joint(const Context& context) {
+  return proposed_joint(context) ? "" : "Fit a joint's axis first";
 }
 
 Operator shows_proposed(const char* id, const char* label, const char* description, bool after) {
@@ -28,9 +33,9 @@ Operator shows_proposed(const char* id, const char* label, const char* descripti
           "",
           "Rig",
           description,
-          [after](Editor& e) { e.transform_settings->proposed_joint->shows_after = after; },
+          [after](Context& c) { c.transform_settings->proposed_joint->shows_after = after; },
           needs_proposed_joint,
-          [after](const Editor& e) { return proposed_joint(e) && proposed_joint(e)->shows_after == after; }};
+          [after](const Context& c) { return proposed_joint(c) && proposed_joint(c)->shows_after == after; }};
 }
 
 }  // namespace

@@ -4,8 +4,13 @@
 #include <algorithm>
 
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/seams/seam_view.h"
 #include "editor/shown/mark_colours.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/tissue_edits.h"
 #include "render/scene/weight_colormap.h"
 
@@ -50,8 +55,7 @@ BoneTable::Known found(const SeamSource& source, Progress& progress) {
 
 }  // namespace
 
-std::string why_no_bone_table(const Editor& editor) {
-  const Document& document = editor.document();
+std::string why_no_bone_table(const Document& document) {
   if (!document.volume || !document.tissues) return "Open a volume first";
   if (!document.armature || document.armature->bones.empty()) return "Import a rig first";
   const auto& tissues = document.tissues->tissues;
@@ -60,26 +64,26 @@ std::string why_no_bone_table(const Editor& editor) {
              : "No tissue is marked as bone";
 }
 
-const BoneTable::Known* bone_table(Editor& editor) {
-  if (!why_no_bone_table(editor).empty()) return nullptr;
-  BoneTable& table = *editor.bone_table;
-  const SeamSource source = seam_source(editor.document());
+const BoneTable::Known* bone_table(Context& context) {
+  if (!why_no_bone_table(context.document()).empty()) return nullptr;
+  BoneTable& table = *context.bone_table;
+  const SeamSource source = seam_source(context.document());
   const bool is_current = table.known && same_source(table.known->source, source);
-  if (!is_current && !(table.task && editor.tasks.contains(*table.task)))
+  if (!is_current && !(table.task && context.background->tasks.contains(*table.task)))
     table.task = start_task(
-        editor, "",
+        context, "",
         [source](Progress& progress) -> Finish {
           auto known = std::make_shared<BoneTable::Known>(found(source, progress));
-          return [known](Editor& e) {
-            e.bone_table->known = std::move(*known);
-            e.touch();
+          return [known](Context& c) {
+            c.bone_table->known = std::move(*known);
+            c.ui->touch();
           };
         },
-        [source](Editor& e, const std::string& error) {
+        [source](Context& c, const std::string& error) {
           // After a failure the table is set to an empty one, so that the task does not start again for the same body.
-          e.bone_table->known =
+          c.bone_table->known =
               BoneTable::Known{.source = source, .rows = {}, .left_out = {}, .tissue = nullptr, .field = nullptr};
-          e.messages.show_error(error, "Bone map");
+          c.messages->show_error(error, "Bone map");
         });
   // The table of an earlier body or rig is not returned: its rows may name labels or bones that no longer exist.
   const bool fits = table.known && table.known->source.volume == source.volume &&
@@ -87,8 +91,8 @@ const BoneTable::Known* bone_table(Editor& editor) {
   return fits ? &*table.known : nullptr;
 }
 
-void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::optional<int> bone) {
-  const Document& document = editor.document();
+void map_label(Context& context, Label label, std::optional<BodySide> side, std::optional<int> bone) {
+  const Document& document = context.document();
   const Tissue* tissue = document.tissues->find(label);
   if (!tissue) return;
   const std::string* name = bone ? &document.armature->bones[static_cast<std::size_t>(*bone)].name : nullptr;
@@ -96,23 +100,23 @@ void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::o
   if (document.bone_map ? map == *document.bone_map : map.empty()) return;
   const std::string of_side = !side ? "" : *side == BodySide::Left ? ", left" : ", right";
   const std::string what = shown_name(*tissue) + of_side;
-  note_weights_source(editor);
+  note_weights_source(context);
   Document next = document;
   next.bone_map = map.empty() ? nullptr : std::make_shared<const BoneMap>(std::move(map));
-  editor.history.commit(name ? what + " follows " + *name : what + " follows the found bone", std::move(next));
+  context.history->commit(name ? what + " follows " + *name : what + " follows the found bone", std::move(next));
 }
 
-void clear_bone_map(Editor& editor) {
-  note_weights_source(editor);
-  Document next = editor.document();
+void clear_bone_map(Context& context) {
+  note_weights_source(context);
+  Document next = context.document();
   next.bone_map.reset();
-  editor.history.commit("Clear bone map", std::move(next));
+  context.history->commit("Clear bone map", std::move(next));
 }
 
-void show_bone_table(Editor& editor) {
-  if (!editor.bone_table->coloured || editor.workspace != Workspace::Rig) return;
-  const BoneTable::Known* known = bone_table(editor);
-  render::Scene& scene = editor.views->scene;
+void show_bone_table(Context& context) {
+  if (!context.bone_table->coloured || context.workspace() != Workspace::Rig) return;
+  const BoneTable::Known* known = bone_table(context);
+  render::Scene& scene = context.views->scene;
   if (!known || !known->field || scene.volume != known->source.volume || scene.pose) return;
   scene.outlined.reset();
   if (scene.display == render::Display::Solid)

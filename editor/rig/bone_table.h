@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "core/bones/bone_map.h"
-#include "editor/context/editor.h"
 #include "editor/volume/body_seams.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct BoneTable {
   bool coloured = false;  // true: the Rig workspace colours bone tissue by the rig bone that it follows
@@ -33,17 +34,17 @@ struct BoneTable {
 // Returns the bone table; null without a rig or without a volume that has bone tissue. When the volume, the tissues,
 // the rig or the bone map have changed, starts a task that computes the table again. Until that task ends, returns the
 // earlier table if only the bone map has changed, else null.
-const BoneTable::Known* bone_table(Editor& editor);
+const BoneTable::Known* bone_table(Context& context);
 // Returns why no bone table can be computed, such as "Import a rig first"; "" when it can.
-std::string why_no_bone_table(const Editor& editor);
+std::string why_no_bone_table(const Document& document);
 
 // Sets the rig bone that a label of bone tissue follows, and commits this change of the bone map as one edit.
 //   side  sets the bone for the label's voxels on this side of the body only; nothing: for the whole label
 //   bone  index into the rig's bones; nothing: the bone is found automatically
-void map_label(Editor& editor, Label label, std::optional<BodySide> side, std::optional<int> bone);
-void clear_bone_map(Editor& editor);
+void map_label(Context& context, Label label, std::optional<BodySide> side, std::optional<int> bone);
+void clear_bone_map(Context& context);
 
 // Colours bone tissue in the scene of this frame by the table's rig bones when the user has switched this on.
-void show_bone_table(Editor& editor);
+void show_bone_table(Context& context);
 
 }  // namespace limber::editor

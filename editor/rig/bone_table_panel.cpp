@@ -3,8 +3,11 @@
 // choice field in each row sets another bone.
 #include <algorithm>
 
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/selection.h"
 #include "editor/rig/bone_table.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
@@ -39,92 +42,92 @@ std::string followed(const MappedLabel& row, const Armature& armature) {
   return row.bones.size() == 1 ? first : first + " and " + std::to_string(row.bones.size() - 1) + " more";
 }
 
-void choose_bone(Editor& editor, const MappedLabel& row, const Rect& rect) {
-  const Armature& armature = *editor.document().armature;
+void choose_bone(Context& context, const MappedLabel& row, const Rect& rect) {
+  const Armature& armature = *context.document().armature;
   const bool by_hand = row.found_by == FoundBy::Map;
   std::vector<std::string> choices{by_hand ? "Automatic" : followed(row, armature)};
   for (const Bone& bone : armature.bones) choices.push_back(bone.name);
   int chosen = by_hand && !row.bones.empty() ? row.bones[0] + 1 : 0;
-  if (choice_field(editor, rect, choices, chosen))
-    map_label(editor, row.label, row.side, chosen == 0 ? std::nullopt : std::optional(chosen - 1));
+  if (choice_field(context.ui, rect, choices, chosen))
+    map_label(context, row.label, row.side, chosen == 0 ? std::nullopt : std::optional(chosen - 1));
 }
 
-void draw_row(Editor& editor, Column& column, int index, const MappedLabel& row) {
-  const Look& look = editor.look;
+void draw_row(Context& context, Column& column, int index, const MappedLabel& row) {
+  const Look& look = context.ui->look;
   const Rect rect = column.row(kRow);
   if (!ImGui::IsRectVisible(im(rect.low), im(rect.high))) return;
-  const Tissue* tissue = editor.document().tissues->find(row.label);
-  const Armature& armature = *editor.document().armature;
+  const Tissue* tissue = context.document().tissues->find(row.label);
+  const Armature& armature = *context.document().armature;
   const std::string name = name_of(row, tissue);
-  const PathScope path(editor, name);
+  const PathScope path(context.ui, name);
   if (index % 2) fill(rect, look.theme.row_alt);
   const float left = rect.low.x + look.px(10), right = rect.high.x - look.px(10), middle = rect.low.y + look.px(23);
   const std::string voxels = grouped(row.voxels);
   const float number = text_size(look.fonts.mono, voxels).x;
   const Rect top{{rect.low.x, rect.low.y}, {rect.high.x, middle}};
-  const Pressed pressed = press_area(editor, "name", top);
+  const Pressed pressed = press_area(context.ui, "name", top);
   const glm::vec2 corner{left, std::round(top.centre().y - look.px(6))};
   if (!row.bones.empty()) {
     const glm::vec3 colour = render::bone_swatches(armature)[static_cast<std::size_t>(row.bones[0])];
     fill({corner, corner + look.px(14)}, rgb(colour.r, colour.g, colour.b), look.px(3));
   }
-  put_text(editor, look.fonts.regular, look.theme.text,
+  put_text(context.ui, look.fonts.regular, look.theme.text,
            Rect{{left + look.px(22), top.low.y}, {right - number - look.px(8), top.high.y}}, shown_in_row(row, tissue));
-  put_text(editor, look.fonts.mono, look.theme.text2, Rect{{right - number, top.low.y}, {right, top.high.y}}, voxels,
-           Align::Right);
+  put_text(context.ui, look.fonts.mono, look.theme.text2, Rect{{right - number, top.low.y}, {right, top.high.y}},
+           voxels, Align::Right);
   if (pressed.hovered)
-    tooltip(editor, top, name,
+    tooltip(context.ui, top, name,
             voxels + " voxels follow " + followed(row, armature) + ", found by " +
                 std::string(to_string(row.found_by)) +
                 (row.is_sure ? "." : "; no bone of the rig matches the tissue's name."));
   if (pressed.clicked) {
-    select_tissue(editor, row.label, false);
-    if (!row.bones.empty()) editor.selection.bone = row.bones[0], editor.selection.bones = {row.bones[0]};
+    select_tissue(context, row.label, false);
+    if (!row.bones.empty()) context.selection->bone = row.bones[0], context.selection->bones = {row.bones[0]};
   }
   const Rect field{{left + look.px(22), middle}, {right - look.px(kWord), middle + look.px(22)}};
-  choose_bone(editor, row, field);
+  choose_bone(context, row, field);
   const Rect word{{field.high.x + look.px(8), middle}, {right, middle + look.px(22)}};
   if (row.is_sure)
-    return put_text(editor, look.fonts.regular,
+    return put_text(context.ui, look.fonts.regular,
                     row.found_by == FoundBy::Map ? look.theme.accent_text : look.theme.text2, word,
                     capitalized(how(row)));
   put_icon(look.fonts.regular, look.theme.warn, Rect{word.low, {word.low.x + look.px(18), word.high.y}},
            icon::kWarning);
-  put_text(editor, look.fonts.regular, look.theme.warn, Rect{{word.low.x + look.px(20), word.low.y}, word.high},
+  put_text(context.ui, look.fonts.regular, look.theme.warn, Rect{{word.low.x + look.px(20), word.low.y}, word.high},
            capitalized(how(row)));
 }
 
-void draw_rows(Editor& editor, Column& column, const std::vector<MappedLabel>& rows) {
-  for (int i = 0; i < std::ssize(rows); ++i) draw_row(editor, column, i, rows[static_cast<std::size_t>(i)]);
+void draw_rows(Context& context, Column& column, const std::vector<MappedLabel>& rows) {
+  for (int i = 0; i < std::ssize(rows); ++i) draw_row(context, column, i, rows[static_cast<std::size_t>(i)]);
 }
 
 // Draws a warning with the number of bone map entries whose tissue or bone does not exist. The tooltip lists them.
-void draw_left_out(Editor& editor, Column& column, const std::vector<std::string>& left_out) {
+void draw_left_out(Ui& ui, Column& column, const std::vector<std::string>& left_out) {
   if (left_out.empty()) return;
-  const Look& look = editor.look;
+  const Look& look = ui.look;
   const Rect rect = column.row(28);
   put_icon(look.fonts.regular, look.theme.warn,
            Rect{{rect.low.x + look.px(8), rect.low.y}, {rect.low.x + look.px(28), rect.high.y}}, icon::kWarning);
   const std::string words = std::to_string(left_out.size()) +
                             (left_out.size() == 1 ? " entry names" : " entries name") + " no tissue or bone";
-  put_text(editor, look.fonts.regular, look.theme.warn,
+  put_text(ui, look.fonts.regular, look.theme.warn,
            Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, words);
   std::string all;
   for (const std::string& key : left_out) all += (all.empty() ? "" : ", ") + key;
-  if (press_area(editor, "left out", rect).hovered) tooltip(editor, rect, "Not used", all);
+  if (press_area(ui, "left out", rect).hovered) tooltip(ui, rect, "Not used", all);
 }
 
-void draw_foot(Editor& editor, Column& column) {
-  const Look& look = editor.look;
+void draw_foot(Context& context, Column& column) {
+  const Look& look = context.ui->look;
   const Rect rect = column.row(38);
   const float y = rect.low.y + look.px(6);
   float x = rect.low.x + look.px(10);
   for (const auto& [id, label] :
        {std::pair("rig.colour_bones", "Colours"), std::pair("rig.clear_bone_map", "Clear map")}) {
-    const Operator* op = find_operator(editor, id);
-    const float width = width_of_button(editor, {op->icon, label});
-    operator_button(editor, id, {{x, y}, {x + width, y + look.px(26)}}, label,
-                    op->checked && op->checked(editor) ? ButtonStyle::Soft : ButtonStyle::Plain);
+    const Operator* op = find_operator(context.operators, id);
+    const float width = width_of_button(context.ui, {op->icon, label});
+    operator_button(context, id, {{x, y}, {x + width, y + look.px(26)}}, label,
+                    op->checked && op->checked(context) ? ButtonStyle::Soft : ButtonStyle::Plain);
     x += width + look.px(6);
   }
 }
@@ -137,28 +140,28 @@ std::string summary(const BoneTable::Known& known) {
 
 }  // namespace
 
-void draw_bone_table(Editor& editor, Column& column) {
-  if (!why_no_bone_table(editor).empty()) return;
-  const auto& last = editor.bone_table->known;
+void draw_bone_table(Context& context, Column& column) {
+  if (!why_no_bone_table(context.document()).empty()) return;
+  const auto& last = context.bone_table->known;
   const bool is_of_body =
-      last && last->source.volume == editor.document().volume && last->source.tissues == editor.document().tissues;
+      last && last->source.volume == context.document().volume && last->source.tissues == context.document().tissues;
   if (column.begin_section("Bone map", is_of_body ? summary(*last) : "", false)) {
-    const BoneTable::Known* known = bone_table(editor);
+    const BoneTable::Known* known = bone_table(context);
     if (!known) {
-      put_text(editor, editor.look.fonts.regular, editor.look.theme.text3, column.row(24), "Finding the bones",
-               Align::Centre);
+      put_text(context.ui, context.ui->look.fonts.regular, context.ui->look.theme.text3, column.row(24),
+               "Finding the bones", Align::Centre);
     } else {
       // Rows are copied, because drawing a row may change the table. Rows whose bone is uncertain come first.
       std::vector<MappedLabel> rows = known->rows;
       std::stable_partition(rows.begin(), rows.end(), [](const MappedLabel& row) { return !row.is_sure; });
-      draw_left_out(editor, column, known->left_out);
+      draw_left_out(context.ui, column, known->left_out);
       if (static_cast<float>(rows.size()) <= kMostRows) {
-        draw_rows(editor, column, rows);
+        draw_rows(context, column, rows);
       } else {
-        Column list(editor, "list", column.row(kRow * kMostRows));
-        draw_rows(editor, list, rows);
+        Column list(context.ui, "list", column.row(kRow * kMostRows));
+        draw_rows(context, list, rows);
       }
-      draw_foot(editor, column);
+      draw_foot(context, column);
     }
   }
   column.end_section();

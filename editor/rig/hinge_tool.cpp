@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/project/document.h"
+#include "editor/context/context.h"
+#include "editor/context/layout.h"
+#include "editor/context/selection.h"
+#include "editor/input/keymap_overrides.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/rig/rig_transform_tool.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -15,21 +21,21 @@ constexpr double kReach = 124;  // distance from the joint to the dragged end of
 
 class HingeTool final : public TransformTool {
  public:
-  HingeTool(Editor& editor, const Grip& grip)
-      : TransformTool(editor, grip),
-        rig_(*editor.document().armature),
-        bone_(*editor.selection.bone),
+  HingeTool(Context& context, const Grip& grip)
+      : TransformTool(context, grip),
+        rig_(*context.document().armature),
+        bone_(*context.selection->bone),
         before_(rig_.bones[bone_].limits.axis),
         axis_(before_) {
     const glm::dvec3& head = rig_.bones[bone_].head;
-    from_ = head + before_ * (kReach * editor.look.scale * view_.millimetres_per_pixel(head));
-    show(editor);
+    from_ = head + before_ * (kReach * context.ui->look.scale * view_.millimetres_per_pixel(head));
+    show(context);
   }
 
   std::string title() const override {
     return "Hinge of " + rig_.bones[bone_].name + ", turned by " + text_of_number("%.1f", degrees()) + "\u00b0";
   }
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"X", "Y", "Z"}, "World axis, twice for local"},
             {{"0-9"}, "Turn by degrees"},
             {{"Ctrl"}, "Snap to local axes"},
@@ -37,19 +43,19 @@ class HingeTool final : public TransformTool {
             {{"Enter"}, "Confirm"},
             {{"Esc"}, "Cancel"}};
   }
-  void cancel(Editor& editor) override { drop_shown_rig(editor); }
+  void cancel(Context& context) override { drop_shown_rig(context); }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
     const glm::dvec3& head = rig_.bones[bone_].head;
     const double reach = glm::distance(head, from_);
-    const GizmoPainter painter(editor, view_);
+    const GizmoPainter painter(context, view_);
     painter.line(head - axis_ * reach, head + axis_ * reach, kGizmoActive, 2);
     painter.dot(head + axis_ * reach, kGizmoActive, 0xFF1A1614, 6);
     painter.read_out(head + axis_ * reach,
                      (number_.typed() ? number_.text() : text_of_number("%.1f", degrees())) + "\u00b0",
                      lock_.axis < 0 ? "" : lock_text(number_.typed() ? "about" : "along").substr(1),
-                     rig_.bones[bone_].name, editor.look.theme.view_text2);
+                     rig_.bones[bone_].name, context.ui->look.theme.view_text2);
   }
 
  private:
@@ -60,14 +66,14 @@ class HingeTool final : public TransformTool {
   // locked axis, or about the line of sight when no axis is locked. Without a number, the new axis is the locked axis
   // or its opposite, whichever is nearer to the old axis. Without a number and a locked axis, the new axis points at
   // the pointer; Ctrl snaps the axis to the nearest of the bone's local axes.
-  glm::dvec3 pointed_at(Editor& editor) {
+  glm::dvec3 pointed_at(Context& context) {
     if (number_.typed())
       return glm::angleAxis(glm::radians(number_.value()), lock_.axis >= 0 ? lock_axis() : view_.towards_eye) * before_;
     if (lock_.axis >= 0) return lock_axis() * (glm::dot(lock_axis(), before_) < 0 ? -1.0 : 1.0);
-    const glm::dvec3 towards = dragged(editor, from_, 0, 0) - rig_.bones[bone_].head;
+    const glm::dvec3 towards = dragged(context, from_, 0, 0) - rig_.bones[bone_].head;
     if (glm::length(towards) < 1e-9) return axis_;
     const glm::dvec3 axis = glm::normalize(towards);
-    if (editor.input.down(Key::Ctrl) == editor.transform_settings->snapping) return axis;
+    if (context.ui->input.down(Key::Ctrl) == context.transform_settings->snapping) return axis;
     const glm::dmat3 own = rest_axes(rig_.bones[bone_]);
     glm::dvec3 nearest = own[0];
     for (int i = 0; i < 6; ++i)
@@ -76,16 +82,16 @@ class HingeTool final : public TransformTool {
     return nearest;
   }
 
-  Armature changed(Editor& editor) {
-    axis_ = pointed_at(editor);
+  Armature changed(Context& context) {
+    axis_ = pointed_at(context);
     Armature next = rig_;
     next.bones[bone_].limits.axis = axis_;
-    return mirrored_too(editor, std::move(next));
+    return mirrored_too(context, std::move(next));
   }
 
-  void show(Editor& editor) override { show_rig(editor, changed(editor)); }
-  void keep(Editor& editor) override {
-    commit_rig(editor, "Hinge of " + rig_.bones[bone_].name, changed(editor), {bone_});
+  void show(Context& context) override { show_rig(context, changed(context)); }
+  void keep(Context& context) override {
+    commit_rig(context, "Hinge of " + rig_.bones[bone_].name, changed(context), {bone_});
   }
 
   const Armature rig_;
@@ -95,8 +101,8 @@ class HingeTool final : public TransformTool {
 
 }  // namespace
 
-std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip) {
-  return std::make_unique<HingeTool>(editor, grip);
+std::unique_ptr<TransformTool> begin_hinge_change(Context& context, const Grip& grip) {
+  return std::make_unique<HingeTool>(context, grip);
 }
 
 }  // namespace limber::editor

@@ -5,11 +5,16 @@
 
 #include "core/rig/edit_armature.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/operator_button.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 #include "editor/ui/widgets.h"
 #include "editor/volume/body_seams.h"
 #include "editor/volume/volume_edits.h"
@@ -47,31 +52,31 @@ std::string motion_text(const ProposedJoint& proposed) {
   return text;
 }
 
-void propose(Editor& editor, ProposedJoint proposed) {
-  if (editor.document().volume != proposed.volume || editor.document().armature != proposed.from)
-    return editor.messages.warn("Joint axis of " + proposed.bone,
-                                "The rig or the volume was changed meanwhile: start the fit again");
+void propose(Context& context, ProposedJoint proposed) {
+  if (context.document().volume != proposed.volume || context.document().armature != proposed.from)
+    return context.messages->warn("Joint axis of " + proposed.bone,
+                                  "The rig or the volume was changed meanwhile: start the fit again");
   if (proposed.fit.overlap_before == 0)
-    return editor.messages.ok("Joint axis of " + proposed.bone,
-                              "The bones do not collide within the joint's range: the axis needs no change");
-  editor.transform_settings->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
-  editor.touch();
+    return context.messages->ok("Joint axis of " + proposed.bone,
+                                "The bones do not collide within the joint's range: the axis needs no change");
+  context.transform_settings->proposed_joint = std::make_shared<ProposedJoint>(std::move(proposed));
+  context.ui->touch();
 }
 
 }  // namespace
 
-void start_joint_fit(Editor& editor) {
-  leave_proposed_joint(editor);
-  const Document from = editor.document();
-  const int bone = *editor.selection.bone;
+void start_joint_fit(Context& context) {
+  leave_proposed_joint(context);
+  const Document from = context.document();
+  const int bone = *context.selection->bone;
   const JointLimits& limits = from.armature->bones[bone].limits;
   // A joint that is not a hinge is fitted as a hinge about its flexion axis, over the default range of FitJoint.
   FitJoint settings;
   if (limits.type == JointLimits::Type::Hinge)
     settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};
-  const bool both_sides = editor.transform_settings->x_mirror;
+  const bool both_sides = context.transform_settings->x_mirror;
   const int id =
-      start_task(editor, "Fit joint axis of " + from.armature->bones[bone].name, [=](Progress& progress) -> Finish {
+      start_task(context, "Fit joint axis of " + from.armature->bones[bone].name, [=](Progress& progress) -> Finish {
         ProposedJoint proposed{.volume = from.volume,
                                .from = from.armature,
                                .fitted = nullptr,
@@ -87,21 +92,21 @@ void start_joint_fit(Editor& editor) {
             both_sides ? with_mirrored_changes(*from.armature, proposed.fit.armature) : proposed.fit.armature);
         proposed.colours = {coloured(*from.volume, *proposed.tissue, *from.tissues, proposed.fit.colliding_before),
                             coloured(*from.volume, *proposed.tissue, *from.tissues, proposed.fit.colliding_after)};
-        return [proposed](Editor& e) { propose(e, proposed); };
+        return [proposed](Context& c) { propose(c, proposed); };
       });
-  editor.step_of_job[id] = StepOfWork::Rig;
+  context.background->step_of_job[id] = StepOfWork::Rig;
 }
 
-const ProposedJoint* proposed_joint(const Editor& editor) {
-  const auto& proposed = editor.transform_settings->proposed_joint;
-  const bool here = proposed && editor.workspace == Workspace::Rig && editor.document().volume == proposed->volume &&
-                    editor.document().armature == proposed->from;
+const ProposedJoint* proposed_joint(const Context& context) {
+  const auto& proposed = context.transform_settings->proposed_joint;
+  const bool here = proposed && context.workspace() == Workspace::Rig &&
+                    context.document().volume == proposed->volume && context.document().armature == proposed->from;
   return here ? proposed.get() : nullptr;
 }
 
-void show_proposed_joint(Editor& editor) {
-  const ProposedJoint* proposed = proposed_joint(editor);
-  render::Scene& scene = editor.views->scene;
+void show_proposed_joint(Context& context) {
+  const ProposedJoint* proposed = proposed_joint(context);
+  render::Scene& scene = context.views->scene;
   if (!proposed || scene.volume != proposed->volume) return;
   scene.display = render::Display::XRay;  // soft tissue would hide the bones
   scene.bones_in_front = true;
@@ -117,43 +122,43 @@ void show_proposed_joint(Editor& editor) {
                                        .contours = false};
 }
 
-void take_proposed_joint(Editor& editor) {
-  const auto proposed = editor.transform_settings->proposed_joint;
-  leave_proposed_joint(editor);
-  Document next = editor.document();
+void take_proposed_joint(Context& context) {
+  const auto proposed = context.transform_settings->proposed_joint;
+  leave_proposed_joint(context);
+  Document next = context.document();
   next.armature = proposed->fitted;
   const std::string label = "Fit joint axis of " + proposed->bone;
-  commit(editor, label, std::move(next));
-  warn_of_moved_targets(editor, label, *proposed->from);
+  commit(context, label, std::move(next));
+  warn_of_moved_targets(context, label, *proposed->from);
 }
 
-void leave_proposed_joint(Editor& editor) {
-  editor.transform_settings->proposed_joint.reset();
-  editor.touch();
+void leave_proposed_joint(Context& context) {
+  context.transform_settings->proposed_joint.reset();
+  context.ui->touch();
 }
 
-void draw_proposed_joint(Editor& editor, const Rect& view) {
-  const ProposedJoint* proposed = proposed_joint(editor);
+void draw_proposed_joint(Context& context, const Rect& view) {
+  const ProposedJoint* proposed = proposed_joint(context);
   if (!proposed) return;
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const FittedJoint& fit = proposed->fit;
   constexpr float kWidth = 322, kHeight = 148, kMargin = 12, kRow = 26;
   const glm::vec2 low{view.low.x + look.px(kMargin), view.high.y - look.px(kMargin + kHeight)};
   const Rect box{low, low + glm::vec2(look.px(kWidth), look.px(kHeight))};
-  const PathScope path(editor, "joint axis");
-  register_widget(editor, "box", box);
+  const PathScope path(context.ui, "joint axis");
+  register_widget(context.ui, "box", box);
   fill(box, with_alpha(look.theme.panel, 0.94f), look.px(5));
   outline(box, look.theme.line2, look.px(5), look.line());
   const float left = box.low.x + look.px(10), right = box.high.x - look.px(10);
   float y = box.low.y + look.px(4);
   const auto line = [&](ImFont* font, Colour colour, const std::string& words, Align align = Align::Left) {
-    put_text(editor, font, colour, Rect{{left, y}, {right, y + look.px(kRow)}}, words, align);
+    put_text(context.ui, font, colour, Rect{{left, y}, {right, y + look.px(kRow)}}, words, align);
   };
   line(look.fonts.semibold, look.theme.text, "Joint axis of " + proposed->bone);
   y += look.px(kRow);
   fill({{left, y + look.px(6)}, {left + look.px(14), y + look.px(20)}}, rgb(kColliding.r, kColliding.g, kColliding.b),
        look.px(3));
-  put_text(editor, look.fonts.regular, look.theme.text2, Rect{{left + look.px(22), y}, {right, y + look.px(kRow)}},
+  put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{{left + look.px(22), y}, {right, y + look.px(kRow)}},
            "Bone overlap, worst angle");
   line(look.fonts.mono, fit.overlap_after > 0 ? look.theme.warn : look.theme.ok,
        grouped(fit.overlap_before) + " \u2192 " + grouped(fit.overlap_after), Align::Right);
@@ -162,15 +167,15 @@ void draw_proposed_joint(Editor& editor, const Rect& view) {
   y += look.px(kRow + 2);
   const float half = (right - left - look.px(1)) / 2;
   const auto side = [&](const char* id, const char* words, float from, bool on) {
-    operator_button(editor, id, {{from, y}, {from + half, y + look.px(kRow)}}, words,
+    operator_button(context, id, {{from, y}, {from + half, y + look.px(kRow)}}, words,
                     on ? ButtonStyle::Chosen : ButtonStyle::Plain);
   };
   side("rig.joint_fit_before", "Before", left, !proposed->shows_after);
   side("rig.joint_fit_after", "After", left + half + look.px(1), proposed->shows_after);
   y += look.px(kRow + 8);
-  operator_button(editor, "rig.leave_joint_fit", {{right - look.px(190), y}, {right - look.px(104), y + look.px(kRow)}},
-                  "Keep axis");
-  operator_button(editor, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Move axis",
+  operator_button(context, "rig.leave_joint_fit",
+                  {{right - look.px(190), y}, {right - look.px(104), y + look.px(kRow)}}, "Keep axis");
+  operator_button(context, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Move axis",
                   ButtonStyle::Primary);
 }
 

@@ -9,9 +9,11 @@
 #include <string>
 
 #include "core/autorig/joint_axis_fit.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
+
+struct Context;
+struct Rect;
 
 struct ProposedJoint {
   // The volume in which the axis was fitted. The proposal ends when the volume changes.
@@ -27,15 +29,15 @@ struct ProposedJoint {
 
 // Starts a job that fits the axis of the active bone's hinge. The result is a proposal that the user accepts or
 // rejects.
-void start_joint_fit(Editor& editor);
+void start_joint_fit(Context& context);
 // Returns the proposed joint axis; null when there is none, when the volume or the rig has changed since the fit, and
 // outside the Rig workspace.
-const ProposedJoint* proposed_joint(const Editor& editor);
+const ProposedJoint* proposed_joint(const Context& context);
 // Shows the proposed axis and the collisions in the scene of this frame.
-void show_proposed_joint(Editor& editor);
-void take_proposed_joint(Editor& editor);  // commits the proposed axis as one edit
-void leave_proposed_joint(Editor& editor);
+void show_proposed_joint(Context& context);
+void take_proposed_joint(Context& context);  // commits the proposed axis as one edit
+void leave_proposed_joint(Context& context);
 // Draws the card with the proposal's numbers and buttons over a view.
-void draw_proposed_joint(Editor& editor, const Rect& view);
+void draw_proposed_joint(Context& context, const Rect& view);
 
 }  // namespace limber::editor

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/rig/joint_gizmo.h"
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/rig/rig_transform_tool.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -14,10 +20,10 @@ namespace {
 constexpr double kAxis = 124, kKnob = 30, kHit = 9;
 
 // Returns the active bone if its joint handles are shown in this view, else null.
-const Bone* handled_bone(const Editor& editor, const Armature* rig, const ViewProjection& view) {
-  const auto bone = editor.selection.bone;
-  const bool wanted = editor.workspace == Workspace::Rig && editor.tool == Tool::Rotate &&
-                      view.place.id == ViewId::Body && editor.views->bones;
+const Bone* handled_bone(const Context& context, const Armature* rig, const ViewProjection& view) {
+  const auto bone = context.selection->bone;
+  const bool wanted = context.workspace() == Workspace::Rig && context.interaction->tool == Tool::Rotate &&
+                      view.place.id == ViewId::Body && context.views->bones;
   return wanted && rig && bone && *bone < std::ssize(rig->bones) ? &rig->bones[*bone] : nullptr;
 }
 
@@ -28,46 +34,46 @@ bool is_at(const ViewProjection& view, const std::optional<glm::dvec3>& handle, 
 
 }  // namespace
 
-std::optional<glm::dvec3> hinge_handle(const Editor& editor, const ViewProjection& view) {
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  const Bone* bone = handled_bone(editor, rig.get(), view);
+std::optional<glm::dvec3> hinge_handle(const Context& context, const ViewProjection& view) {
+  const std::shared_ptr<const Armature> rig = shown_rig(context);
+  const Bone* bone = handled_bone(context, rig.get(), view);
   if (!bone || bone->limits.type != JointLimits::Type::Hinge) return std::nullopt;
-  return bone->head + bone->limits.axis * (kAxis * editor.look.scale * view.millimetres_per_pixel(bone->head));
+  return bone->head + bone->limits.axis * (kAxis * context.ui->look.scale * view.millimetres_per_pixel(bone->head));
 }
 
-std::optional<glm::dvec3> roll_handle(const Editor& editor, const ViewProjection& view) {
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  const Bone* bone = handled_bone(editor, rig.get(), view);
+std::optional<glm::dvec3> roll_handle(const Context& context, const ViewProjection& view) {
+  const std::shared_ptr<const Armature> rig = shown_rig(context);
+  const Bone* bone = handled_bone(context, rig.get(), view);
   if (!bone || bone->head == bone->tail) return std::nullopt;
   const glm::dvec3 middle = (bone->head + bone->tail) / 2.0;
-  return middle + rest_axes(*bone)[0] * (kKnob * editor.look.scale * view.millimetres_per_pixel(middle));
+  return middle + rest_axes(*bone)[0] * (kKnob * context.ui->look.scale * view.millimetres_per_pixel(middle));
 }
 
-bool press_joint_handle(Editor& editor, const ViewProjection& view) {
-  const glm::dvec2 pixel(editor.input.pointer);
-  const bool hinge = is_at(view, hinge_handle(editor, view), pixel, editor.look.scale);
-  if (!hinge && !is_at(view, roll_handle(editor, view), pixel, editor.look.scale)) return false;
+bool press_joint_handle(Context& context, const ViewProjection& view) {
+  const glm::dvec2 pixel(context.ui->input.pointer);
+  const bool hinge = is_at(view, hinge_handle(context, view), pixel, context.ui->look.scale);
+  if (!hinge && !is_at(view, roll_handle(context, view), pixel, context.ui->look.scale)) return false;
   const Grip grip{.lock = {hinge ? -1 : 1, Space::Local}, .held = MouseButton::Left};
-  begin_tool(editor, hinge ? begin_hinge_change(editor, grip)
-                           : begin_rig_change(editor, chosen_change(editor, RigChange::Kind::Roll), grip));
+  begin_tool(context, hinge ? begin_hinge_change(context, grip)
+                            : begin_rig_change(context, chosen_change(context, RigChange::Kind::Roll), grip));
   return true;
 }
 
-void draw_joint_handles(Editor& editor, const ViewProjection& view) {
-  const GizmoPainter painter(editor, view);
-  const Theme& theme = editor.look.theme;
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  const Bone* bone = handled_bone(editor, rig.get(), view);
+void draw_joint_handles(Context& context, const ViewProjection& view) {
+  const GizmoPainter painter(context, view);
+  const Theme& theme = context.ui->look.theme;
+  const std::shared_ptr<const Armature> rig = shown_rig(context);
+  const Bone* bone = handled_bone(context, rig.get(), view);
   if (!bone) return;
-  const glm::dvec2 pixel(editor.input.pointer);
+  const glm::dvec2 pixel(context.ui->input.pointer);
   const auto put = [&](const std::optional<glm::dvec3>& handle, const glm::dvec3& from, Colour colour) {
     if (!handle) return;
-    const bool hovered = !editor.modal && is_at(view, handle, pixel, editor.look.scale);
+    const bool hovered = !context.interaction->modal && is_at(view, handle, pixel, context.ui->look.scale);
     painter.line(from, *handle, with_alpha(colour, hovered ? 1 : 0.8f), 2);
     painter.dot(*handle, hovered ? kGizmoActive : colour, 0xFF1A1614, 6);
   };
-  put(hinge_handle(editor, view), bone->head, kViewWarn);
-  put(roll_handle(editor, view), (bone->head + bone->tail) / 2.0, theme.axis[0]);
+  put(hinge_handle(context, view), bone->head, kViewWarn);
+  put(roll_handle(context, view), (bone->head + bone->tail) / 2.0, theme.axis[0]);
 }
 
 }  // namespace limber::editor

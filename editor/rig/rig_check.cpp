@@ -3,8 +3,14 @@
 
 #include <algorithm>
 
+#include "editor/context/context.h"
+#include "editor/context/preferences.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/view_projection.h"
+#include "editor/context/views.h"
 #include "editor/rig/rig_edits.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -31,50 +37,50 @@ std::vector<LeavingBone> leaving_bones(const RigCheck& check) {
 
 }  // namespace
 
-const KnownRigCheck* rig_check(const Editor& editor) {
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  const std::shared_ptr<const LabelVolume> volume = editor.document().volume;
-  if (editor.workspace != Workspace::Rig || !rig || !volume) return nullptr;
-  if (!editor.transform_settings->rig_check) editor.transform_settings->rig_check = std::make_shared<KnownRigCheck>();
-  KnownRigCheck& known = *editor.transform_settings->rig_check;
+const KnownRigCheck* rig_check(const Context& context) {
+  const std::shared_ptr<const Armature> rig = shown_rig(context);
+  const std::shared_ptr<const LabelVolume> volume = context.document().volume;
+  if (context.workspace() != Workspace::Rig || !rig || !volume) return nullptr;
+  if (!context.transform_settings->rig_check) context.transform_settings->rig_check = std::make_shared<KnownRigCheck>();
+  KnownRigCheck& known = *context.transform_settings->rig_check;
   if (known.rig == rig && known.volume == volume) return &known;
   known = {rig, volume, check_rig(*volume, *rig), {}};
   known.bones = leaving_bones(known.check);
   return &known;
 }
 
-void show_leaving(Editor& editor, const LeavingBone& leaving) {
-  editor.selection = {};
-  editor.selection.bone = leaving.bone;
-  editor.selection.bones = {leaving.bone};
-  editor.transform_settings->part = leaving.tail   ? TransformSettings::Part::Tail
-                                    : leaving.head ? TransformSettings::Part::Head
-                                                   : TransformSettings::Part::Whole;
-  Views& views = *editor.views;
+void show_leaving(Context& context, const LeavingBone& leaving) {
+  *context.selection = {};
+  context.selection->bone = leaving.bone;
+  context.selection->bones = {leaving.bone};
+  context.transform_settings->part = leaving.tail   ? TransformSettings::Part::Tail
+                                     : leaving.head ? TransformSettings::Part::Head
+                                                    : TransformSettings::Part::Whole;
+  Views& views = *context.views;
   render::Camera camera = views.body.move ? views.body.move->to : views.body.camera;
   camera.centre = leaving.place;
-  if (editor.preferences.reduce_motion) views.body.camera = camera;
-  else views.body.move = CameraMove{views.body.camera, camera, editor.now};
-  const Box box = world_box(editor.document());
+  if (context.preferences->reduce_motion) views.body.camera = camera;
+  else views.body.move = CameraMove{views.body.camera, camera, context.ui->now};
+  const Box box = world_box(context.document());
   views.cross_hair = glm::clamp(leaving.place, box.low, box.high);
   for (SliceState& slice : views.slices) slice.camera.centre = leaving.place;
-  editor.touch();
+  context.ui->touch();
 }
 
-void show_next_leaving(Editor& editor) {
-  const KnownRigCheck* known = rig_check(editor);
+void show_next_leaving(Context& context) {
+  const KnownRigCheck* known = rig_check(context);
   if (!known || known->bones.empty()) return;
-  const int active = editor.selection.bone.value_or(-1);
+  const int active = context.selection->bone.value_or(-1);
   const auto next =
       std::find_if(known->bones.begin(), known->bones.end(), [&](const LeavingBone& one) { return one.bone > active; });
-  show_leaving(editor, next == known->bones.end() ? known->bones.front() : *next);
+  show_leaving(context, next == known->bones.end() ? known->bones.front() : *next);
 }
 
-void draw_rig_check(Editor& editor, const ViewProjection& view) {
+void draw_rig_check(Context& context, const ViewProjection& view) {
   const KnownRigCheck* known =
-      editor.views->bones && editor.transform_settings->rig_check_marks ? rig_check(editor) : nullptr;
+      context.views->bones && context.transform_settings->rig_check_marks ? rig_check(context) : nullptr;
   if (!known) return;
-  const GizmoPainter painter(editor, view);
+  const GizmoPainter painter(context, view);
   const Colour colour = kViewError;
   for (const RigCheck::Leaving& stretch : known->check.leaving) {
     const Bone& bone = known->rig->bones[stretch.bone];

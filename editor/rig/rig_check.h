@@ -11,7 +11,7 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 struct ViewProjection;
 
 // A bone that lies partly or wholly outside the tissue.
@@ -33,15 +33,15 @@ struct KnownRigCheck {
 
 // Returns the result of the rig check for the rig that the views show; null without a rig or a volume, and outside the
 // Rig workspace.
-const KnownRigCheck* rig_check(const Editor& editor);
+const KnownRigCheck* rig_check(const Context& context);
 
 // Selects the bone, or its end that lies outside the tissue, and centres every view on `leaving.place`.
-void show_leaving(Editor& editor, const LeavingBone& leaving);
+void show_leaving(Context& context, const LeavingBone& leaving);
 // Selects and shows the next bone outside the tissue: the first one after the active bone in the rig's order. After the
 // rig's last bone the search starts again at the first.
-void show_next_leaving(Editor& editor);
+void show_next_leaving(Context& context);
 
 // Draws marks over a view on the stretches and ends of bones that lie outside the tissue.
-void draw_rig_check(Editor& editor, const ViewProjection& view);
+void draw_rig_check(Context& context, const ViewProjection& view);
 
 }  // namespace limber::editor

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/context/context.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
 #include "editor/rig/rig_check.h"
 #include "editor/ui/icons.h"
@@ -28,63 +30,63 @@ std::string outside_text(const LeavingBone& bone) {
   return bone.head && bone.tail ? "both ends" : bone.tail ? "tail" : bone.head ? "head" : "";
 }
 
-void draw_row(Editor& editor, Column& column, int index, const LeavingBone& leaving, const std::string& name) {
-  const Look& look = editor.look;
+void draw_row(Context& context, Column& column, int index, const LeavingBone& leaving, const std::string& name) {
+  const Look& look = context.ui->look;
   Rect rect;
-  const bool chosen = editor.selection.bone == leaving.bone;
+  const bool chosen = context.selection->bone == leaving.bone;
   if (!column.list_row(rect, index, chosen, kList)) return;
-  const PathScope path(editor, name);
-  const Pressed pressed = press_area(editor, "name", rect);
+  const PathScope path(context.ui, name);
+  const Pressed pressed = press_area(context.ui, "name", rect);
   const float number = look.px(58), bar = look.px(36),
               words = text_size(look.fonts.small, outside_text(leaving)).x + look.px(12),
               end = rect.high.x - look.px(10);
-  put_text(editor, look.fonts.regular, look.theme.text,
+  put_text(context.ui, look.fonts.regular, look.theme.text,
            Rect{{rect.low.x + look.px(14), rect.low.y}, {end - number - bar - words, rect.high.y}}, name);
-  put_text(editor, look.fonts.small, look.theme.error,
+  put_text(context.ui, look.fonts.small, look.theme.error,
            Rect{{end - number - bar - words, rect.low.y}, {end - number - bar - look.px(8), rect.high.y}},
            outside_text(leaving), Align::Right);
   const Rect field{{end - number - bar, rect.centre().y - look.px(3)}, {end - number, rect.centre().y + look.px(3)}};
   fill(field, look.theme.error, look.px(3));
   fill({field.low, {field.low.x + field.width() * static_cast<float>(leaving.share), field.high.y}}, look.theme.text3,
        look.px(3));
-  put_text(editor, look.fonts.mono, chosen ? look.theme.text : look.theme.text2,
+  put_text(context.ui, look.fonts.mono, chosen ? look.theme.text : look.theme.text2,
            Rect{{end - number, rect.low.y}, {end, rect.high.y}}, per_cent(leaving.share), Align::Right);
   if (pressed.hovered)
-    tooltip(editor, rect, name,
+    tooltip(context.ui, rect, name,
             per_cent(leaving.share) + " of its length in tissue" +
                 (leaving.head || leaving.tail ? "; outside: " + outside_text(leaving) : "") + ". Click to show it.");
   if (!pressed.clicked) return;
-  focus_list(editor, kList, index);
-  show_leaving(editor, leaving);
+  focus_list(context.ui, kList, index);
+  show_leaving(context, leaving);
 }
 
 }  // namespace
 
-void draw_fit_check(Editor& editor, Column& column) {
-  const KnownRigCheck* found = rig_check(editor);
+void draw_fit_check(Context& context, Column& column) {
+  const KnownRigCheck* found = rig_check(context);
   if (!found) return;
   const KnownRigCheck known = *found;  // a copy, because a click on a row changes the selection
   const std::vector<LeavingBone>& rows = known.bones;
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const std::string count = std::to_string(rows.size()) + (rows.size() == 1 ? " bone outside" : " bones outside");
   if (column.begin_section("Fit check", rows.empty() ? "All in tissue" : count, false)) {
     const Rect rect = column.row(32);
     const Rect words{{rect.low.x + look.px(14), rect.low.y}, {rect.high.x - look.px(130), rect.high.y}};
     put_icon(look.fonts.regular, rows.empty() ? look.theme.ok : look.theme.warn,
              Rect{words.low, {words.low.x + look.px(18), words.high.y}}, rows.empty() ? icon::kOk : icon::kWarning);
-    put_text(editor, look.fonts.regular, look.theme.text, Rect{{words.low.x + look.px(24), words.low.y}, words.high},
-             per_cent(known.check.whole) + " in tissue");
+    put_text(context.ui, look.fonts.regular, look.theme.text,
+             Rect{{words.low.x + look.px(24), words.low.y}, words.high}, per_cent(known.check.whole) + " in tissue");
     const float width = look.px(54), y = rect.low.y + look.px(4);
-    operator_button(editor, "rig.next_leaving",
+    operator_button(context, "rig.next_leaving",
                     {{rect.high.x - look.px(10) - width, y}, {rect.high.x - look.px(10), y + look.px(24)}}, "Next");
-    operator_button(editor, "view.rig_check",
+    operator_button(context, "view.rig_check",
                     {{rect.high.x - look.px(16) - 2 * width, y}, {rect.high.x - look.px(16) - width, y + look.px(24)}},
-                    "Mark", editor.transform_settings->rig_check_marks ? ButtonStyle::Soft : ButtonStyle::Plain);
-    const ListKey key = list_key(editor, kList, static_cast<int>(rows.size()));
+                    "Mark", context.transform_settings->rig_check_marks ? ButtonStyle::Soft : ButtonStyle::Plain);
+    const ListKey key = list_key(context.ui, kList, static_cast<int>(rows.size()));
     if (!rows.empty() && (key == ListKey::Moved || key == ListKey::Activate))
-      show_leaving(editor, rows[editor.list_focus.row]);
+      show_leaving(context, rows[context.ui->list_focus.row]);
     for (int i = 0; i < std::ssize(rows); ++i)
-      draw_row(editor, column, i, rows[i], known.rig->bones[rows[i].bone].name);
+      draw_row(context, column, i, rows[i], known.rig->bones[rows[i].bone].name);
     if (!rows.empty()) column.space(4);
   }
   column.end_section();

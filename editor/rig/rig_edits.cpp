@@ -11,8 +11,14 @@
 #include "core/rig/mirror.h"
 #include "core/skin/transfer_to_volume.h"
 #include "core/skin/weight_layers.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/views.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -41,13 +47,13 @@ using Follow = std::function<void(Document&, const Armature& before, const Armat
 // Commits the rig `next` as one edit that keeps pose and weights, and selects the bones `chosen`.
 //   from    for each bone of `next`, its index in the old rig; -1: the edit added the bone
 //   follow  updates the parts of the document that refer to bones by name
-void commit_followed(Editor& editor, const std::string& label, Armature next, const std::vector<int>& from,
+void commit_followed(Context& context, const std::string& label, Armature next, const std::vector<int>& from,
                      const std::vector<int>& chosen, const Follow& follow = {}) {
-  drop_shown_rig(editor);
-  const std::shared_ptr<const Armature> before = editor.document().armature;
+  drop_shown_rig(context);
+  const std::shared_ptr<const Armature> before = context.document().armature;
   if (before && next == *before) return;
   check_armature(next, "rig");
-  Document document = editor.document();
+  Document document = context.document();
   const std::string lost = "The weights belonged to deleted bones: compute them again";
   bool weights_lost = false;
   if (before && document.pose) document.pose = std::make_shared<const Pose>(carried(*document.pose, from));
@@ -62,95 +68,95 @@ void commit_followed(Editor& editor, const std::string& label, Armature next, co
   }
   if (follow) follow(document, *before, next);
   document.armature = std::make_shared<const Armature>(std::move(next));
-  commit(editor, label, std::move(document));
-  if (weights_lost) editor.messages.info(label, lost);
-  if (before) warn_of_moved_targets(editor, label, *before, from);
-  editor.selection = {};
+  commit(context, label, std::move(document));
+  if (weights_lost) context.messages->info(label, lost);
+  if (before) warn_of_moved_targets(context, label, *before, from);
+  *context.selection = {};
   for (const int bone : chosen) {
-    editor.selection.bone = bone;
-    editor.selection.bones.insert(bone);
+    context.selection->bone = bone;
+    context.selection->bones.insert(bone);
   }
 }
 
 }  // namespace
 
-void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before,
+void warn_of_moved_targets(Context& context, const std::string& label, const Armature& before,
                            const std::vector<int>& from) {
   constexpr std::size_t kMostNamed = 3;
   std::vector<std::string> moved;
-  for (const auto& clip : editor.document().clips)
+  for (const auto& clip : context.document().clips)
     if (clip->constraints)
-      for (const std::string& name : moved_targets(*clip->constraints, before, *editor.document().armature, from))
+      for (const std::string& name : moved_targets(*clip->constraints, before, *context.document().armature, from))
         moved.push_back(name + " (" + clip->name + ")");
   if (moved.empty()) return;
   std::string names;
   for (std::size_t i = 0; i < std::min(moved.size(), kMostNamed); ++i) names += (i == 0 ? "" : ", ") + moved[i];
   if (moved.size() > kMostNamed) names += " and " + std::to_string(moved.size() - kMostNamed) + " more";
-  editor.messages.warn(label + ": targets of constraints moved",
-                       names + ". Check their positions in the Pose workspace");
+  context.messages->warn(label + ": targets of constraints moved",
+                         names + ". Check their positions in the Pose workspace");
 }
 
-void warn_of_moved_targets(Editor& editor, const std::string& label, const Armature& before) {
-  warn_of_moved_targets(editor, label, before, bones_of(before, *editor.document().armature));
+void warn_of_moved_targets(Context& context, const std::string& label, const Armature& before) {
+  warn_of_moved_targets(context, label, before, bones_of(before, *context.document().armature));
 }
 
-std::shared_ptr<const Armature> shown_rig(const Editor& editor) {
-  return editor.views->preview_armature ? editor.views->preview_armature : editor.document().armature;
+std::shared_ptr<const Armature> shown_rig(const Context& context) {
+  return context.views->preview_armature ? context.views->preview_armature : context.document().armature;
 }
 
-void show_rig(Editor& editor, Armature armature) {
-  editor.views->preview_armature = std::make_shared<const Armature>(std::move(armature));
-  editor.touch();
+void show_rig(Context& context, Armature armature) {
+  context.views->preview_armature = std::make_shared<const Armature>(std::move(armature));
+  context.ui->touch();
 }
 
-void drop_shown_rig(Editor& editor) {
-  editor.views->preview_armature.reset();
-  editor.touch();
+void drop_shown_rig(Context& context) {
+  context.views->preview_armature.reset();
+  context.ui->touch();
 }
 
-Armature mirrored_too(const Editor& editor, Armature next) {
-  const std::shared_ptr<const Armature> before = editor.document().armature;
-  return before && editor.transform_settings->x_mirror ? with_mirrored_changes(*before, next) : next;
+Armature mirrored_too(const Context& context, Armature next) {
+  const std::shared_ptr<const Armature> before = context.document().armature;
+  return before && context.transform_settings->x_mirror ? with_mirrored_changes(*before, next) : next;
 }
 
-void commit_rig(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
-  const std::shared_ptr<const Armature> before = editor.document().armature;
+void commit_rig(Context& context, const std::string& label, Armature next, const std::vector<int>& chosen) {
+  const std::shared_ptr<const Armature> before = context.document().armature;
   const std::vector<int> from = before ? bones_of(*before, next) : std::vector<int>(next.bones.size(), -1);
-  commit_followed(editor, label, std::move(next), from, chosen);
+  commit_followed(context, label, std::move(next), from, chosen);
 }
 
-void rename_bone(Editor& editor, int bone, const std::string& name) {
-  const std::shared_ptr<const Armature> before = editor.document().armature;
-  commit_names(editor, "Rename " + before->bones[bone].name, renamed(*before, bone, name), {bone});
+void rename_bone(Context& context, int bone, const std::string& name) {
+  const std::shared_ptr<const Armature> before = context.document().armature;
+  commit_names(context, "Rename " + before->bones[bone].name, renamed(*before, bone, name), {bone});
 }
 
-void commit_names(Editor& editor, const std::string& label, Armature next, const std::vector<int>& chosen) {
-  const std::shared_ptr<const Armature> before = editor.document().armature;
+void commit_names(Context& context, const std::string& label, Armature next, const std::vector<int>& chosen) {
+  const std::shared_ptr<const Armature> before = context.document().armature;
   std::vector<int> from(before->bones.size());
   std::iota(from.begin(), from.end(), 0);
   std::map<std::string, glm::dquat> copied;
   for (std::size_t bone = 0; bone < from.size(); ++bone)
-    if (const auto found = editor.posing.copied.find(before->bones[bone].name); found != editor.posing.copied.end())
+    if (const auto found = context.posing->copied.find(before->bones[bone].name); found != context.posing->copied.end())
       copied[next.bones[bone].name] = found->second;
-  editor.posing.copied = std::move(copied);
-  commit_followed(editor, label, std::move(next), from, chosen, follow_names);
+  context.posing->copied = std::move(copied);
+  commit_followed(context, label, std::move(next), from, chosen, follow_names);
 }
 
-void mirror_bones(Editor& editor, const std::vector<int>& bones, const std::string& label) {
-  const std::shared_ptr<const Armature> before = editor.document().armature;
+void mirror_bones(Context& context, const std::vector<int>& bones, const std::string& label) {
+  const std::shared_ptr<const Armature> before = context.document().armature;
   Armature next = mirrored_bones(*before, bones);
   std::vector<int> from(next.bones.size()), chosen;
   for (int bone = 0; bone < std::ssize(from); ++bone) from[bone] = before->find(next.bones[bone].name).value_or(bone);
   for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value_or(bone));
-  editor.transform_settings->part = TransformSettings::Part::Whole;
+  context.transform_settings->part = TransformSettings::Part::Whole;
   commit_followed(
-      editor, label, std::move(next), from, chosen,
+      context, label, std::move(next), from, chosen,
       [&](Document& document, const Armature& was, const Armature& is) { follow_mirrored(document, was, is, bones); });
 }
 
-std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& bones) {
-  if (!editor.transform_settings->x_mirror) return bones;
-  const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
+std::vector<int> with_other_sides(const Context& context, const std::vector<int>& bones) {
+  if (!context.transform_settings->x_mirror) return bones;
+  const std::vector<int> pairs = mirror_pairs(*context.document().armature);
   std::vector<int> both;
   for (const int bone : bones)
     if (std::find(bones.begin(), bones.end(), pairs[bone]) == bones.end()) both.push_back(pairs[bone]);
@@ -158,11 +164,11 @@ std::vector<int> with_other_sides(const Editor& editor, const std::vector<int>& 
   return both;
 }
 
-Armature hung(const Editor& editor, const std::vector<int>& bones, int parent, Join join) {
-  const Armature& before = *editor.document().armature;
-  if (parent < 0) return unparented(before, with_other_sides(editor, bones));
+Armature hung(const Context& context, const std::vector<int>& bones, int parent, Join join) {
+  const Armature& before = *context.document().armature;
+  if (parent < 0) return unparented(before, with_other_sides(context, bones));
   Armature next = parented(before, bones, parent, join);
-  std::vector<int> others = with_other_sides(editor, bones);
+  std::vector<int> others = with_other_sides(context, bones);
   others.resize(others.size() - bones.size());
   const int other_parent = mirror_pairs(before)[parent];
   const bool one_sided = other_parent == parent && mirrored_name(before.bones[parent].name);
@@ -177,19 +183,19 @@ Armature hung(const Editor& editor, const std::vector<int>& bones, int parent, J
   return next;
 }
 
-void hang_on(Editor& editor, const std::vector<int>& bones, int parent) {
-  const std::shared_ptr<const Armature> before = editor.document().armature;
-  Armature next = hung(editor, bones, parent, Join::KeepOffset);
+void hang_on(Context& context, const std::vector<int>& bones, int parent) {
+  const std::shared_ptr<const Armature> before = context.document().armature;
+  Armature next = hung(context, bones, parent, Join::KeepOffset);
   std::vector<int> chosen;
   for (const int bone : bones) chosen.push_back(next.find(before->bones[bone].name).value());
   const std::string what = bones.size() == 1 ? before->bones[bones[0]].name : std::to_string(bones.size()) + " bones";
-  commit_rig(editor, parent < 0 ? "Clear parent of " + what : "Parent " + what + " to " + before->bones[parent].name,
+  commit_rig(context, parent < 0 ? "Clear parent of " + what : "Parent " + what + " to " + before->bones[parent].name,
              std::move(next), chosen);
 }
 
-void drop_missing_bones(Editor& editor) {
-  const int count = editor.document().armature ? static_cast<int>(editor.document().armature->bones.size()) : 0;
-  Selection& selection = editor.selection;
+void drop_missing_bones(Context& context) {
+  const int count = context.document().armature ? static_cast<int>(context.document().armature->bones.size()) : 0;
+  Selection& selection = context.selection;
   std::erase_if(selection.bones, [&](int bone) { return bone >= count; });
   if (selection.bone && *selection.bone >= count) selection.bone.reset();
 }

@@ -4,7 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/layout.h"
+#include "editor/context/selection.h"
+#include "editor/input/keymap_overrides.h"
 #include "editor/rig/rig_edits.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/angle_drag.h"
 #include "editor/viewport/snap.h"
 
@@ -28,26 +34,26 @@ glm::dvec3 pivot_of(const RigChange& change) {
 
 class RigTool final : public TransformTool {
  public:
-  RigTool(Editor& editor, RigChange change, const Grip& grip)
-      : TransformTool(editor, grip),
+  RigTool(Context& context, RigChange change, const Grip& grip)
+      : TransformTool(context, grip),
         change_(std::move(change)),
         pivot_(pivot_of(change_)),
-        angle_(view_, editor.look.scale, pivot_, grip.held && grip.lock.axis >= 0) {
+        angle_(view_, context.ui->look.scale, pivot_, grip.held && grip.lock.axis >= 0) {
     angle_.about(axis(), start_, pointer_);
-    show(editor);
+    show(context);
   }
 
   std::string title() const override {
     return change_.label + " " + number(true) + lock_text(turns() ? "about" : "along") +
            (snapped_to_.empty() ? "" : ", " + snapped_to_);
   }
-  std::vector<KeyHint> hints(const Editor&) const override { return shared_hints(); }
-  void cancel(Editor& editor) override { drop_shown_rig(editor); }
+  std::vector<KeyHint> hints(const Context&) const override { return shared_hints(); }
+  void cancel(Context& context) override { drop_shown_rig(context); }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
-    const GizmoPainter painter(editor, view_);
-    const Theme& theme = editor.look.theme;
+    const GizmoPainter painter(context, view_);
+    const Theme& theme = context.ui->look.theme;
     if (turns()) angle_.draw(painter, theme, shown_);
     else if (lock_.axis >= 0 && !lock_.plane) {
       const double far = view_.millimetres_per_pixel(pivot_) * 2000;
@@ -73,8 +79,8 @@ class RigTool final : public TransformTool {
     return locked == glm::dvec3(0) ? view_.towards_eye : locked;
   }
 
-  void follow(Editor&, const glm::dvec2& from, const glm::dvec2& to) override { angle_.follow(from, to); }
-  void locked(Editor&) override {
+  void follow(Context&, const glm::dvec2& from, const glm::dvec2& to) override { angle_.follow(from, to); }
+  void locked(Context&) override {
     angle_.leave_ring();
     angle_.about(axis(), start_, pointer_);
   }
@@ -93,8 +99,8 @@ class RigTool final : public TransformTool {
     return false;
   }
 
-  std::optional<glm::dvec3> joint_below(const Editor& editor) const {
-    double nearest = kSnapPixels * editor.look.scale;
+  std::optional<glm::dvec3> joint_below(const Context& context) const {
+    double nearest = kSnapPixels * context.ui->look.scale;
     std::optional<glm::dvec3> found;
     for (int bone = 0; bone < std::ssize(change_.start.bones); ++bone)
       for (const bool tail : {false, true}) {
@@ -115,32 +121,32 @@ class RigTool final : public TransformTool {
     return lock_.plane ? place - along * axis : pivot_ + along * axis;
   }
 
-  glm::dvec3 moved_to(const Editor& editor) {
+  glm::dvec3 moved_to(const Context& context) {
     snapped_to_.clear();
-    const Snap snap = editor.transform_settings->snap;
-    if (way_ || snap == Snap::Steps || editor.input.down(Key::Ctrl) == editor.transform_settings->snapping ||
+    const Snap snap = context.transform_settings->snap;
+    if (way_ || snap == Snap::Steps || context.ui->input.down(Key::Ctrl) == context.transform_settings->snapping ||
         number_.typed())
-      return dragged(editor, pivot_, kSnapMillimetres, kSnapFineMillimetres);
-    const glm::dvec3 free = dragged(editor, pivot_, 0, 0);
-    const auto place = snap == Snap::Joint   ? joint_below(editor)
-                       : snap == Snap::Voxel ? nearest_voxel(editor.document(), free)
-                                             : middle_of_bone(editor.document(), view_, pointer_);
+      return dragged(context, pivot_, kSnapMillimetres, kSnapFineMillimetres);
+    const glm::dvec3 free = dragged(context, pivot_, 0, 0);
+    const auto place = snap == Snap::Joint   ? joint_below(context)
+                       : snap == Snap::Voxel ? nearest_voxel(context.document(), free)
+                                             : middle_of_bone(context.document(), view_, pointer_);
     if (!place) return free;
     snapped_to_ = snap == Snap::Joint ? "joint" : snap == Snap::Voxel ? "voxel" : "middle of bone tissue";
     return held(*place);
   }
 
-  Armature changed(Editor& editor) {
+  Armature changed(Context& context) {
     switch (change_.kind) {
       case RigChange::Kind::Move: {
-        target_ = moved_to(editor);
+        target_ = moved_to(context);
         const glm::dvec3 by = target_ - pivot_;
         shown_ = glm::length(by);
         return with_moved_ends(change_.start, change_.ends, [&](const glm::dvec3& p) { return p + by; });
       }
       case RigChange::Kind::Roll:
       case RigChange::Kind::Turn: {
-        shown_ = number_.typed() ? number_.value() : snapped(editor, angle_.degrees(), kSnapDegrees, kSnapFine);
+        shown_ = number_.typed() ? number_.value() : snapped(context, angle_.degrees(), kSnapDegrees, kSnapFine);
         if (change_.kind == RigChange::Kind::Roll) return rolled(change_.start, change_.chosen, glm::radians(shown_));
         const glm::dquat turn = glm::angleAxis(glm::radians(shown_), axis());
         return with_moved_ends(change_.start, change_.ends,
@@ -150,7 +156,7 @@ class RigTool final : public TransformTool {
         const glm::dvec2 centre = view_.pixel_of(pivot_).value_or(start_);
         const double before = std::max(1.0, glm::distance(start_, centre));
         shown_ = number_.typed() ? number_.value()
-                                 : std::max(kLeastScale, snapped(editor, glm::distance(pointer_, centre) / before,
+                                 : std::max(kLeastScale, snapped(context, glm::distance(pointer_, centre) / before,
                                                                  kSnapScale, kSnapScaleFine));
         const glm::dvec3 axis = lock_axis();
         return with_moved_ends(change_.start, change_.ends, [&](const glm::dvec3& p) {
@@ -186,18 +192,18 @@ class RigTool final : public TransformTool {
     if (change_.kind != RigChange::Kind::Roll) set_axis(fields, 1);
   }
 
-  void show(Editor& editor) override { show_rig(editor, mirrored_too(editor, changed(editor))); }
-  void keep(Editor& editor) override {
-    Armature next = mirrored_too(editor, changed(editor));
+  void show(Context& context) override { show_rig(context, mirrored_too(context, changed(context))); }
+  void keep(Context& context) override {
+    Armature next = mirrored_too(context, changed(context));
     // An extruded bone whose tail was not moved has zero length, so it is not added.
     const bool nothing = std::any_of(change_.chosen.begin(), change_.chosen.end(),
                                      [&](int bone) { return next.bones[bone].head == next.bones[bone].tail; });
     if (nothing) {
       if (change_.kind == RigChange::Kind::Scale)
-        editor.messages.warn("Nothing was scaled", "A bone cannot have zero length: type a factor above 0");
-      return drop_shown_rig(editor);
+        context.messages->warn("Nothing was scaled", "A bone cannot have zero length: type a factor above 0");
+      return drop_shown_rig(context);
     }
-    commit_rig(editor, change_.label, std::move(next), change_.chosen);
+    commit_rig(context, change_.label, std::move(next), change_.chosen);
   }
 
   RigChange change_;
@@ -209,34 +215,34 @@ class RigTool final : public TransformTool {
 
 }  // namespace
 
-std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange& change, const Grip& grip) {
-  return std::make_unique<RigTool>(editor, change, grip);
+std::unique_ptr<TransformTool> begin_rig_change(Context& context, const RigChange& change, const Grip& grip) {
+  return std::make_unique<RigTool>(context, change, grip);
 }
 
-std::vector<int> bones_chosen_last(const Editor& editor) {
-  const int active = *editor.selection.bone;
+std::vector<int> bones_chosen_last(const Context& context) {
+  const int active = *context.selection->bone;
   std::vector<int> bones;
-  for (const int bone : editor.selection.bones)
-    if (bone != active && bone < std::ssize(editor.document().armature->bones)) bones.push_back(bone);
+  for (const int bone : context.selection->bones)
+    if (bone != active && bone < std::ssize(context.document().armature->bones)) bones.push_back(bone);
   bones.push_back(active);
   return bones;
 }
 
-std::string naming_chosen(const Editor& editor, const std::string& verb) {
-  const std::vector<int> bones = bones_chosen_last(editor);
+std::string naming_chosen(const Context& context, const std::string& verb) {
+  const std::vector<int> bones = bones_chosen_last(context);
   return verb + " " +
-         (bones.size() == 1 ? editor.document().armature->bones[bones[0]].name
+         (bones.size() == 1 ? context.document().armature->bones[bones[0]].name
                             : std::to_string(bones.size()) + " bones");
 }
 
-RigChange chosen_change(const Editor& editor, RigChange::Kind kind) {
+RigChange chosen_change(const Context& context, RigChange::Kind kind) {
   constexpr const char* kVerbs[] = {"Move", "Rotate", "Scale", "Roll"};
   RigChange change{kind,
-                   naming_chosen(editor, kVerbs[static_cast<int>(kind)]),
-                   *editor.document().armature,
+                   naming_chosen(context, kVerbs[static_cast<int>(kind)]),
+                   *context.document().armature,
                    {},
-                   bones_chosen_last(editor)};
-  const TransformSettings::Part part = editor.transform_settings->part;
+                   bones_chosen_last(context)};
+  const TransformSettings::Part part = context.transform_settings->part;
   if (kind == RigChange::Kind::Move && part != TransformSettings::Part::Whole)
     change.ends = {{change.chosen.back(), part == TransformSettings::Part::Tail}};
   // The ends of the active bone come first, because the first end is the pivot of turning and scaling.
@@ -246,9 +252,9 @@ RigChange chosen_change(const Editor& editor, RigChange::Kind kind) {
   return change;
 }
 
-RigChange extrusion(const Editor& editor) {
-  const std::shared_ptr<const Armature> armature = editor.document().armature;
-  const BoneEnd from{*editor.selection.bone, editor.transform_settings->part != TransformSettings::Part::Head};
+RigChange extrusion(const Context& context) {
+  const std::shared_ptr<const Armature> armature = context.document().armature;
+  const BoneEnd from{*context.selection->bone, context.transform_settings->part != TransformSettings::Part::Head};
   const int added = static_cast<int>(armature->bones.size());
   return {RigChange::Kind::Move,
           "Extrude " + armature->bones[from.bone].name,

@@ -9,6 +9,8 @@
 
 namespace limber::editor {
 
+struct Context;
+
 struct RigChange {
   enum class Kind { Move, Turn, Scale, Roll } kind = Kind::Move;
   std::string label;          // name of the edit in the undo history
@@ -17,22 +19,22 @@ struct RigChange {
   std::vector<int> chosen;    // bones of `start` that are selected after the edit
 };
 
-std::unique_ptr<TransformTool> begin_rig_change(Editor& editor, const RigChange& change, const Grip& grip = {});
+std::unique_ptr<TransformTool> begin_rig_change(Context& context, const RigChange& change, const Grip& grip = {});
 
 // Begins a tool that points the axis of the active bone's hinge at the pointer; Ctrl snaps it to the nearest of the
 // bone's local axes. A typed number turns the axis by that many degrees about the locked axis, or about the line of
 // sight when no axis is locked.
-std::unique_ptr<TransformTool> begin_hinge_change(Editor& editor, const Grip& grip = {});
+std::unique_ptr<TransformTool> begin_hinge_change(Context& context, const Grip& grip = {});
 
 // Returns a change of the selected bones, with a label such as "Move Forearm". If a single joint is selected, a move
 // acts on this joint only. The other kinds of change act on whole bones.
-RigChange chosen_change(const Editor& editor, RigChange::Kind kind);
+RigChange chosen_change(const Context& context, RigChange::Kind kind);
 // Returns the change that adds a bone at the selected joint and moves the new bone's tail.
-RigChange extrusion(const Editor& editor);
+RigChange extrusion(const Context& context);
 
 // Returns the selected bones. The active bone comes last.
-std::vector<int> bones_chosen_last(const Editor& editor);
+std::vector<int> bones_chosen_last(const Context& context);
 // Returns an edit's label: the verb, then the selected bone's name or the number of selected bones ("Move 3 bones").
-std::string naming_chosen(const Editor& editor, const std::string& verb);
+std::string naming_chosen(const Context& context, const std::string& verb);
 
 }  // namespace limber::editor

@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws the area below the views: the console if it is open, else the timeline, else the table of results.
+#include "editor/context/context.h"
 #include "editor/context/panels.h"
+#include "editor/context/screen.h"
 
 namespace limber::editor {
 
-void draw_bottom(Editor& editor) {
-  const Rect& rect = editor.layout.bottom;
+void draw_bottom(Context& context) {
+  const Rect& rect = context.screen->layout.bottom;
   if (rect.empty()) return;
-  begin_region(editor, Region::Bottom, "bottom", rect, editor.look.theme.panel);
+  begin_region(context.ui, Region::Bottom, "bottom", rect, context.ui->look.theme.panel);
   Rect seen = rect;
-  if (editor.layout.sidebar_over_views && !editor.layout.sidebar.empty())
-    seen.high.x = std::min(seen.high.x, editor.layout.sidebar.low.x);
-  if (editor.arrangement().console) draw_console(editor, seen);
-  else if (editor.arrangement().timeline) draw_timeline(editor, seen);
-  else draw_results(editor, seen);
-  end_region(editor);
+  if (context.screen->layout.sidebar_over_views && !context.screen->layout.sidebar.empty())
+    seen.high.x = std::min(seen.high.x, context.screen->layout.sidebar.low.x);
+  if (context.screen->arrangement().console) draw_console(context, seen);
+  else if (context.screen->arrangement().timeline) draw_timeline(context, seen);
+  else draw_results(context, seen);
+  end_region(context.ui);
 }
 
 }  // namespace limber::editor

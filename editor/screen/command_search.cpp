@@ -4,12 +4,18 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator_registry.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/preferences.h"
+#include "editor/context/screen.h"
 #include "editor/guide/guide_reader.h"
 #include "editor/screen/preferences_dialog.h"
 #include "editor/ui/fuzzy_match.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
+#include "editor/ui/messages.h"
 #include "editor/ui/tooltip.h"
 
 namespace limber::editor {
@@ -23,8 +29,8 @@ constexpr std::size_t kMostPages = 4;  // pages of the guide that are listed
 constexpr int kPlacePenalty = 30, kSentencePenalty = 60;
 constexpr std::size_t kLeastForSentence = 3;  // a query with fewer letters does not search descriptions
 
-bool can_be_searched(const Editor& editor, const Operator& op) {
-  return op.id != "search.commands" && !needs_pointer(editor, op);
+bool can_be_searched(const Keymap& keymap, const Operator& op) {
+  return op.id != "search.commands" && !needs_pointer(keymap, op);
 }
 
 // Returns the sort key of a command in the list that is shown while the query is empty. Commands with smaller keys come
@@ -75,16 +81,16 @@ class CommandSearch final : public Dialog {
  public:
   // Makes a search for commands and for pages of this guide; without a guide, for commands only.
   explicit CommandSearch(std::optional<Book> guide) : guide_(std::move(guide)) {}
-  void draw(Editor& editor) override;
-  bool key(Editor& editor, const Chord& chord) override;
+  void draw(Context& context) override;
+  bool key(Context& context, const Chord& chord) override;
 
  private:
-  void draw_field(Editor& editor, const Rect& rect);
-  void draw_row(Editor& editor, const Rect& rect, int index);
-  void draw_page_row(Editor& editor, const Rect& rect, const Found& page, bool chosen);
-  void draw_foot(Editor& editor, const Rect& rect);
-  void search(Editor& editor);
-  void run_chosen(Editor& editor);
+  void draw_field(Context& context, const Rect& rect);
+  void draw_row(Context& context, const Rect& rect, int index);
+  void draw_page_row(Context& context, const Rect& rect, const Found& page, bool chosen);
+  void draw_foot(Context& context, const Rect& rect);
+  void search(Context& context);
+  void run_chosen(Context& context);
   std::string title_of(const FoundRow& row) const;
 
   std::string query_, last_query_ = "\n";  // last_query_ differs from query_ at first, so that the first frame searches
@@ -94,7 +100,7 @@ class CommandSearch final : public Dialog {
   bool focus_ = true, accept_ = false, assign_ = false;
 };
 
-bool CommandSearch::key(Editor&, const Chord& chord) {
+bool CommandSearch::key(Context&, const Chord& chord) {
   const int count = static_cast<int>(found_.size());
   const auto move = [&](int by) { chosen_ = count ? std::clamp(chosen_ + by, 0, count - 1) : 0; };
   switch (chord.key) {
@@ -110,20 +116,20 @@ bool CommandSearch::key(Editor&, const Chord& chord) {
   }
 }
 
-void CommandSearch::run_chosen(Editor& editor) {
+void CommandSearch::run_chosen(Context& context) {
   if (chosen_ >= std::ssize(found_)) return;
   const FoundRow row = found_[chosen_];
-  if (!row.command) return editor.open_dialog(open_guide(*guide_, row.page.page, row.page.block));
+  if (!row.command) return context.dialogs->open(open_guide(*guide_, row.page.page, row.page.block));
   const Operator& op = *row.command->op;
-  editor.close_dialog();
-  run(editor, op);
+  context.dialogs->close();
+  run(context, op);
 }
 
 // Pages of the guide come after the commands whose label or category matches, and before the commands that match only
 // by their description.
-void CommandSearch::search(Editor& editor) {
+void CommandSearch::search(Context& context) {
   found_.clear();
-  for (FoundCommand& command : find_commands(editor, query_)) found_.push_back({std::move(command), {}});
+  for (FoundCommand& command : find_commands(context, query_)) found_.push_back({std::move(command), {}});
   last_query_ = query_;
   chosen_ = first_ = 0;
   if (!guide_ || query_.size() < kLeastForSentence) return;
@@ -137,30 +143,30 @@ std::string CommandSearch::title_of(const FoundRow& row) const {
   return row.command ? row.command->op->label : "Guide: " + guide_->pages[row.page.page].title;
 }
 
-void CommandSearch::draw_field(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
+void CommandSearch::draw_field(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
   put_icon(look.fonts.regular, look.theme.text2,
            Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, icon::kSearch);
   ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
   ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0);
   text_field(
-      editor, "query",
+      context.ui, "query",
       {{rect.low.x + look.px(32), rect.low.y + look.px(6)}, {rect.high.x - look.px(90), rect.high.y - look.px(6)}},
       query_, "Search commands", focus_);
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
   focus_ = false;
   const auto commands = std::count_if(found_.begin(), found_.end(), [](const FoundRow& row) { return row.command; });
-  const std::string count = std::to_string(commands) + " of " + std::to_string(count_commands(editor));
-  put_text(editor, look.fonts.small, look.theme.text2,
+  const std::string count = std::to_string(commands) + " of " + std::to_string(count_commands(context));
+  put_text(context.ui, look.fonts.small, look.theme.text2,
            Rect{{rect.high.x - look.px(90), rect.low.y}, {rect.high.x - look.px(14), rect.high.y}}, count,
            Align::Right);
 }
 
 // Draws a command's label, with the letters that match the query in bold. Returns the x coordinate of the label's right
 // end.
-float put_label(Editor& editor, const Rect& rect, const FoundCommand& command, bool chosen) {
-  const Look& look = editor.look;
+float put_label(Ui& ui, const Rect& rect, const FoundCommand& command, bool chosen) {
+  const Look& look = ui.look;
   const std::string& label = command.op->label;
   const Colour plain = chosen ? look.theme.on_accent : command.reason.empty() ? look.theme.text : look.theme.text2;
   const Colour bold = chosen ? look.theme.on_accent : look.theme.accent_text;
@@ -179,14 +185,14 @@ float put_label(Editor& editor, const Rect& rect, const FoundCommand& command, b
     x += text_size(font, part).x;
     i = end;
   }
-  editor.widgets.add_text(label);
+  ui.widgets.add_text(label);
   return x;
 }
 
-void CommandSearch::draw_row(Editor& editor, const Rect& rect, int index) {
-  const Look& look = editor.look;
+void CommandSearch::draw_row(Context& context, const Rect& rect, int index) {
+  const Look& look = context.ui->look;
   const FoundRow& row = found_[index];
-  const Pressed pressed = press_area(editor, row.command ? row.command->op->id : title_of(row), rect);
+  const Pressed pressed = press_area(context.ui, row.command ? row.command->op->id : title_of(row), rect);
   const bool chosen = index == chosen_;
   if (chosen) fill(rect, look.theme.accent);
   else if (pressed.hovered) fill(rect, look.theme.hover);
@@ -194,44 +200,44 @@ void CommandSearch::draw_row(Editor& editor, const Rect& rect, int index) {
     chosen_ = index;
     accept_ = true;
   }
-  if (!row.command) return draw_page_row(editor, rect, row.page, chosen);
+  if (!row.command) return draw_page_row(context, rect, row.page, chosen);
   const FoundCommand& command = *row.command;
   put_icon(look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text2,
            Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, command.op->icon);
 
-  const auto chord = editor.keymap.chord_of(command.op->id, contexts(editor));
+  const auto chord = context.keymap->chord_of(command.op->id, contexts(context));
   const std::vector<std::string> caps = chord ? key_caps(*chord) : std::vector<std::string>{};
-  const float caps_left = rect.high.x - look.px(14) - width_of_key_caps(editor, caps);
+  const float caps_left = rect.high.x - look.px(14) - width_of_key_caps(context.ui, caps);
   const float right =
-      put_label(editor, {{rect.low.x + look.px(39), rect.low.y}, {caps_left, rect.high.y}}, command, chosen);
+      put_label(context.ui, {{rect.low.x + look.px(39), rect.low.y}, {caps_left, rect.high.y}}, command, chosen);
   const std::string beside = command.reason.empty() ? command.op->category : command.reason;
-  put_text(editor, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
+  put_text(context.ui, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
            Rect{{right + look.px(9), rect.low.y}, {caps_left - look.px(8), rect.high.y}}, beside);
-  put_key_caps(editor, caps_left, rect.centre().y, caps);
+  put_key_caps(context.ui, caps_left, rect.centre().y, caps);
 }
 
-void CommandSearch::draw_page_row(Editor& editor, const Rect& rect, const Found& page, bool chosen) {
-  const Look& look = editor.look;
+void CommandSearch::draw_page_row(Context& context, const Rect& rect, const Found& page, bool chosen) {
+  const Look& look = context.ui->look;
   put_icon(look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text2,
            Rect{{rect.low.x + look.px(12), rect.low.y}, {rect.low.x + look.px(32), rect.high.y}}, icon::kHelp);
   const std::string title = title_of({std::nullopt, page});
   const Rect words{{rect.low.x + look.px(39), rect.low.y}, {rect.high.x - look.px(14), rect.high.y}};
-  put_text(editor, look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text, words, title);
+  put_text(context.ui, look.fonts.regular, chosen ? look.theme.on_accent : look.theme.text, words, title);
   const float right = std::min(words.high.x, words.low.x + text_size(look.fonts.regular, title).x);
-  put_text(editor, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
+  put_text(context.ui, look.fonts.small, chosen ? look.theme.on_accent : look.theme.text3,
            Rect{{right + look.px(9), rect.low.y}, words.high}, "Help");
 }
 
-void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
+void CommandSearch::draw_foot(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.line2);
   const float left = rect.low.x + look.px(14);
   if (chosen_ < std::ssize(found_)) {
     const FoundRow& row = found_[chosen_];
-    put_text(editor, look.fonts.semibold, look.theme.text,
+    put_text(context.ui, look.fonts.semibold, look.theme.text,
              Rect{{left, rect.low.y + look.px(8)}, {rect.high.x - look.px(14), rect.low.y + look.px(28)}},
              title_of(row));
-    put_text(editor, look.fonts.regular, look.theme.text2,
+    put_text(context.ui, look.fonts.regular, look.theme.text2,
              Rect{{left, rect.low.y + look.px(28)}, {rect.high.x - look.px(14), rect.low.y + look.px(48)}},
              row.command ? row.command->op->description : row.page.sentence);
   }
@@ -243,70 +249,71 @@ void CommandSearch::draw_foot(Editor& editor, const Rect& rect) {
       {{"Ctrl", "K"}, "assign a key"},
       {{"Esc"}, "close"}};
   for (const auto& [caps, words] : hints) {
-    x = put_key_caps(editor, x, y, caps) + look.px(7);
-    x = put_text(editor, look.fonts.small, look.theme.text2, glm::vec2(x, y - look.fonts.small->FontSize / 2), words) +
+    x = put_key_caps(context.ui, x, y, caps) + look.px(7);
+    x = put_text(context.ui, look.fonts.small, look.theme.text2, glm::vec2(x, y - look.fonts.small->FontSize / 2),
+                 words) +
         look.px(12);
   }
 }
 
-void CommandSearch::draw(Editor& editor) {
-  if (query_ != last_query_) search(editor);
-  const Look& look = editor.look;
+void CommandSearch::draw(Context& context) {
+  if (query_ != last_query_) search(context);
+  const Look& look = context.ui->look;
   const int rows = std::min(kMostRows, std::max(1, static_cast<int>(found_.size())));
   first_ = std::clamp(first_, chosen_ - rows + 1, chosen_);
   first_ = std::clamp(first_, 0, std::max(0, static_cast<int>(found_.size()) - rows));
-  const glm::vec2 window = editor.layout.window.size();
+  const glm::vec2 window = context.screen->layout.window.size();
   const float width = std::min(look.px(600), window.x - look.px(16)), left = std::round((window.x - width) / 2),
               top = look.px(48);
   const Rect rect{{left, top}, {left + width, top + look.px(44 + 8 + 30.0f * rows + 8 + 84)}};
 
-  begin_region(editor, Region::Dialog, "dim", editor.layout.window, with_alpha(0xFF000000, 0.45f));
-  if (press_area(editor, "outside", editor.layout.window).clicked) editor.close_dialog();
-  end_region(editor);
-  begin_region(editor, Region::Dialog, "search", rect, 0);
+  begin_region(context.ui, Region::Dialog, "dim", context.screen->layout.window, with_alpha(0xFF000000, 0.45f));
+  if (press_area(context.ui, "outside", context.screen->layout.window).clicked) context.dialogs->close();
+  end_region(context.ui);
+  begin_region(context.ui, Region::Dialog, "search", rect, 0);
   fill(rect, look.theme.panel, look.px(8));
   outline(rect, look.theme.line2, look.px(8), look.line());
   const Rect field{rect.low, {rect.high.x, rect.low.y + look.px(44)}};
-  draw_field(editor, field);
+  draw_field(context, field);
   fill({{rect.low.x, field.high.y - look.line()}, {rect.high.x, field.high.y}}, look.theme.line2);
   float y = field.high.y + look.px(4);
   if (found_.empty())
-    put_text(editor, look.fonts.regular, look.theme.text2,
+    put_text(context.ui, look.fonts.regular, look.theme.text2,
              Rect{{rect.low.x + look.px(14), y}, {rect.high.x - look.px(14), y + look.px(30)}},
              "Nothing matches '" + query_ + "'");
   for (int i = first_; i < first_ + rows && i < std::ssize(found_); ++i, y += look.px(30))
-    draw_row(editor, {{rect.low.x + look.line(), y}, {rect.high.x - look.line(), y + look.px(30)}}, i);
-  if (rect.contains(editor.input.pointer) && editor.input.wheel != 0)
-    chosen_ =
-        std::clamp(chosen_ - static_cast<int>(editor.input.wheel), 0, std::max(0, static_cast<int>(found_.size()) - 1));
-  draw_foot(editor, {{rect.low.x, rect.high.y - look.px(84)}, rect.high});
-  end_region(editor);
+    draw_row(context, {{rect.low.x + look.line(), y}, {rect.high.x - look.line(), y + look.px(30)}}, i);
+  if (rect.contains(context.ui->input.pointer) && context.ui->input.wheel != 0)
+    chosen_ = std::clamp(chosen_ - static_cast<int>(context.ui->input.wheel), 0,
+                         std::max(0, static_cast<int>(found_.size()) - 1));
+  draw_foot(context, {{rect.low.x, rect.high.y - look.px(84)}, rect.high});
+  end_region(context.ui);
 
   if (query_ != last_query_) {
-    editor.touch();
+    context.ui->touch();
     if (!accept_ && !assign_) return;
-    search(editor);
+    search(context);
   }
-  if (std::exchange(accept_, false)) run_chosen(editor);
+  if (std::exchange(accept_, false)) run_chosen(context);
   if (std::exchange(assign_, false) && chosen_ < std::ssize(found_) && found_[chosen_].command)
-    editor.open_dialog(open_preferences(PreferencesPage::Keymap, found_[chosen_].command->op->label));
+    context.dialogs->open(open_preferences(PreferencesPage::Keymap, found_[chosen_].command->op->label));
 }
 
 }  // namespace
 
-int count_commands(const Editor& editor) {
-  return static_cast<int>(std::count_if(editor.operators.begin(), editor.operators.end(),
-                                        [&](const Operator& op) { return can_be_searched(editor, op); }));
+int count_commands(const Context& context) {
+  return static_cast<int>(std::count_if(context.operators->all.begin(), context.operators->all.end(),
+                                        [&](const Operator& op) { return can_be_searched(context.keymap, op); }));
 }
 
-std::vector<FoundCommand> find_commands(const Editor& editor, const std::string& query) {
+std::vector<FoundCommand> find_commands(const Context& context, const std::string& query) {
   const bool any = query.find_first_not_of(' ') != std::string::npos;
   std::vector<Ranked> ranked;
-  for (const Operator& op : editor.operators) {
-    if (!can_be_searched(editor, op)) continue;
-    auto one = any ? rank(op, query) : Ranked{{&op, {}, ""}, 0, place_by_use(editor.preferences, op.id)};
+  for (const Operator& op : context.operators->all) {
+    if (!can_be_searched(context.keymap, op)) continue;
+    auto one = any ? rank(op, query) : Ranked{{&op, {}, ""}, 0, place_by_use(context.preferences, op.id)};
     if (!one) continue;
-    one->command.reason = disabled_reason(editor, op);
+    one->command.reason = disabled_reason(context, op);
     ranked.push_back(std::move(*one));
   }
   // Commands whose label or category matches come first, even if they cannot run now: the search then shows the
@@ -324,12 +331,12 @@ std::vector<FoundCommand> find_commands(const Editor& editor, const std::string&
   return found;
 }
 
-std::unique_ptr<Dialog> open_command_search(Editor& editor) {
+std::unique_ptr<Dialog> open_command_search(Context& context) {
   std::optional<Book> guide;
   try {
-    guide = read_guide(editor);
+    guide = read_guide(context);
   } catch (const Error& error) {  // the guide cannot be read, so only commands are searched
-    editor.messages.warn(error.what());
+    context.messages->warn(error.what());
   }
   return std::make_unique<CommandSearch>(std::move(guide));
 }

@@ -7,9 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+class Dialog;
+struct Context;
+struct Operator;
 
 struct FoundCommand {
   const Operator* op;
@@ -20,10 +22,10 @@ struct FoundCommand {
 // Returns the commands that match the query, the best match first. Commands that match by label or category come
 // before commands that match only by description. In both groups, commands that cannot run now come last. If the query
 // is empty, returns all commands: the five used last, then the others by number of uses, then those never used.
-std::vector<FoundCommand> find_commands(const Editor& editor, const std::string& query);
+std::vector<FoundCommand> find_commands(const Context& context, const std::string& query);
 // Returns the number of commands that the search can find.
-int count_commands(const Editor& editor);
+int count_commands(const Context& context);
 
-std::unique_ptr<Dialog> open_command_search(Editor& editor);
+std::unique_ptr<Dialog> open_command_search(Context& context);
 
 }  // namespace limber::editor

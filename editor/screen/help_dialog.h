@@ -5,14 +5,15 @@
 #include <memory>
 #include <string>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+class Dialog;
+struct Context;
 
 std::unique_ptr<Dialog> open_keys_page();
 std::unique_ptr<Dialog> open_about_page();
 
 // Returns version, driver and monitor scale as text for a bug report.
-std::string system_facts(const Editor& editor);
+std::string system_facts(const Context& context);
 
 }  // namespace limber::editor

@@ -2,7 +2,10 @@
 #include "editor/screen/menus.h"
 
 #include "core/motion/constraint_rule.h"
+#include "editor/context/context.h"
 #include "editor/context/operator_button.h"
+#include "editor/context/operator_registry.h"
+#include "editor/context/views.h"
 #include "editor/resample/resample_job.h"
 #include "editor/skin/painting.h"
 #include "editor/ui/widgets.h"
@@ -42,11 +45,11 @@ std::vector<std::string> with_constraints(std::vector<std::string> list) {
   return list;
 }
 
-bool any_operator(const Editor& editor, Entry begin, Entry end) {
-  return std::any_of(begin, end, [&](const std::string& id) { return find_operator(editor, id) != nullptr; });
+bool any_operator(const OperatorRegistry& operators, Entry begin, Entry end) {
+  return std::any_of(begin, end, [&](const std::string& id) { return find_operator(operators, id) != nullptr; });
 }
 
-void draw_entries(Editor& editor, Entry begin, Entry end) {
+void draw_entries(Context& context, Entry begin, Entry end) {
   bool line_wanted = false, any = false;
   for (Entry entry = begin; entry != end; ++entry) {
     if (*entry == "-") {
@@ -55,27 +58,28 @@ void draw_entries(Editor& editor, Entry begin, Entry end) {
     }
     const bool submenu = entry->starts_with("> ");
     const Entry last = submenu ? end_of(entry, end) : entry + 1;
-    if (any_operator(editor, entry, last)) {
+    if (any_operator(context.operators, entry, last)) {
       if (line_wanted) ImGui::Separator();
       line_wanted = false;
       any = true;
-      if (!submenu) operator_menu_item(editor, *entry);
+      if (!submenu) operator_menu_item(context, *entry);
       else {
         const std::string title = entry->substr(2);
         // Give the row that opens a submenu the same height as the other rows: 22 px plus the spacing between rows.
-        const float above = std::round((editor.look.px(22) - ImGui::GetFontSize()) / 2),
+        const float above = std::round((context.ui->look.px(22) - ImGui::GetFontSize()) / 2),
                     spacing = ImGui::GetStyle().ItemSpacing.y;
-        ImGui::SetCursorPos({ImGui::GetCursorPosX() + editor.look.px(34), ImGui::GetCursorPosY() + above});
+        ImGui::SetCursorPos({ImGui::GetCursorPosX() + context.ui->look.px(34), ImGui::GetCursorPosY() + above});
         ImGui::PushStyleVar(
             ImGuiStyleVar_ItemSpacing,
-            ImVec2(ImGui::GetStyle().ItemSpacing.x, editor.look.px(22) - ImGui::GetFontSize() - above + spacing));
+            ImVec2(ImGui::GetStyle().ItemSpacing.x, context.ui->look.px(22) - ImGui::GetFontSize() - above + spacing));
         const bool open = ImGui::BeginMenu(title.c_str());
         ImGui::PopStyleVar();
-        if (!open) register_widget(editor, title, {from_im(ImGui::GetItemRectMin()), from_im(ImGui::GetItemRectMax())});
+        if (!open)
+          register_widget(context.ui, title, {from_im(ImGui::GetItemRectMin()), from_im(ImGui::GetItemRectMax())});
         if (open) {
-          push_path(editor, title);
-          draw_entries(editor, entry + 1, last);
-          pop_path(editor);
+          push_path(context.ui, title);
+          draw_entries(context, entry + 1, last);
+          pop_path(context.ui);
           ImGui::EndMenu();
         }
       }
@@ -304,6 +308,6 @@ Menu pointer_menu(const std::string& name, ViewId view) {
         "view.frame_all", "-", "view.maximize"}};
 }
 
-void draw_menu(Editor& editor, const Menu& menu) { draw_entries(editor, menu.entries.begin(), menu.entries.end()); }
+void draw_menu(Context& context, const Menu& menu) { draw_entries(context, menu.entries.begin(), menu.entries.end()); }
 
 }  // namespace limber::editor

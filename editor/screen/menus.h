@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
+#include "editor/context/view_place.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct Menu {
   std::string title;
@@ -22,6 +24,6 @@ Menu pointer_menu(const std::string& name, ViewId view);
 
 // Draws the rows of a menu into an open popup. Leaves out the ids of unknown operators, and submenus that would be
 // empty.
-void draw_menu(Editor& editor, const Menu& menu);
+void draw_menu(Context& context, const Menu& menu);
 
 }  // namespace limber::editor

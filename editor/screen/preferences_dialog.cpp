@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/screen/preferences_dialog.h"
 
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/keep_preferences.h"
+#include "editor/context/operator.h"
+#include "editor/context/preferences.h"
+#include "editor/context/preferences_state.h"
+#include "editor/context/views.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
@@ -22,32 +28,32 @@ class PreferencesDialog final : public Dialog {
  public:
   PreferencesDialog(PreferencesPage page, const std::string& search) : page_(page), keys_(search) {}
 
-  void draw(Editor& editor) override;
-  bool key(Editor& editor, const Chord& chord) override {
-    return page_ == PreferencesPage::Keymap && keys_.key(editor, chord);
+  void draw(Context& context) override;
+  bool key(Context& context, const Chord& chord) override {
+    return page_ == PreferencesPage::Keymap && keys_.key(context, chord);
   }
-  void escape(Editor& editor) override {
-    if (!keys_.stop_waiting()) editor.close_dialog();
+  void escape(Context& context) override {
+    if (!keys_.stop_waiting()) context.dialogs->close();
   }
 
  private:
-  void draw_pages(Editor& editor, const Rect& rect);
-  void draw_page(Editor& editor, const Rect& rect);
-  void draw_interface(Editor& editor, Column& column);
-  void draw_view(Editor& editor, Column& column);
-  void draw_undo(Editor& editor, Column& column);
-  void draw_jobs(Editor& editor, Column& column);
-  void draw_folders(Editor& editor, Column& column);
+  void draw_pages(Context& context, const Rect& rect);
+  void draw_page(Context& context, const Rect& rect);
+  void draw_interface(Context& context, Column& column);
+  void draw_view(Context& context, Column& column);
+  void draw_undo(Context& context, Column& column);
+  void draw_jobs(Context& context, Column& column);
+  void draw_folders(Context& context, Column& column);
 
   // Functions that draw a row of the dialog, with a label and a field. labelled() draws only the label, whose tooltip
   // is the description, and returns the area for the field.
-  Rect labelled(Editor& editor, Column& column, const std::string& label, const std::string& description);
-  void number(Editor& editor, Column& column, const std::string& label, const std::string& description, double low,
+  Rect labelled(Context& context, Column& column, const std::string& label, const std::string& description);
+  void number(Context& context, Column& column, const std::string& label, const std::string& description, double low,
               double high, const char* format, const char* unit, const std::function<double&(Preferences&)>& value);
-  void whole_number(Editor& editor, Column& column, const std::string& label, const std::string& description,
+  void whole_number(Context& context, Column& column, const std::string& label, const std::string& description,
                     int Preferences::*value, int low, int high, const char* unit);
-  void check(Editor& editor, Column& column, const std::string& label, const std::string& description, bool& on);
-  void note(Editor& editor, Column& column, const std::string& text);
+  void check(Context& context, Column& column, const std::string& label, const std::string& description, bool& on);
+  void note(Context& context, Column& column, const std::string& text);
 
   PreferencesPage page_;
   KeymapPage keys_;
@@ -55,108 +61,110 @@ class PreferencesDialog final : public Dialog {
   double edited_value_ = 0;
 };
 
-Rect PreferencesDialog::labelled(Editor& editor, Column& column, const std::string& label,
+Rect PreferencesDialog::labelled(Context& context, Column& column, const std::string& label,
                                  const std::string& description) {
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const Rect row = column.row(32);
   const Rect words{{row.low.x + look.px(16), row.low.y}, {row.low.x + look.px(206), row.high.y}};
-  put_text(editor, look.fonts.regular, look.theme.text2, words, label);
-  if (ImGui::IsWindowHovered() && words.contains(editor.input.pointer)) tooltip(editor, words, label, description);
+  put_text(context.ui, look.fonts.regular, look.theme.text2, words, label);
+  if (ImGui::IsWindowHovered() && words.contains(context.ui->input.pointer))
+    tooltip(context.ui, words, label, description);
   return {{words.high.x + look.px(8), row.low.y + look.px(4)},
           {words.high.x + look.px(8 + 220), row.high.y - look.px(4)}};
 }
 
-void PreferencesDialog::number(Editor& editor, Column& column, const std::string& label, const std::string& description,
-                               double low, double high, const char* format, const char* unit,
-                               const std::function<double&(Preferences&)>& value) {
-  const Rect rect = labelled(editor, column, label, description);
-  double shown = edited_ == label ? edited_value_ : value(editor.preferences);
+void PreferencesDialog::number(Context& context, Column& column, const std::string& label,
+                               const std::string& description, double low, double high, const char* format,
+                               const char* unit, const std::function<double&(Preferences&)>& value) {
+  const Rect rect = labelled(context, column, label, description);
+  double shown = edited_ == label ? edited_value_ : value(context.preferences);
   bool committed = false;
-  if (number_field(editor, label, rect, shown, low, high, format, unit, true, committed)) {
+  if (number_field(context.ui, label, rect, shown, low, high, format, unit, true, committed)) {
     edited_ = label;
     edited_value_ = shown;
   }
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, description + "\nDrag the number, or click it and type.");
+  if (ImGui::IsItemHovered())
+    tooltip(context.ui, rect, label, description + "\nDrag the number, or click it and type.");
   if (!committed || edited_ != label) return;
-  value(editor.preferences) = edited_value_;
+  value(context.preferences) = edited_value_;
   edited_.clear();
-  keep_preferences(editor);
+  keep_preferences(context);
 }
 
-void PreferencesDialog::whole_number(Editor& editor, Column& column, const std::string& label,
+void PreferencesDialog::whole_number(Context& context, Column& column, const std::string& label,
                                      const std::string& description, int Preferences::*value, int low, int high,
                                      const char* unit) {
-  double real = editor.preferences.*value;
-  number(editor, column, label, description, low, high, "%.0f", unit, [&](Preferences&) -> double& { return real; });
+  double real = (*context.preferences).*value;
+  number(context, column, label, description, low, high, "%.0f", unit, [&](Preferences&) -> double& { return real; });
   const int rounded = static_cast<int>(std::lround(real));
-  if (rounded == editor.preferences.*value) return;
-  editor.preferences.*value = rounded;
-  keep_preferences(editor);
+  if (rounded == (*context.preferences).*value) return;
+  (*context.preferences).*value = rounded;
+  keep_preferences(context);
 }
 
-void PreferencesDialog::check(Editor& editor, Column& column, const std::string& label, const std::string& description,
-                              bool& on) {
-  const Look& look = editor.look;
+void PreferencesDialog::check(Context& context, Column& column, const std::string& label,
+                              const std::string& description, bool& on) {
+  const Look& look = context.ui->look;
   const Rect row = column.row(30);
   const Rect rect{{row.low.x + look.px(16), row.low.y}, {row.low.x + look.px(434), row.high.y}};
-  if (checkbox(editor, label, rect, label, on)) keep_preferences(editor);
-  if (ImGui::IsItemHovered()) tooltip(editor, rect, label, description);
+  if (checkbox(context.ui, label, rect, label, on)) keep_preferences(context);
+  if (ImGui::IsItemHovered()) tooltip(context.ui, rect, label, description);
 }
 
-void PreferencesDialog::note(Editor& editor, Column& column, const std::string& text) {
-  const Look& look = editor.look;
+void PreferencesDialog::note(Context& context, Column& column, const std::string& text) {
+  const Look& look = context.ui->look;
   const Rect row = column.row(26);
-  put_text(editor, look.fonts.small, look.theme.text2,
+  put_text(context.ui, look.fonts.small, look.theme.text2,
            Rect{{row.low.x + look.px(16), row.low.y}, {row.high.x - look.px(12), row.high.y}}, text);
 }
 
-void PreferencesDialog::draw_interface(Editor& editor, Column& column) {
-  const Look& look = editor.look;
-  const Rect theme = labelled(editor, column, "Theme", "Dark or light colours. The views are dark in both themes.");
+void PreferencesDialog::draw_interface(Context& context, Column& column) {
+  const Look& look = context.ui->look;
+  const Rect theme = labelled(context, column, "Theme", "Dark or light colours. The views are dark in both themes.");
   const float half = std::round(theme.width() / 2);
   for (const auto& [name, label, left] :
        {std::tuple("dark", "Dark", theme.low.x), std::tuple("light", "Light", theme.low.x + half)}) {
-    const bool chosen = editor.preferences.theme == name;
-    if (button(editor, label, {{left, theme.low.y}, {left + half - look.px(1), theme.high.y}},
+    const bool chosen = context.preferences->theme == name;
+    if (button(context.ui, label, {{left, theme.low.y}, {left + half - look.px(1), theme.high.y}},
                {"", label, chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) {
-      editor.preferences.theme = name;
-      keep_preferences(editor);
+      context.preferences->theme = name;
+      keep_preferences(context);
     }
   }
-  number(editor, column, "Scale", "Size of text and buttons, multiplied with the monitor's scale.", 0.75, 3, "%.2f",
+  number(context, column, "Scale", "Size of text and buttons, multiplied with the monitor's scale.", 0.75, 3, "%.2f",
          "\u00d7", [](Preferences& p) -> double& { return p.scale; });
-  number(editor, column, "Tooltip delay", "How long the pointer must rest on a control before its tooltip appears.", 0,
+  number(context, column, "Tooltip delay", "How long the pointer must rest on a control before its tooltip appears.", 0,
          3, "%.1f", "s", [](Preferences& p) -> double& { return p.tooltip_delay; });
   column.space(6);
-  check(editor, column, "Reduce motion", "Switch views and show messages immediately, without animation.",
-        editor.preferences.reduce_motion);
-  check(editor, column, "Advanced steps",
+  check(context, column, "Reduce motion", "Switch views and show messages immediately, without animation.",
+        context.preferences->reduce_motion);
+  check(context, column, "Advanced steps",
         "Show all tools of each workflow step in the sidebar, not only its main tool.",
-        editor.preferences.advanced_steps);
+        context.preferences->advanced_steps);
 }
 
-void PreferencesDialog::draw_view(Editor& editor, Column& column) {
-  const Look& look = editor.look;
-  Preferences& preferences = editor.preferences;
-  const Rect display = labelled(editor, column, "Display", "How the body is displayed when the editor starts.");
+void PreferencesDialog::draw_view(Context& context, Column& column) {
+  const Look& look = context.ui->look;
+  Preferences& preferences = context.preferences;
+  const Rect display = labelled(context, column, "Display", "How the body is displayed when the editor starts.");
   const float third = std::round(display.width() / 3);
   float x = display.low.x;
   for (const auto& [name, label, op] :
        {std::tuple("solid", "Solid", "view.solid"), std::tuple("xray", "X-ray", "view.xray_display"),
         std::tuple("tissue", "Tissue", "view.tissue")}) {
     const bool chosen = preferences.display == name;
-    if (button(editor, label, {{x, display.low.y}, {x + third - look.px(1), display.high.y}},
+    if (button(context.ui, label, {{x, display.low.y}, {x + third - look.px(1), display.high.y}},
                {"", label, chosen ? ButtonStyle::Chosen : ButtonStyle::Plain})) {
       preferences.display = name;
-      run(editor, op);
-      keep_preferences(editor);
+      run(context, op);
+      keep_preferences(context);
     }
     x += third;
   }
   column.space(6);
-  Views& views = *editor.views;
+  Views& views = *context.views;
   const auto overlay = [&](const char* label, const char* description, bool Preferences::*kept, bool Views::*shown) {
-    check(editor, column, label, description, preferences.*kept);
+    check(context, column, label, description, preferences.*kept);
     views.*shown = preferences.*kept;
   };
   overlay("Grid", "Show the ground grid in the 3D view.", &Preferences::grid, &Views::grid);
@@ -166,73 +174,73 @@ void PreferencesDialog::draw_view(Editor& editor, Column& column) {
           &Preferences::letters, &Views::letters);
   overlay("Cross-hair", "Show the cross-hair where the slices meet.", &Preferences::cross_hair,
           &Views::show_cross_hair);
-  check(editor, column, "Soft shadows when idle",
+  check(context, column, "Soft shadows when idle",
         "Compute soft shadows by ray tracing when nothing in the 3D view moves. Exported pictures and figures also "
         "have them.",
         preferences.fine_light);
-  apply_light(editor);
+  apply_light(context);
 }
 
-void PreferencesDialog::draw_undo(Editor& editor, Column& column) {
+void PreferencesDialog::draw_undo(Context& context, Column& column) {
   whole_number(
-      editor, column, "Memory limit for undo",
+      context, column, "Memory limit for undo",
       "Largest memory for undo steps. When edits need more memory than this, the oldest edits can no longer be undone.",
       &Preferences::undo_limit_mb, 64, 65536, "MB");
-  const History& history = editor.history;
-  note(editor, column,
+  const History& history = context.history;
+  note(context, column,
        std::to_string(history.steps().size()) + " undo states take " + std::to_string(history.bytes() >> 20) +
            " MB now." + (history.note().empty() ? "" : " " + history.note()));
   column.space(6);
-  whole_number(editor, column, "Autosave every",
+  whole_number(context, column, "Autosave every",
                "Save the project automatically at this interval, if it already has a file. 0 = never.",
                &Preferences::autosave_minutes, 0, 240, "min");
-  note(editor, column, "Every edit is also stored within a second and can be recovered after a crash.");
+  note(context, column, "Every edit is also stored within a second and can be recovered after a crash.");
 }
 
-void PreferencesDialog::draw_jobs(Editor& editor, Column& column) {
-  whole_number(editor, column, "Parallel jobs", "Number of jobs that run at the same time. The others wait.",
+void PreferencesDialog::draw_jobs(Context& context, Column& column) {
+  whole_number(context, column, "Parallel jobs", "Number of jobs that run at the same time. The others wait.",
                &Preferences::jobs_at_once, 1, 8, "");
-  whole_number(editor, column, "Resampling memory limit",
+  whole_number(context, column, "Resampling memory limit",
                "Stop a resampling that needs more memory than this, and show a message. 0 = unlimited.",
                &Preferences::worker_memory_mb, 0, 1 << 18, "MB");
-  number(editor, column, "Resampling time limit",
+  number(context, column, "Resampling time limit",
          "Stop a resampling that takes longer than this, and show a message. 0 = unlimited.", 0, 1440, "%.1f", "min",
          [](Preferences& p) -> double& { return p.worker_minutes; });
-  note(editor, column, "A resampling runs in a separate process: if it fails, the project is not affected.");
+  note(context, column, "A resampling runs in a separate process: if it fails, the project is not affected.");
 }
 
-void PreferencesDialog::draw_folders(Editor& editor, Column& column) {
-  Preferences& preferences = editor.preferences;
-  const Rect scratch = labelled(editor, column, "Scratch folder",
+void PreferencesDialog::draw_folders(Context& context, Column& column) {
+  Preferences& preferences = context.preferences;
+  const Rect scratch = labelled(context, column, "Scratch folder",
                                 "Folder for the temporary files of a resampling, which are deleted at its end.");
   const std::string before = preferences.scratch_folder;
-  const Rect wide{scratch.low, {scratch.high.x + editor.look.px(110), scratch.high.y}};
-  if (text_field(editor, "Scratch folder", wide, preferences.scratch_folder, "The system's temporary folder"))
-    keep_preferences(editor);
+  const Rect wide{scratch.low, {scratch.high.x + context.ui->look.px(110), scratch.high.y}};
+  if (text_field(context.ui, "Scratch folder", wide, preferences.scratch_folder, "The system's temporary folder"))
+    keep_preferences(context);
   if (ImGui::IsItemHovered())
-    tooltip(editor, wide, "Scratch folder",
+    tooltip(context.ui, wide, "Scratch folder",
             "Folder for the temporary files of a resampling, which are deleted at its end.");
   column.space(6);
-  note(editor, column,
+  note(context, column,
        "Preferences are stored in " +
-           (editor.preferences_path.empty() ? preferences_path() : editor.preferences_path).string());
+           (context.preferences_state->path.empty() ? preferences_path() : context.preferences_state->path).string());
 }
 
-void PreferencesDialog::draw_pages(Editor& editor, const Rect& rect) {
-  const Look& look = editor.look;
+void PreferencesDialog::draw_pages(Context& context, const Rect& rect) {
+  const Look& look = context.ui->look;
   ImGui::GetWindowDrawList()->AddRectFilled(im(rect.low), im(rect.high), look.theme.head, look.px(8),
                                             ImDrawFlags_RoundCornersBottomLeft);
   float y = rect.low.y + look.px(8);
   for (int i = 0; i < std::ssize(kPages); ++i, y += look.px(32)) {
     const Rect row{{rect.low.x, y}, {rect.high.x, y + look.px(32)}};
     const bool chosen = static_cast<int>(page_) == i;
-    const Pressed pressed = press_area(editor, kPages[i].title, row);
+    const Pressed pressed = press_area(context.ui, kPages[i].title, row);
     if (chosen) fill(row, look.theme.accent_soft);
     else if (pressed.hovered) fill(row, look.theme.hover);
     const Colour colour = chosen ? look.theme.accent_text : look.theme.text2;
     put_icon(look.fonts.regular, colour,
              Rect{{row.low.x + look.px(12), row.low.y}, {row.low.x + look.px(32), row.high.y}}, kPages[i].icon);
-    put_text(editor, look.fonts.regular, chosen ? look.theme.accent_text : look.theme.text,
+    put_text(context.ui, look.fonts.regular, chosen ? look.theme.accent_text : look.theme.text,
              Rect{{row.low.x + look.px(40), row.low.y}, row.high}, kPages[i].title);
     if (!pressed.clicked) continue;
     keys_.stop_waiting();
@@ -240,29 +248,29 @@ void PreferencesDialog::draw_pages(Editor& editor, const Rect& rect) {
   }
 }
 
-void PreferencesDialog::draw_page(Editor& editor, const Rect& rect) {
-  if (page_ == PreferencesPage::Keymap) return keys_.draw(editor, rect);
-  Column column(editor, kPages[static_cast<int>(page_)].title, rect);
+void PreferencesDialog::draw_page(Context& context, const Rect& rect) {
+  if (page_ == PreferencesPage::Keymap) return keys_.draw(context, rect);
+  Column column(context.ui, kPages[static_cast<int>(page_)].title, rect);
   column.space(10);
   switch (page_) {
-    case PreferencesPage::Interface: return draw_interface(editor, column);
+    case PreferencesPage::Interface: return draw_interface(context, column);
     case PreferencesPage::Keymap: return;
-    case PreferencesPage::View: return draw_view(editor, column);
-    case PreferencesPage::Undo: return draw_undo(editor, column);
-    case PreferencesPage::Jobs: return draw_jobs(editor, column);
-    case PreferencesPage::Folders: return draw_folders(editor, column);
+    case PreferencesPage::View: return draw_view(context, column);
+    case PreferencesPage::Undo: return draw_undo(context, column);
+    case PreferencesPage::Jobs: return draw_jobs(context, column);
+    case PreferencesPage::Folders: return draw_folders(context, column);
   }
 }
 
-void PreferencesDialog::draw(Editor& editor) {
-  const Look& look = editor.look;
-  const Rect rect = begin_dialog(editor, "Preferences", 760, 440);
+void PreferencesDialog::draw(Context& context) {
+  const Look& look = context.ui->look;
+  const Rect rect = begin_dialog(context, "Preferences", 760, 440);
   const Rect body{rect.low - look.px(18), rect.high + look.px(18)};
   const float middle = body.low.x + look.px(176);
-  draw_pages(editor, {{body.low.x + look.line(), body.low.y}, {middle, body.high.y - look.line()}});
+  draw_pages(context, {{body.low.x + look.line(), body.low.y}, {middle, body.high.y - look.line()}});
   fill({{middle, body.low.y}, {middle + look.line(), body.high.y - look.line()}}, look.theme.line2);
-  draw_page(editor, {{middle + look.line(), body.low.y}, {body.high.x - look.line(), body.high.y - look.px(4)}});
-  end_dialog(editor);
+  draw_page(context, {{middle + look.line(), body.low.y}, {body.high.x - look.line(), body.high.y - look.px(4)}});
+  end_dialog(context);
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 // slider that selects the slice) and the scale bar.
 #include <cmath>
 
+#include "editor/context/context.h"
 #include "editor/context/panels.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 #include "editor/measure/ruler_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
@@ -20,14 +23,14 @@ char letter_of(const glm::dvec3& direction) {
   return direction.z > 0 ? 'S' : 'I';
 }
 
-void draw_letters(Editor& editor, const render::SliceFrame& frame, const Rect& rect) {
-  if (!editor.views->letters) return;
-  const Look& look = editor.look;
+void draw_letters(Context& context, const render::SliceFrame& frame, const Rect& rect) {
+  if (!context.views->letters) return;
+  const Look& look = context.ui->look;
   const auto put = [&](const glm::vec2& centre, const glm::dvec3& direction) {
     const char text[2] = {letter_of(direction), 0};
     fill({centre - look.px(9), centre + look.px(9)}, with_alpha(look.theme.view_plate, 0.5f), look.px(4));
-    put_text(editor, look.fonts.semibold, look.theme.view_text, Rect{centre - look.px(10), centre + look.px(10)}, text,
-             Align::Centre);
+    put_text(context.ui, look.fonts.semibold, look.theme.view_text, Rect{centre - look.px(10), centre + look.px(10)},
+             text, Align::Centre);
   };
   const glm::vec2 middle = rect.centre();
   put({rect.low.x + look.px(15), middle.y}, -frame.right);
@@ -38,11 +41,11 @@ void draw_letters(Editor& editor, const render::SliceFrame& frame, const Rect& r
 
 // Draws the crosshair. Each of its two lines marks a position on a world axis and has the colour of this axis. The
 // lines have a gap of 24 px at the centre.
-void draw_cross_hair(Editor& editor, const render::SliceCamera& camera, const render::SliceFrame& frame,
+void draw_cross_hair(Context& context, const render::SliceCamera& camera, const render::SliceFrame& frame,
                      const Rect& rect) {
-  if (!editor.views->show_cross_hair) return;
-  const Look& look = editor.look;
-  const glm::vec2 at = glm::round(rect.low + pixel_of(camera, editor.views->cross_hair, rect.size()));
+  if (!context.views->show_cross_hair) return;
+  const Look& look = context.ui->look;
+  const glm::vec2 at = glm::round(rect.low + pixel_of(camera, context.views->cross_hair, rect.size()));
   const auto axis_of = [](const glm::dvec3& v) { return std::abs(v.x) > 0.5 ? 0 : std::abs(v.y) > 0.5 ? 1 : 2; };
   const Colour upright = look.theme.axis[axis_of(frame.right)], level = look.theme.axis[axis_of(frame.down)];
   const float gap = look.px(12), line = look.line();
@@ -62,24 +65,24 @@ int grid_axis_of(const Grid& grid, const glm::dvec3& normal) {
   return nearest;
 }
 
-void draw_slice_bar(Editor& editor, const Grid& grid, int axis, const Rect& rect) {
-  const Look& look = editor.look;
+void draw_slice_bar(Context& context, const Grid& grid, int axis, const Rect& rect) {
+  const Look& look = context.ui->look;
   const float height = std::min(look.px(280), rect.height() - look.px(120));
   if (height < look.px(60)) return;
   const float x = rect.high.x - look.px(20), top = std::round(rect.centre().y - height / 2);
   const Rect track{{x, top}, {x + look.px(4), top + height}};
   const Rect grip{{track.low.x - look.px(6), track.low.y}, {track.high.x + look.px(6), track.high.y}};
-  const Pressed pressed = press_area(editor, "slice bar", grip);
+  const Pressed pressed = press_area(context.ui, "slice bar", grip);
   const AffineTransform world = world_from_voxel(grid);
-  glm::dvec3 voxel = voxel_from_world(grid) * editor.views->cross_hair;
+  glm::dvec3 voxel = voxel_from_world(grid) * context.views->cross_hair;
   const double last = std::max(grid.size[axis] - 1, 1);
   // True if the grid axis points to the body's left, back or head.
   const bool upward = glm::dot(glm::dvec3(grid.direction[axis]), glm::dvec3(1)) > 0;
   if (pressed.held) {
     const double share =
-        glm::clamp(static_cast<double>((editor.input.pointer.y - track.low.y) / track.height()), 0.0, 1.0);
+        glm::clamp(static_cast<double>((context.ui->input.pointer.y - track.low.y) / track.height()), 0.0, 1.0);
     voxel[axis] = std::round((upward ? 1 - share : share) * last);
-    editor.views->cross_hair = world * voxel;
+    context.views->cross_hair = world * voxel;
   }
   const double share = glm::clamp(voxel[axis] / last, 0.0, 1.0);
   const float y = track.low.y + static_cast<float>(upward ? 1 - share : share) * track.height();
@@ -90,33 +93,33 @@ void draw_slice_bar(Editor& editor, const Grid& grid, int axis, const Rect& rect
 
 }  // namespace
 
-void draw_slice_overlay(Editor& editor, const ViewPlace& place) {
+void draw_slice_overlay(Context& context, const ViewPlace& place) {
   const auto& [id, rect, side_a] = place;
-  const render::SliceCamera& camera = slice_of(*editor.views, id).camera;
+  const render::SliceCamera& camera = slice_of(*context.views, id).camera;
   const render::SliceFrame frame = render::frame_of(camera.axis);
-  if (!editor.document().volume) return draw_view_title(editor, rect, name_of(id), "");
-  const render::Scene& scene = scene_of(editor, place);
+  if (!context.document().volume) return draw_view_title(context.ui, rect, name_of(id), "");
+  const render::Scene& scene = scene_of(context, place);
   const Grid& grid = scene.volume->grid;
   const int axis = grid_axis_of(grid, frame.normal);
-  const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * editor.views->cross_hair)[axis]));
-  draw_cross_hair(editor, camera, frame, rect);
-  draw_rulers(editor, place);
-  const Rect free = beside_rulers(editor, rect);
+  const int slice = static_cast<int>(std::lround((voxel_from_world(grid) * context.views->cross_hair)[axis]));
+  draw_cross_hair(context, camera, frame, rect);
+  draw_rulers(context, place);
+  const Rect free = beside_rulers(context, rect);
   std::string state =
       std::string(1, "xyz"[axis]) + " " + std::to_string(slice) + " of " + std::to_string(grid.size[axis]);
-  if (rect.width() > editor.look.px(300)) {
-    if (!is_of_document(editor, scene.volume) || scene.pose) state += " \u00b7 posed";
-    const std::string& note = editor.views->renderer.note();
+  if (rect.width() > context.ui->look.px(300)) {
+    if (!is_of_document(context, scene.volume) || scene.pose) state += " \u00b7 posed";
+    const std::string& note = context.views->renderer.note();
     if (!note.empty()) state += " \u00b7 " + note.substr(0, note.find(':'));
   }
-  draw_view_title(editor, free, (editor.layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id),
-                  state);
-  draw_letters(editor, frame, free);
-  draw_slice_bar(editor, grid, axis, rect);
-  draw_scale_bar(editor, free, camera.millimetres_per_pixel);
-  if (editor.layout.place_of(ViewId::Body) || side_a) return;
-  draw_fem_legend(editor, rect);
-  draw_marks_legend(editor, rect);
+  draw_view_title(context.ui, free,
+                  (context.screen->layout.by_sides ? side_a ? "A \u00b7 " : "B \u00b7 " : "") + name_of(id), state);
+  draw_letters(context, frame, free);
+  draw_slice_bar(context, grid, axis, rect);
+  draw_scale_bar(context, free, camera.millimetres_per_pixel);
+  if (context.screen->layout.place_of(ViewId::Body) || side_a) return;
+  draw_fem_legend(context, rect);
+  draw_marks_legend(context, rect);
 }
 
 }  // namespace limber::editor

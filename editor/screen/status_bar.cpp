@@ -7,8 +7,19 @@
 #include <ctime>
 
 #include "core/platform/local_time.h"
+#include "core/project/history.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
 #include "editor/context/panels.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/project_life.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/context/start_screen_state.h"
+#include "editor/input/keymap.h"
 #include "editor/labels/label_brush.h"
 #include "editor/pose/live_preview.h"
 #include "editor/resample/difference_overlay.h"
@@ -31,19 +42,19 @@ constexpr std::size_t kFewHints = 5, kMostHints = 8;
 
 // Returns key hints while modifier keys (Ctrl, Shift, Alt) are held. Each hint tells what a key or mouse button does
 // together with the held modifiers in the area under the pointer.
-std::vector<KeyHint> held_hints(const Editor& editor) {
+std::vector<KeyHint> held_hints(const Context& context) {
   std::vector<KeyHint> all;
   std::vector<Chord> seen;
-  for (const std::string& context : contexts(editor)) {
-    const auto bindings = editor.keymap.contexts.find(context);
-    if (bindings == editor.keymap.contexts.end()) continue;
+  for (const std::string& key_context : contexts(context)) {
+    const auto bindings = context.keymap->contexts.find(key_context);
+    if (bindings == context.keymap->contexts.end()) continue;
     for (const Binding& binding : bindings->second) {
-      const Operator* op = find_operator(editor, binding.operator_id);
-      if (!(binding.chord.modifiers == editor.input.modifiers()) ||
+      const Operator* op = find_operator(context.operators, binding.operator_id);
+      if (!(binding.chord.modifiers == context.ui->input.modifiers()) ||
           std::find(seen.begin(), seen.end(), binding.chord) != seen.end())
         continue;
       seen.push_back(binding.chord);
-      if (!op || !disabled_reason(editor, *op).empty()) continue;
+      if (!op || !disabled_reason(context, *op).empty()) continue;
       Chord alone = binding.chord;
       alone.modifiers = {};
       all.push_back({key_caps(alone), op->label});
@@ -58,15 +69,15 @@ std::vector<KeyHint> held_hints(const Editor& editor) {
   return all;
 }
 
-std::vector<KeyHint> hints(const Editor& editor) {
-  if (editor.modal) return editor.modal->hints(editor);
-  if (editor.drag) return {{{"Esc"}, "Cancel the drag"}};
-  if (editor.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Cancel the drag"}};
-  if (editor.dialog) return {{{"Esc"}, "Close"}};
-  if (!(editor.input.modifiers() == Modifiers{})) return held_hints(editor);
+std::vector<KeyHint> hints(const Context& context) {
+  if (context.interaction->modal) return context.interaction->modal->hints(context);
+  if (context.interaction->drag) return {{{"Esc"}, "Cancel the drag"}};
+  if (context.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Cancel the drag"}};
+  if (context.dialogs->shown) return {{{"Esc"}, "Close"}};
+  if (!(context.ui->input.modifiers() == Modifiers{})) return held_hints(context);
   std::vector<std::pair<const char*, const char*>> operators;
-  const ViewPlace* view = hovered_view(editor);
-  if (contexts(editor).front() == "graph")
+  const ViewPlace* view = hovered_view(context);
+  if (contexts(context).front() == "graph")
     operators = {{"graph.select", "Select"},
                  {"graph.move", "Move keys"},
                  {"graph.interpolation_menu", "Interpolation"},
@@ -75,50 +86,50 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"graph.pan", "Pan"},
                  {"graph.delete", "Delete keys"},
                  {"motion.next_face", "Next view"}};
-  else if (contexts(editor).front() == "strips")
+  else if (contexts(context).front() == "strips")
     operators = {{"strips.select", "Select"},       {"strips.move", "Move"},   {"strips.add", "Add"},
                  {"strips.duplicate", "Duplicate"}, {"strips.split", "Split"}, {"strips.mute", "Mute"},
                  {"strips.delete", "Delete"},       {"strips.pan", "Pan"},     {"motion.next_face", "Next view"}};
-  else if (contexts(editor).front() == "timeline")
+  else if (contexts(context).front() == "timeline")
     operators = {{"motion.scrub", "Scrub"},         {"motion.zoom", "Zoom"},
                  {"motion.pan", "Shift"},           {"motion.insert_key", "Key"},
                  {"motion.move_keys", "Move keys"}, {"motion.delete_keys", "Delete keys"},
                  {"motion.marker", "Marker"},       {"motion.play", "Play"}};
-  else if (view && editor.workspace == Workspace::Skin && editor.skin->painting->labels->on)
+  else if (view && context.workspace() == Workspace::Skin && context.skin->painting->labels->on)
     operators = {{"skin.paint", "Paint"},        {"skin.paint_subtract", "Erase"}, {"skin.radius", "Radius"},
                  {"skin.sample", "Pick tissue"}, {"slice.step", "Slice"},          {"edit.undo", "Undo"},
                  {"skin.brush_pie", "Brushes"}};
-  else if (view && editor.workspace == Workspace::Skin && editor.seams->brush)
+  else if (view && context.workspace() == Workspace::Skin && context.seams->brush)
     operators = {{"skin.paint", "Cut a seam"},
                  {"skin.paint_subtract", "Erase"},
                  {"skin.radius", "Radius"},
                  {"edit.undo", "Undo"},
                  {"skin.brush_pie", "Brushes"}};
-  else if (view && editor.workspace == Workspace::Skin && why_not_paint(editor).empty())
-    operators = {{"skin.paint", rule_of(editor.skin->painting->kind).name.c_str()},
+  else if (view && context.workspace() == Workspace::Skin && why_not_paint(context).empty())
+    operators = {{"skin.paint", rule_of(context.skin->painting->kind).name.c_str()},
                  {"skin.paint_subtract", "Subtract"},
                  {"skin.paint_smooth", "Smooth"},
                  {"skin.radius", "Radius"},
-                 painted_region(editor) ? std::pair{"skin.region_clear", "Clear region"}
-                                        : std::pair{"skin.strength", "Strength"},
+                 painted_region(context) ? std::pair{"skin.region_clear", "Clear region"}
+                                         : std::pair{"skin.strength", "Strength"},
                  {"skin.pick_bone", "Pick bone"},
                  {"skin.flood", "Flood"},
                  {"skin.display_pie", "Display"}};
   else if (view && view->id != ViewId::Body)
-    operators = {{"select.pick", editor.tool == Tool::CrossHair ? "Move cross-hair" : "Select"},
+    operators = {{"select.pick", context.interaction->tool == Tool::CrossHair ? "Move cross-hair" : "Select"},
                  {"slice.step", "Slice"},
                  {"slice.zoom", "Zoom"},
                  {"slice.pan", "Shift"},
                  {"view.place_cross_hair", "Cross-hair"},
                  {"slice.outline", "Outline"},
                  {"view.maximize", "Maximize"}};
-  else if (!editor.document().volume || editor.start_screen)
+  else if (!context.document().volume || context.start_screen->shown)
     operators = {{"file.open", "Open"},
                  {"file.new", "New"},
                  {"search.commands", "Search"},
                  {"help.guide", "Help"},
                  {"file.quit", "Quit"}};
-  else if (editor.workspace == Workspace::Resample && !editor.document().results.empty())
+  else if (context.workspace() == Workspace::Resample && !context.document().results.empty())
     operators = {{"compare.flicker", "Flicker A / B"},
                  {"compare.show_a", "A"},
                  {"compare.show_b", "B"},
@@ -127,10 +138,10 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"compare.difference", "Difference"},
                  {"resample.run", "Resample"},
                  {"report.open", "Report"}};
-  else if (editor.workspace == Workspace::Rig && editor.selection.bone)
+  else if (context.workspace() == Workspace::Rig && context.selection->bone)
     operators = {{"rig.move", "Move"},   {"rig.rotate", "Rotate"}, {"rig.extrude", "Extrude"}, {"rig.delete", "Delete"},
                  {"view.orbit", "Turn"}, {"view.xray", "X-ray"},   {"select.all", "All bones"}};
-  else if (editor.workspace == Workspace::Pose && editor.selection.bone)
+  else if (context.workspace() == Workspace::Pose && context.selection->bone)
     operators = {{"pose.rotate", "Rotate"}, {"pose.move", "Move"},  {"pose.clear_rotation", "Clear"},
                  {"view.orbit", "Turn"},    {"view.xray", "X-ray"}, {"select.all", "All bones"}};
   else
@@ -139,21 +150,23 @@ std::vector<KeyHint> hints(const Editor& editor) {
                  {"view.frame_all", "Frame all"}};
   std::vector<KeyHint> all;
   for (const auto& [id, words] : operators)
-    if (const auto chord = editor.keymap.chord_of(id, contexts(editor)); chord && find_operator(editor, id))
+    if (const auto chord = context.keymap->chord_of(id, contexts(context));
+        chord && find_operator(context.operators, id))
       all.push_back({key_caps(*chord), words});
   return all;
 }
 
-void draw_hints(Editor& editor, const Rect& bar, float right) {
-  const Look& look = editor.look;
+void draw_hints(Context& context, const Rect& bar, float right) {
+  const Look& look = context.ui->look;
   float x = bar.low.x + look.px(10);
   std::size_t shown = 0;
-  for (const KeyHint& hint : hints(editor)) {
-    if (shown++ == (editor.layout.few_hints && !editor.modal ? kFewHints : kMostHints)) break;
+  for (const KeyHint& hint : hints(context)) {
+    if (shown++ == (context.screen->layout.few_hints && !context.interaction->modal ? kFewHints : kMostHints)) break;
     const float words = text_size(look.fonts.small, hint.words).x;
-    if (x + width_of_key_caps(editor, hint.caps) + look.px(7) + words > right - look.px(16)) break;
-    x = put_key_caps(editor, x, bar.centre().y, hint.caps) + look.px(7);
-    put_text(editor, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {x + words + 1, bar.high.y}}, hint.words);
+    if (x + width_of_key_caps(context.ui, hint.caps) + look.px(7) + words > right - look.px(16)) break;
+    x = put_key_caps(context.ui, x, bar.centre().y, hint.caps) + look.px(7);
+    put_text(context.ui, look.fonts.small, look.theme.text2, Rect{{x, bar.low.y}, {x + words + 1, bar.high.y}},
+             hint.words);
     x += words + look.px(12);
   }
 }
@@ -165,14 +178,14 @@ struct SavedState {
   std::string words, description;
 };
 
-SavedState saved_state(const Editor& editor) {
-  const Theme& theme = editor.look.theme;
-  const ProjectLife& life = editor.life;
+SavedState saved_state(const Context& context) {
+  const Theme& theme = context.ui->look.theme;
+  const ProjectLife& life = context.life;
   if (!life.trouble.empty()) return {icon::kWarning, theme.warn, "No recovery", life.trouble};
-  if (editor.history.unsaved())
+  if (context.history->unsaved())
     return {icon::kDot, theme.select, "Not saved",
             life.session ? "Every edit is stored on disk and can be recovered after a crash." : ""};
-  if (editor.project_path.empty())
+  if (context.project->path.empty())
     return {"", theme.text2, "No project", "The open volume or rig has no project file yet."};
   std::string words = "Saved";
   if (life.saved_at > 0) {
@@ -181,37 +194,37 @@ SavedState saved_state(const Editor& editor) {
     std::strftime(time, sizeof time, " %H:%M", &local);
     words += time;
   }
-  return {icon::kTick, theme.ok, words, editor.project_path.string()};
+  return {icon::kTick, theme.ok, words, context.project->path.string()};
 }
 
 // Draws a slot of the status bar that tells whether the project is saved. The slot ends at the x coordinate `right`.
 // Returns the x coordinate at which the next slot to the left must end.
-float draw_saved(Editor& editor, const Rect& bar, float right) {
-  if (!editor.document().volume) return right;
-  const Look& look = editor.look;
-  const SavedState state = saved_state(editor);
+float draw_saved(Context& context, const Rect& bar, float right) {
+  if (!context.document().volume) return right;
+  const Look& look = context.ui->look;
+  const SavedState state = saved_state(context);
   // The slot has the width of the widest text, so that its width never changes.
   const Rect slot{{right - text_size(look.fonts.small, "Saved 00:00").x - look.px(22), bar.low.y}, {right, bar.high.y}};
   if (*state.icon)
     put_icon(look.fonts.small, state.colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}}, state.icon);
-  put_text(editor, look.fonts.small, look.theme.text2,
+  put_text(context.ui, look.fonts.small, look.theme.text2,
            Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, state.words);
-  if (press_area(editor, "Saved", slot).hovered && !state.description.empty())
-    tooltip(editor, slot, state.words, state.description);
+  if (press_area(context.ui, "Saved", slot).hovered && !state.description.empty())
+    tooltip(context.ui, slot, state.words, state.description);
   return slot.low.x - look.px(12);
 }
 
-float draw_hover(Editor& editor, const Rect& bar, float right) {
-  const Hover& hover = editor.views->hover;
-  if (!hover.view || !editor.document().volume) return right;
-  const Look& look = editor.look;
-  const std::optional<double> value = image_value_at_pointer(editor);
+float draw_hover(Context& context, const Rect& bar, float right) {
+  const Hover& hover = context.views->hover;
+  if (!hover.view || !context.document().volume) return right;
+  const Look& look = context.ui->look;
+  const std::optional<double> value = image_value_at_pointer(context.views);
   std::string words = value ? "No label" : "Outside";
   char place[64] = "";
   if (hover.inside || value)
     std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
   if (hover.inside) {
-    const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(hover.label) : nullptr;
+    const Tissue* tissue = context.document().tissues ? context.document().tissues->find(hover.label) : nullptr;
     words = tissue ? shown_name(*tissue) : "Unknown";
     // The name that is shown for a tissue without a name tells its label.
     if (!tissue || !tissue->name.empty()) words += " \u00b7 label " + std::to_string(hover.label);
@@ -221,67 +234,68 @@ float draw_hover(Editor& editor, const Rect& bar, float right) {
       words += " \u00b7 " + hover.weights[0].bone + weight;
     }
   }
-  if (value) words += " \u00b7 " + text_of_image_value(editor, *value);
-  const std::string measured = hover.inside ? measure_text_at(editor, hover.voxel) : "";
+  if (value) words += " \u00b7 " + text_of_image_value(context.views, *value);
+  const std::string measured = hover.inside ? measure_text_at(context, hover.voxel) : "";
   if (!measured.empty()) words += " \u00b7 " + measured;
-  if (const std::string there = hover.inside ? other_side_text_at(editor, hover.voxel) : ""; !there.empty())
+  if (const std::string there = hover.inside ? other_side_text_at(context, hover.voxel) : ""; !there.empty())
     words += " \u00b7 " + there;
   const float mono = *place ? look.px(170) : 0,
               width = std::min(text_size(look.fonts.small, words).x + 1,
                                look.px(hover.weights.empty() && measured.empty() && !value ? 220 : 320));
   const float left = right - mono - width;
   if (*place)
-    put_text(editor, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}},
+    put_text(context.ui, look.fonts.small_mono, look.theme.text2, Rect{{right - mono, bar.low.y}, {right, bar.high.y}},
              place, Align::Right);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, bar.low.y}, {left + width, bar.high.y}}, words);
+  put_text(context.ui, look.fonts.small, look.theme.text2, Rect{{left, bar.low.y}, {left + width, bar.high.y}}, words);
   return left;
 }
 
 // Draws how much the pose changes the volume of all tissue, in a slot of the status bar that ends at the x coordinate
 // `right`. Draws nothing while the sidebar is open, because the sidebar shows this figure too. Returns the x coordinate
 // at which the next slot to the left must end.
-float draw_volume_change(Editor& editor, const Rect& bar, float right) {
-  LivePose& live = *editor.live;
-  if (editor.workspace != Workspace::Pose || !editor.layout.sidebar.empty() || !live.posed() || !live.trouble().empty())
+float draw_volume_change(Context& context, const Rect& bar, float right) {
+  LivePose& live = *context.live;
+  if (context.workspace() != Workspace::Pose || !context.screen->layout.sidebar.empty() || !live.posed() ||
+      !live.trouble().empty())
     return right;
   live.metrics().want();
   const PoseMetrics* known = live.metrics().known();
   const PoseMetrics* metrics = known ? known : live.metrics().last();
   if (!metrics) return right;
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const auto change = metrics->total.change_percent();
   const Colour colour = known ? colour_of_change(look.theme, change) : look.theme.text3;
   const Rect slot{{right - text_size(look.fonts.small, "Volume +00.00 %").x - look.px(22), bar.low.y},
                   {right, bar.high.y}};
   put_icon(look.fonts.small, colour, Rect{slot.low, {slot.low.x + look.px(16), slot.high.y}},
            std::abs(change.value_or(0)) <= kSmallChange ? icon::kOk : icon::kWarning);
-  put_text(editor, look.fonts.small, colour,
+  put_text(context.ui, look.fonts.small, colour,
            Rect{{slot.low.x + look.px(20), slot.low.y}, {slot.high.x + 1, slot.high.y}}, "Volume " + percent(change));
-  if (press_area(editor, "Volume change", slot).hovered)
+  if (press_area(context.ui, "Volume change", slot).hovered)
     tooltip(
-        editor, slot, "Volume " + percent(change),
+        context.ui, slot, "Volume " + percent(change),
         "Volume change of all tissue from rest to this pose. Press N to open the sidebar, which lists each tissue.");
   return slot.low.x - look.px(12);
 }
 
 }  // namespace
 
-void draw_status_bar(Editor& editor) {
-  const Look& look = editor.look;
-  const Rect& bar = editor.layout.status;
-  begin_region(editor, Region::Status, "status", bar, look.theme.head);
+void draw_status_bar(Context& context) {
+  const Look& look = context.ui->look;
+  const Rect& bar = context.screen->layout.status;
+  begin_region(context.ui, Region::Status, "status", bar, look.theme.head);
   fill({bar.low, {bar.high.x, bar.low.y + look.line()}}, look.theme.void_);
-  float right = draw_saved(editor, bar, bar.high.x - look.px(10));
-  if (editor.start_screen) {
+  float right = draw_saved(context, bar, bar.high.x - look.px(10));
+  if (context.start_screen->shown) {
     const std::string words = "or drop a file on the window";
-    put_text(editor, look.fonts.small, look.theme.text2,
+    put_text(context.ui, look.fonts.small, look.theme.text2,
              Rect{{right - text_size(look.fonts.small, words).x - 1, bar.low.y}, {right, bar.high.y}}, words);
   }
-  right = draw_volume_change(editor, bar, right);
-  right = draw_job_slot(editor, bar, right);
-  right = draw_hover(editor, bar, right);
-  draw_hints(editor, bar, right);
-  end_region(editor);
+  right = draw_volume_change(context, bar, right);
+  right = draw_job_slot(context, bar, right);
+  right = draw_hover(context, bar, right);
+  draw_hints(context, bar, right);
+  end_region(context.ui);
 }
 
 }  // namespace limber::editor

@@ -7,7 +7,10 @@
 
 #include <imgui_internal.h>
 
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/outliner_state.h"
+#include "editor/context/screen.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -33,25 +36,25 @@ float scroll_of(const ImGuiWindow& sidebar) {
 ImGuiID id_of(const Widget& widget) { return ImHashStr(widget.name.c_str()); }
 
 // Returns the smallest widget of the sidebar under the pointer; null: none.
-const Widget* pointed_at(const Editor& editor) {
+const Widget* pointed_at(const Context& context) {
   const Widget* found = nullptr;
-  for (const Widget& widget : editor.widgets.widgets())
-    if (widget.region == Region::Sidebar && widget.rect.contains(editor.input.pointer) &&
+  for (const Widget& widget : context.ui->widgets.widgets())
+    if (widget.region == Region::Sidebar && widget.rect.contains(context.ui->input.pointer) &&
         (!found || widget.rect.height() <= found->rect.height()))
       found = &widget;
   return found;
 }
 
-const Widget* with_id(const Editor& editor, ImGuiID id) {
-  for (const Widget& widget : editor.widgets.widgets())
+const Widget* with_id(const Ui& ui, ImGuiID id) {
+  for (const Widget& widget : ui.widgets.widgets())
     if (widget.region == Region::Sidebar && id_of(widget) == id) return &widget;
   return nullptr;
 }
 
 // Returns the widget that must not move: the one under the pointer, or the field of a search.
-const Widget* steady_widget(const Editor& editor) {
-  if (editor.layout.sidebar.contains(editor.input.pointer)) return pointed_at(editor);
-  return editor.outliner.searching ? editor.widgets.find("sections/Outliner/search") : nullptr;
+const Widget* steady_widget(const Context& context) {
+  if (context.screen->layout.sidebar.contains(context.ui->input.pointer)) return pointed_at(context);
+  return context.outliner->searching ? context.ui->widgets.find("sections/Outliner/search") : nullptr;
 }
 
 // Scrolls the sidebar's sections. Returns by how many pixels they will be scrolled.
@@ -105,26 +108,26 @@ float sidebar_rest(float end) {
   return whole - end;
 }
 
-bool has_moved_under_pointer(Editor& editor) {
+bool has_moved_under_pointer(Context& context) {
   ImGuiWindow* window = sidebar();
   if (!window) return false;
   ImGuiStorage& noted = window->StateStorage;
-  const Rect& rect = editor.layout.sidebar;
+  const Rect& rect = context.screen->layout.sidebar;
   const float shift = noted.GetFloat(kShift), scroll = scroll_of(*window);
   // Reset the shift if the workspace or the sidebar's size has changed, or if the pointer has left the sidebar.
-  const int state =
-      static_cast<int>(editor.workspace) + 8 * static_cast<int>(rect.width()) + 65536 * static_cast<int>(rect.height());
-  const bool same = noted.GetInt(kState) == state, held = editor.input.down(MouseButton::Left);
-  const bool points = held || rect.contains(editor.input.pointer);
-  if (!same || (!points && (shift != 0 || !steady_widget(editor)))) {
+  const int state = static_cast<int>(context.workspace()) + 8 * static_cast<int>(rect.width()) +
+                    65536 * static_cast<int>(rect.height());
+  const bool same = noted.GetInt(kState) == state, held = context.ui->input.down(MouseButton::Left);
+  const bool points = held || rect.contains(context.ui->input.pointer);
+  if (!same || (!points && (shift != 0 || !steady_widget(context)))) {
     noted.SetInt(kWidget, 0);
     noted.SetInt(kState, state);
     noted.SetFloat(kShift, 0);
     return shift != 0;
   }
-  const bool scrolled = scroll != noted.GetFloat(kScroll) || editor.input.wheel != 0;
+  const bool scrolled = scroll != noted.GetFloat(kScroll) || context.ui->input.wheel != 0;
   const ImGuiID id = static_cast<ImGuiID>(noted.GetInt(kWidget));
-  const Widget* widget = id != 0 && !scrolled ? with_id(editor, id) : nullptr;
+  const Widget* widget = id != 0 && !scrolled ? with_id(context.ui, id) : nullptr;
   const ImGuiID section = static_cast<ImGuiID>(noted.GetInt(kSection));
   float way = widget ? std::round(way_of(*widget, noted, rect)) : 0;
   // If the stored widget is not drawn any more, use the distance that the heading of its section has moved.
@@ -136,13 +139,13 @@ bool has_moved_under_pointer(Editor& editor) {
     if (points) noted.SetFloat(kShift, shift - (way - scrolled_by));
     if (points || scrolled_by != 0) return true;
   }
-  const Widget* now = held && id != 0 ? with_id(editor, id) : steady_widget(editor);
+  const Widget* now = held && id != 0 ? with_id(context.ui, id) : steady_widget(context);
   note(noted, now, scroll);
   return false;
 }
 
-void note_pressed(const Editor& editor) {
-  if (ImGuiWindow* window = sidebar()) note(window->StateStorage, pointed_at(editor), scroll_of(*window));
+void note_pressed(const Context& context) {
+  if (ImGuiWindow* window = sidebar()) note(window->StateStorage, pointed_at(context), scroll_of(*window));
 }
 
 }  // namespace limber::editor

@@ -11,8 +11,12 @@
 #include <string_view>
 #include <vector>
 
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/preferences.h"
+#include "editor/context/screen.h"
 #include "editor/context/view_projection.h"
 #include "editor/selection/transform_gizmo.h"
 #include "editor/ui/icons.h"
@@ -38,11 +42,11 @@ struct Shape {
   float line_height = 0, height = 0;
 };
 
-Shape shape_of(const Editor& editor, const Toast& toast, float width) {
-  const Look& look = editor.look;
+Shape shape_of(const Context& context, const Toast& toast, float width) {
+  const Look& look = context.ui->look;
   Shape shape;
   shape.line = toast.times > 1 ? toast.line + " (" + std::to_string(toast.times) + " times)" : toast.line;
-  const Operator* op = toast.action.empty() ? nullptr : find_operator(editor, toast.action);
+  const Operator* op = toast.action.empty() ? nullptr : find_operator(context.operators, toast.action);
   shape.action = !toast.failure.empty() ? "Details" : op ? op->label : "";
   shape.action_width = shape.action.empty() ? 0 : text_size(look.fonts.regular, shape.action).x + look.px(24);
   shape.words = width - look.px(42 + 34) - shape.action_width;
@@ -54,10 +58,10 @@ Shape shape_of(const Editor& editor, const Toast& toast, float width) {
 }
 
 // Returns the toast's opacity while it fades in or out, [0, 1].
-float presence(Editor& editor, const Toast& toast) {
-  if (editor.preferences.reduce_motion) return 1;
-  const double age = editor.now - toast.since, left = life_of(toast.severity) - age;
-  if (age < kFadeIn || left < kFadeOut) editor.wake_at(editor.now);
+float presence(Context& context, const Toast& toast) {
+  if (context.preferences->reduce_motion) return 1;
+  const double age = context.ui->now - toast.since, left = life_of(toast.severity) - age;
+  if (age < kFadeIn || left < kFadeOut) context.ui->wake_at(context.ui->now);
   return static_cast<float>(std::clamp(std::min((age + 0.02) / kFadeIn, left / kFadeOut), 0.0, 1.0));
 }
 
@@ -69,9 +73,9 @@ void fade(ImDrawList& canvas, int first, float presence) {
 }
 
 // Draws a toast; returns true if the user closed it.
-bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Rect& rect, int index) {
-  const Look& look = editor.look;
-  begin_region(editor, Region::Toast, "toast " + std::to_string(index), rect, 0);
+bool draw_toast(Context& context, const Toast& toast, const Shape& shape, const Rect& rect, int index) {
+  const Look& look = context.ui->look;
+  begin_region(context.ui, Region::Toast, "toast " + std::to_string(index), rect, 0);
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   const int first = canvas.VtxBuffer.Size;
   const Sign sign = sign_of(look.theme, toast.severity);
@@ -86,64 +90,64 @@ bool draw_toast(Editor& editor, const Toast& toast, const Shape& shape, const Re
   const float detail =
       toast.detail.empty() ? 0 : height_of_wrapped(look.fonts.small, toast.detail, shape.words, kDetailLines);
   const float top = std::round(middle - (shape.line_height + detail) / 2);
-  put_wrapped(editor, look.fonts.regular, look.theme.text, {left, top}, shape.words, shape.line, kLines);
+  put_wrapped(context.ui, look.fonts.regular, look.theme.text, {left, top}, shape.words, shape.line, kLines);
   if (detail > 0)
-    put_wrapped(editor, look.fonts.small, look.theme.text2, {left, top + shape.line_height}, shape.words, toast.detail,
-                kDetailLines);
+    put_wrapped(context.ui, look.fonts.small, look.theme.text2, {left, top + shape.line_height}, shape.words,
+                toast.detail, kDetailLines);
   if (!shape.action.empty()) {
     const Rect link{{left + shape.words + look.px(8), middle - look.px(12)},
                     {left + shape.words + shape.action_width, middle + look.px(12)}};
-    const Operator* op = find_operator(editor, toast.action);
-    const Pressed pressed = press_area(editor, shape.action, link);
-    put_text(editor, look.fonts.regular, look.theme.accent_text, link, shape.action, Align::Centre);
+    const Operator* op = find_operator(context.operators, toast.action);
+    const Pressed pressed = press_area(context.ui, shape.action, link);
+    put_text(context.ui, look.fonts.regular, look.theme.accent_text, link, shape.action, Align::Centre);
     if (pressed.hovered)
-      op ? operator_tooltip(editor, *op, link)
-         : tooltip(editor, link, "Details", "Show the full message, which says what to do.");
-    if (pressed.clicked) op ? run(editor, *op) : editor.messages.show_again(toast.failure);
+      op ? operator_tooltip(context, *op, link)
+         : tooltip(context.ui, link, "Details", "Show the full message, which says what to do.");
+    if (pressed.clicked) op ? run(context, *op) : context.messages->show_again(toast.failure);
   }
   const Rect close{{rect.high.x - look.px(30), middle - look.px(12)}, {rect.high.x - look.px(6), middle + look.px(12)}};
-  register_widget(editor, "box", rect);
-  const bool closed = button(editor, "Close message", close, {icon::kClose, "", ButtonStyle::Flat});
-  fade(canvas, first, presence(editor, toast));
-  end_region(editor);
+  register_widget(context.ui, "box", rect);
+  const bool closed = button(context.ui, "Close message", close, {icon::kClose, "", ButtonStyle::Flat});
+  fade(canvas, first, presence(context, toast));
+  end_region(context.ui);
   return closed;
 }
 
 // Draws the number of older messages that are not shown as toasts. A click on the number opens the console.
-void draw_more(Editor& editor, std::size_t count, float bottom, float right) {
-  const Look& look = editor.look;
+void draw_more(Context& context, std::size_t count, float bottom, float right) {
+  const Look& look = context.ui->look;
   const std::string words = "+" + std::to_string(count) + " more";
   const float width = text_size(look.fonts.small, words).x + look.px(20);
   const Rect rect{{right - width, bottom - look.px(22)}, {right, bottom}};
-  begin_region(editor, Region::Toast, "toasts", rect, 0);
-  const Pressed pressed = press_area(editor, "more", rect);
+  begin_region(context.ui, Region::Toast, "toasts", rect, 0);
+  const Pressed pressed = press_area(context.ui, "more", rect);
   fill(rect, pressed.hovered ? look.theme.hover : look.theme.panel, look.px(5));
   outline(rect, look.theme.line2, look.px(5), look.line());
-  put_text(editor, look.fonts.small, look.theme.text2, rect, words, Align::Centre);
-  if (pressed.hovered) tooltip(editor, rect, "Older messages", "Open the console, which lists all messages.");
+  put_text(context.ui, look.fonts.small, look.theme.text2, rect, words, Align::Centre);
+  if (pressed.hovered) tooltip(context.ui, rect, "Older messages", "Open the console, which lists all messages.");
   if (pressed.clicked) {
-    editor.messages.toasts.clear();
-    if (!editor.arrangement().console) run(editor, "view.console");
+    context.messages->toasts.clear();
+    if (!context.screen->arrangement().console) run(context, "view.console");
   }
-  end_region(editor);
+  end_region(context.ui);
 }
 
 // Returns the area for toasts: the 3D view, or all views if no 3D view is shown.
-Rect place_of_toasts(const Editor& editor) {
-  const Layout& layout = editor.layout;
+Rect place_of_toasts(const Context& context) {
+  const Layout& layout = context.screen->layout;
   Rect place = layout.views;
   for (const ViewPlace& view : layout.view_places)
-    if (view.id == ViewId::Body && !view.side_a && view.rect.width() >= editor.look.px(kLeastPlace)) place = view.rect;
+    if (view.id == ViewId::Body && !view.side_a && view.rect.width() >= context.ui->look.px(kLeastPlace))
+      place = view.rect;
   if (layout.sidebar_over_views && !layout.sidebar.empty()) place.high.x = std::min(place.high.x, layout.sidebar.low.x);
   return place;
 }
 
 // Returns true if the pointer is over a toast, at the position where the toast was drawn in the last frame.
-bool points_at_toasts(const Editor& editor) {
-  const auto& widgets = editor.widgets.widgets();
+bool points_at_toasts(const Ui& ui) {
+  const auto& widgets = ui.widgets.widgets();
   return std::any_of(widgets.begin(), widgets.end(), [&](const Widget& widget) {
-    return widget.region == Region::Toast && widget.name.starts_with("toast") &&
-           widget.rect.contains(editor.input.pointer);
+    return widget.region == Region::Toast && widget.name.starts_with("toast") && widget.rect.contains(ui.input.pointer);
   });
 }
 
@@ -153,11 +157,11 @@ struct Kept {
   std::vector<Rect> rects;
   std::size_t needed = 0;
 };
-Kept kept_rects(const Editor& editor) {
+Kept kept_rects(const Context& context) {
   Kept kept;
-  const float gap = editor.look.px(kGap);
+  const float gap = context.ui->look.px(kGap);
   const auto add = [&](const auto& is_kept) {
-    for (const Widget& widget : editor.widgets.widgets())
+    for (const Widget& widget : context.ui->widgets.widgets())
       if (is_kept(std::string_view(widget.name))) kept.rects.push_back(widget.rect.grown(gap));
   };
   add([](std::string_view name) { return name == "tour/box" || name.ends_with("last operation/box"); });
@@ -165,9 +169,10 @@ Kept kept_rects(const Editor& editor) {
   add([](std::string_view name) {
     return name.ends_with("/legend") || name.ends_with("/scale bar") || name.starts_with("3D view/axis ");
   });
-  for (const ViewPlace& place : editor.layout.view_places)
+  for (const ViewPlace& place : context.screen->layout.view_places)
     if (place.id == ViewId::Body && !place.side_a)
-      if (const auto gizmo = gizmo_rect(editor, ViewProjection(editor, place))) kept.rects.push_back(gizmo->grown(gap));
+      if (const auto gizmo = gizmo_rect(context, ViewProjection(context, place)))
+        kept.rects.push_back(gizmo->grown(gap));
   return kept;
 }
 
@@ -197,8 +202,8 @@ std::optional<Rect> free_rect(const Rect& area, const glm::vec2& size, std::span
 
 // Returns where the lowest toast is drawn: where it was, as long as it covers nothing there, so that it does not jump
 // about while the gizmo moves.
-Rect place_of_lowest(const Editor& editor, const Rect& area, const glm::vec2& size, const Kept& kept, bool held) {
-  if (const Widget* before = editor.widgets.find("toast 0/box")) {
+Rect place_of_lowest(const Ui& ui, const Rect& area, const glm::vec2& size, const Kept& kept, bool held) {
+  if (const Widget* before = ui.widgets.find("toast 0/box")) {
     const Rect rect{before->rect.high - size, before->rect.high};
     const bool is_column =
         rect.high.x == area.high.x || rect.low.x == area.low.x || std::abs(rect.centre().x - area.centre().x) < 1;
@@ -210,48 +215,48 @@ Rect place_of_lowest(const Editor& editor, const Rect& area, const glm::vec2& si
 
 }  // namespace
 
-void draw_toasts(Editor& editor) {
-  auto& toasts = editor.messages.toasts;
-  const Look& look = editor.look;
-  const bool held = points_at_toasts(editor);
+void draw_toasts(Context& context) {
+  auto& toasts = context.messages->toasts;
+  const Look& look = context.ui->look;
+  const bool held = points_at_toasts(context.ui);
   for (Toast& toast : toasts) {
     // While the pointer is over a toast, new messages wait. A message that is repeated does not wait, because its toast
     // is visible already.
-    if (toast.since < 0 && (!held || toast.times > 1)) toast.since = editor.now;
-    if (held && toast.since >= 0) toast.since = std::max(toast.since, editor.now - kFadeIn);
+    if (toast.since < 0 && (!held || toast.times > 1)) toast.since = context.ui->now;
+    if (held && toast.since >= 0) toast.since = std::max(toast.since, context.ui->now - kFadeIn);
   }
   std::erase_if(toasts, [&](const Toast& toast) {
-    return toast.since >= 0 && editor.now - toast.since >= life_of(toast.severity);
+    return toast.since >= 0 && context.ui->now - toast.since >= life_of(toast.severity);
   });
   std::vector<std::size_t> seen;  // indices of the visible toasts, newest first
   for (std::size_t at = toasts.size(); at-- > 0;)
     if (toasts[at].since >= 0) seen.push_back(at);
 
-  const Rect views = place_of_toasts(editor), area = views.grown(-look.px(12));
+  const Rect views = place_of_toasts(context), area = views.grown(-look.px(12));
   const float width = std::min(look.px(kWidth), area.width());
-  const Kept kept = kept_rects(editor);
+  const Kept kept = kept_rects(context);
   float bottom = area.high.y, right = area.high.x;
   std::size_t closed = toasts.size();
-  const std::size_t most = std::min(seen.size(), editor.layout.place_of(ViewId::Body) ? kMost : 1);
+  const std::size_t most = std::min(seen.size(), context.screen->layout.place_of(ViewId::Body) ? kMost : 1);
   std::size_t shown = 0;
   for (; shown < most && (shown == 0 || bottom > views.centre().y); ++shown) {
     const std::size_t at = seen[shown];
     const Toast toast = toasts[at];  // a copy, because a button of this toast may add toasts to the list
-    const Shape shape = shape_of(editor, toast, width);
+    const Shape shape = shape_of(context, toast, width);
     Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
-    if (shown == 0) rect = place_of_lowest(editor, area, rect.size(), kept, held);
+    if (shown == 0) rect = place_of_lowest(context.ui, area, rect.size(), kept, held);
     else if (!is_free(rect, kept.rects)) break;
     const std::size_t count = toasts.size();
-    const bool closes = draw_toast(editor, toast, shape, rect, static_cast<int>(shown));
+    const bool closes = draw_toast(context, toast, shape, rect, static_cast<int>(shown));
     // Stop drawing, because the toast's button has changed the list.
     if (toasts.size() != count || toasts[at].line != toast.line) return;
     if (closes) closed = at;
-    if (life_of(toast.severity) < 1e9) editor.wake_at(toast.since + life_of(toast.severity) - kFadeOut);
+    if (life_of(toast.severity) < 1e9) context.ui->wake_at(toast.since + life_of(toast.severity) - kFadeOut);
     bottom = rect.low.y - look.px(kGap);
     right = rect.high.x;
   }
   if (closed < toasts.size()) toasts.erase(toasts.begin() + static_cast<std::ptrdiff_t>(closed));
-  else if (seen.size() > shown) draw_more(editor, seen.size() - shown, bottom, right);
+  else if (seen.size() > shown) draw_more(context, seen.size() - shown, bottom, right);
 }
 
 }  // namespace limber::editor

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws the tool header, which is the bar below the top bar. It has buttons for the display of the body, the options of
 // the workspace, clipping, and the layout of the views.
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 #include "editor/labels/label_brush.h"
 #include "editor/resample/resample_job.h"
 #include "editor/screen/menus.h"
@@ -22,10 +26,10 @@ class Header {
   //   drawn         false: draws nothing, and only finds which groups of buttons fit into the header
   //   short_labels  true: buttons show icons in place of labels
   //   labelled      the number of groups from the left that have labels; the others show icons
-  Header(Editor& editor, bool drawn, bool short_labels, int labelled)
-      : editor_(editor),
-        bar_(editor.layout.tool_header),
-        x_(editor.look.px(8)),
+  Header(Context& context, bool drawn, bool short_labels, int labelled)
+      : context_(context),
+        bar_(context.screen->layout.tool_header),
+        x_(context.ui->look.px(8)),
         drawn_(drawn),
         short_labels_(short_labels),
         labelled_(labelled) {}
@@ -37,22 +41,22 @@ class Header {
   }
   void segments(const std::vector<std::string>& ids, bool words = false) {
     for (const std::string& id : ids) {
-      const Operator* op = find_operator(editor_, id);
+      const Operator* op = find_operator(context_.operators, id);
       ButtonLook face = face_of(*op, !words);
-      const float width = *face.icon ? (face.label.empty() ? px(36) : width_of_button(editor_, face))
-                                     : std::round(text_size(editor_.look.fonts.regular, face.label).x + px(20));
-      place(id, face.label, width, op->checked(editor_) ? ButtonStyle::Chosen : ButtonStyle::Plain);
+      const float width = *face.icon ? (face.label.empty() ? px(36) : width_of_button(context_.ui, face))
+                                     : std::round(text_size(context_.ui->look.fonts.regular, face.label).x + px(20));
+      place(id, face.label, width, op->checked(context_) ? ButtonStyle::Chosen : ButtonStyle::Plain);
       x_ += px(1);
     }
     x_ += px(9);
   }
 
   void toggle(const char* id, const char* label = "") {
-    const Operator* op = find_operator(editor_, id);
+    const Operator* op = find_operator(context_.operators, id);
     ButtonLook face = face_of(*op, false);
     if (*label) face.label = label;
-    const float width = face.label.empty() ? px(30) : width_of_button(editor_, face);
-    place(id, face.label, width, op->checked && op->checked(editor_) ? ButtonStyle::Soft : ButtonStyle::Plain);
+    const float width = face.label.empty() ? px(30) : width_of_button(context_.ui, face);
+    place(id, face.label, width, op->checked && op->checked(context_) ? ButtonStyle::Soft : ButtonStyle::Plain);
     x_ += px(6);
   }
 
@@ -60,39 +64,40 @@ class Header {
   // wide as the longest label.
   void choice(const char* name, std::initializer_list<const char*> ids) {
     // The first operator is shown if none of the list is active.
-    const Operator* chosen = find_operator(editor_, *ids.begin());
+    const Operator* chosen = find_operator(context_.operators, *ids.begin());
     float width = 0;
     for (const char* id : ids) {
-      const Operator* op = find_operator(editor_, id);
-      if (op->checked(editor_)) chosen = op;
-      width = std::max(width, width_of_button(editor_, {op->icon, op->label}));
+      const Operator* op = find_operator(context_.operators, id);
+      if (op->checked(context_)) chosen = op;
+      width = std::max(width, width_of_button(context_.ui, {op->icon, op->label}));
     }
     const float height = px(26), y = std::round(bar_.centre().y - height / 2), x = x_;
     x_ += width + px(6);
     if (!drawn_) return;
-    if (button(editor_, name, {{x, y}, {x + width, y + height}}, {chosen->icon, chosen->label})) ImGui::OpenPopup(name);
+    if (button(context_.ui, name, {{x, y}, {x + width, y + height}}, {chosen->icon, chosen->label}))
+      ImGui::OpenPopup(name);
     if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
-    editor_.place.region = Region::Popup;
-    push_path(editor_, name);
-    for (const char* id : ids) operator_menu_item(editor_, id);
-    pop_path(editor_);
-    editor_.place.region = Region::ToolHeader;
+    context_.ui->place.region = Region::Popup;
+    push_path(context_.ui, name);
+    for (const char* id : ids) operator_menu_item(context_, id);
+    pop_path(context_.ui);
+    context_.ui->place.region = Region::ToolHeader;
     ImGui::EndPopup();
   }
 
   // Draws a button labelled `word` that opens the menu pointer_menu(name).
   void menu(const char* name, const char* word) {
-    const float width = width_of_button(editor_, {"", word}), height = px(26),
+    const float width = width_of_button(context_.ui, {"", word}), height = px(26),
                 y = std::round(bar_.centre().y - height / 2), x = x_;
     x_ += width + px(8);
     if (!drawn_) return;
-    if (button(editor_, name, {{x, y}, {x + width, y + height}}, {"", word})) ImGui::OpenPopup(name);
+    if (button(context_.ui, name, {{x, y}, {x + width, y + height}}, {"", word})) ImGui::OpenPopup(name);
     if (!ImGui::BeginPopup(name, ImGuiWindowFlags_NoMove)) return;
-    editor_.place.region = Region::Popup;
-    push_path(editor_, name);
-    draw_menu(editor_, pointer_menu(name, ViewId::Body));
-    pop_path(editor_);
-    editor_.place.region = Region::ToolHeader;
+    context_.ui->place.region = Region::Popup;
+    push_path(context_.ui, name);
+    draw_menu(context_, pointer_menu(name, ViewId::Body));
+    pop_path(context_.ui);
+    context_.ui->place.region = Region::ToolHeader;
     ImGui::EndPopup();
   }
 
@@ -103,38 +108,39 @@ class Header {
     const float height = px(24), y = std::round(bar_.centre().y - height / 2);
     bool committed = false;
     if (drawn_)
-      number_field(editor_, name, {{x_, y}, {x_ + px(width), y + height}}, value, low, high, format, unit, true,
+      number_field(context_.ui, name, {{x_, y}, {x_ + px(width), y + height}}, value, low, high, format, unit, true,
                    committed);
     x_ += px(width + 10);
   }
 
   // Draws an operator that is the main action of the workspace, as a primary (coloured) button.
   void action(const char* id) {
-    const Operator* op = find_operator(editor_, id);
+    const Operator* op = find_operator(context_.operators, id);
     const ButtonLook face{op->icon, op->label};
-    place(id, face.label, width_of_button(editor_, face),
-          disabled_reason(editor_, *op).empty() ? ButtonStyle::Primary : ButtonStyle::Plain);
+    place(id, face.label, width_of_button(context_.ui, face),
+          disabled_reason(context_, *op).empty() ? ButtonStyle::Primary : ButtonStyle::Plain);
     x_ += px(6);
   }
 
   void plain(const char* id) {
-    const Operator* op = find_operator(editor_, id);
-    place(id, op->label, width_of_button(editor_, {op->icon, op->label}), ButtonStyle::Plain);
+    const Operator* op = find_operator(context_.operators, id);
+    place(id, op->label, width_of_button(context_.ui, {op->icon, op->label}), ButtonStyle::Plain);
     x_ += px(6);
   }
 
   void label(const std::string& text) {
-    const float width = text_size(editor_.look.fonts.regular, text).x;
+    const float width = text_size(context_.ui->look.fonts.regular, text).x;
     if (drawn_)
-      put_text(editor_, editor_.look.fonts.regular, editor_.look.theme.text2,
+      put_text(context_.ui, context_.ui->look.fonts.regular, context_.ui->look.theme.text2,
                Rect{{x_, bar_.low.y}, {x_ + width + 1, bar_.high.y}}, text);
     x_ += width + px(8);
   }
 
   void line() {
     if (drawn_)
-      fill({{x_, bar_.low.y + px(9)}, {x_ + editor_.look.line(), bar_.high.y - px(9)}}, editor_.look.theme.line2);
-    x_ += editor_.look.line() + px(10);
+      fill({{x_, bar_.low.y + px(9)}, {x_ + context_.ui->look.line(), bar_.high.y - px(9)}},
+           context_.ui->look.theme.line2);
+    x_ += context_.ui->look.line() + px(10);
   }
 
   // Draws the buttons for the layout of the views at the right end, where they are always visible.
@@ -147,17 +153,17 @@ class Header {
   void more() {
     if (dropped_.empty()) return;
     const float height = px(26), y = std::round(bar_.centre().y - height / 2);
-    if (button(editor_, "More", {{x_, y}, {x_ + px(30), y + height}}, {icon::kMore})) ImGui::OpenPopup("more");
+    if (button(context_.ui, "More", {{x_, y}, {x_ + px(30), y + height}}, {icon::kMore})) ImGui::OpenPopup("more");
     // The menu is below the header, so that the buttons beside it stay free.
     ImGui::SetNextWindowPos({x_ + px(30), bar_.high.y + px(2)}, ImGuiCond_Always, {1, 0});
     if (!ImGui::BeginPopup("more", ImGuiWindowFlags_NoMove)) return;
-    editor_.place.region = Region::Popup;
-    push_path(editor_, "more");
+    context_.ui->place.region = Region::Popup;
+    push_path(context_.ui, "more");
     for (const std::string& id : dropped_)
       if (id == kSeparator) ImGui::Separator();
-      else operator_menu_item(editor_, id);
-    pop_path(editor_);
-    editor_.place.region = Region::ToolHeader;
+      else operator_menu_item(context_, id);
+    pop_path(context_.ui);
+    context_.ui->place.region = Region::ToolHeader;
     ImGui::EndPopup();
   }
   bool dropped_any() const { return !dropped_.empty(); }
@@ -186,7 +192,7 @@ class Header {
  private:
   static constexpr char kSeparator[] = "-";
 
-  float px(float size) const { return editor_.look.px(size); }
+  float px(float size) const { return context_.ui->look.px(size); }
   bool is_short(int group) const { return short_labels_ || group > labelled_; }
   ButtonLook face_of(const Operator& op, bool segment) const {
     const bool layout = segment && *op.icon;
@@ -195,11 +201,11 @@ class Header {
   }
   void place(const std::string& id, const std::string& label, float width, ButtonStyle style) {
     const float height = px(26), y = std::round(bar_.centre().y - height / 2);
-    if (drawn_) operator_button(editor_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
+    if (drawn_) operator_button(context_, id, {{x_, y}, {x_ + width, y + height}}, label, style);
     x_ += width;
   }
 
-  Editor& editor_;
+  Context& context_;
   Rect bar_;
   float x_, right_ = 1e9f;
   bool drawn_, short_labels_;
@@ -209,37 +215,37 @@ class Header {
 };
 
 // Draws the settings of the label brush.
-void put_label_brush(Editor& editor, Header& header) {
+void put_label_brush(Context& context, Header& header) {
   header.menu("Edit labels", "Labels");
   if (header.fits(140, {"skin.radius"}))
-    header.number("Radius", editor.skin->painting->radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm",
+    header.number("Radius", context.skin->painting->radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm",
                   80);
   const auto kOver = {"labels.over_all", "labels.over_air", "labels.over_tissue", "labels.over_underneath"};
   if (header.fits(150, kOver)) header.choice("Paint over", kOver);
   const auto kErased = {"labels.erase_to_surroundings", "labels.erase_to_air"};
   if (header.fits(190, kErased)) header.choice("Erase to", kErased);
   if (header.fits(90, {"labels.flat"})) header.toggle("labels.flat");
-  if (editor.views->image && header.fits(160, {"labels.in_range"})) header.toggle("labels.in_range");
+  if (context.views->image && header.fits(160, {"labels.in_range"})) header.toggle("labels.in_range");
   header.line();
 }
 
 // Draws the buttons for the display of the body and for the options of the workspace.
-void put_options(Editor& editor, Header& header) {
+void put_options(Context& context, Header& header) {
   header.layouts();
   header.to_left();
-  const bool labels = editor.workspace == Workspace::Skin && editor.skin->painting->labels->on;
-  const bool paints = editor.workspace == Workspace::Skin && editor.document().weights && !labels;
+  const bool labels = context.workspace() == Workspace::Skin && context.skin->painting->labels->on;
+  const bool paints = context.workspace() == Workspace::Skin && context.document().weights && !labels;
   if (!paints) {
-    if (editor.views->image) header.segments({"view.solid", "view.xray_display", "view.tissue", "view.image_display"});
+    if (context.views->image) header.segments({"view.solid", "view.xray_display", "view.tissue", "view.image_display"});
     else header.segments({"view.solid", "view.xray_display", "view.tissue"});
     header.line();
   }
-  if (editor.workspace == Workspace::Rig) {
+  if (context.workspace() == Workspace::Rig) {
     header.action("rig.auto_fit");
     if (header.fits(110, {"rig.templates"})) header.plain("rig.templates");
     header.line();
   }
-  if (editor.workspace == Workspace::Rig && editor.document().armature) {
+  if (context.workspace() == Workspace::Rig && context.document().armature) {
     if (header.fits(140, {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"}))
       header.choice("Snap", {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"});
     if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");
@@ -247,14 +253,14 @@ void put_options(Editor& editor, Header& header) {
       header.choice("Axes", {"space.global", "space.local", "space.parent", "space.view"});
     header.line();
   }
-  if (editor.workspace == Workspace::Skin && editor.document().armature && !paints && !labels) {
+  if (context.workspace() == Workspace::Skin && context.document().armature && !paints && !labels) {
     header.action("skin.heat");
     if (header.fits(150, {"skin.compute"})) header.plain("skin.compute");
     header.line();
   }
-  if (labels) put_label_brush(editor, header);
+  if (labels) put_label_brush(context, header);
   if (paints) {
-    Painting& painting = *editor.skin->painting;
+    Painting& painting = *context.skin->painting;
     header.menu("Edit weights", "Weights");
     if (header.fits(140, {"skin.radius"}))
       header.number("Radius", painting.radius, Painting::kLeastRadius, Painting::kMostRadius, "%.1f", "mm", 80);
@@ -279,7 +285,7 @@ void put_options(Editor& editor, Header& header) {
     if (header.fits(200, kBodies)) header.segments(kBodies);
     header.line();
   }
-  if (editor.workspace == Workspace::Resample) {
+  if (context.workspace() == Workspace::Resample) {
     const auto kCompared = {"compare.side_by_side", "compare.wipe", "compare.difference"};
     if (header.fits(3 * header.toggle_width(112), kCompared)) header.segments(kCompared, true);
     const auto kColours = {"fem.show_tissues", "fem.show_volume_ratio", "fem.show_energy", "fem.show_gap"};
@@ -291,7 +297,7 @@ void put_options(Editor& editor, Header& header) {
       if (header.fits(header.toggle_width(100), {id})) header.toggle(id);
     header.line();
   }
-  if (editor.workspace == Workspace::Pose) {
+  if (context.workspace() == Workspace::Pose) {
     if (const std::vector<std::string> blends = method_operators(Methods::Blends); header.fits(230, blends)) {
       header.label("Preview");
       header.segments(blends);
@@ -306,9 +312,9 @@ void put_options(Editor& editor, Header& header) {
 }
 
 // Draws all buttons but the one of the menu.
-void put_buttons(Editor& editor, Header& header) {
-  put_options(editor, header);
-  if (editor.layout.several()) {
+void put_buttons(Context& context, Header& header) {
+  put_options(context, header);
+  if (context.screen->layout.several()) {
     if (header.fits(210, {"slice.show_labels", "slice.show_outlines"})) {
       header.label("Slices");
       header.segments({"slice.show_labels", "slice.show_outlines"});
@@ -320,15 +326,15 @@ void put_buttons(Editor& editor, Header& header) {
 }
 
 // Returns how many groups have labels: as many as there are, or from the left as many as leave room for all groups.
-int labelled_groups(Editor& editor) {
-  Header all(editor, false, false, 1000);
-  put_buttons(editor, all);
+int labelled_groups(Context& context) {
+  Header all(context, false, false, 1000);
+  put_buttons(context, all);
   if (!all.dropped_any()) return 1000;
   int fits = 0, drops = all.groups();
   while (drops - fits > 1) {
     const int middle = (fits + drops) / 2;
-    Header measured(editor, false, false, middle);
-    put_buttons(editor, measured);
+    Header measured(context, false, false, middle);
+    put_buttons(context, measured);
     (measured.dropped_any() ? drops : fits) = middle;
   }
   return fits;
@@ -336,18 +342,18 @@ int labelled_groups(Editor& editor) {
 
 }  // namespace
 
-void draw_tool_header(Editor& editor) {
-  const Look& look = editor.look;
-  const Rect& rect = editor.layout.tool_header;
-  begin_region(editor, Region::ToolHeader, "header", rect, look.theme.head);
+void draw_tool_header(Context& context) {
+  const Look& look = context.ui->look;
+  const Rect& rect = context.screen->layout.tool_header;
+  begin_region(context.ui, Region::ToolHeader, "header", rect, look.theme.head);
   fill({rect.low, {rect.high.x, rect.low.y + look.line()}}, look.theme.void_);
   fill({{rect.low.x, rect.high.y - look.line()}, rect.high}, look.theme.void_);
   // Groups that do not fit even without labels go into the menu of the "..." button.
-  const bool short_labels = editor.layout.short_labels;
-  Header header(editor, true, short_labels, short_labels ? 0 : labelled_groups(editor));
-  put_buttons(editor, header);
+  const bool short_labels = context.screen->layout.short_labels;
+  Header header(context, true, short_labels, short_labels ? 0 : labelled_groups(context));
+  put_buttons(context, header);
   header.more();
-  end_region(editor);
+  end_region(context.ui);
 }
 
 }  // namespace limber::editor

@@ -3,29 +3,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/screen.h"
 #include "editor/skin/painting.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
 
-void draw_tool_strip(Editor& editor) {
-  const Rect& rect = editor.layout.tool_strip;
+void draw_tool_strip(Context& context) {
+  const Rect& rect = context.screen->layout.tool_strip;
   if (rect.empty()) return;
-  const Look& look = editor.look;
-  begin_region(editor, Region::ToolStrip, "strip", rect, look.theme.panel);
+  const Look& look = context.ui->look;
+  begin_region(context.ui, Region::ToolStrip, "strip", rect, look.theme.panel);
   fill({{rect.high.x - look.line(), rect.low.y}, rect.high}, look.theme.void_);
   float y = rect.low.y + look.px(4);
   std::vector<std::string> tools = {"tool.select",   "tool.cross_hair", "-",
                                     "view.clip_box", "view.clip_plane", "measure.menu"};
-  if (editor.workspace == Workspace::Pose)
+  if (context.workspace() == Workspace::Pose)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",     "tool.reach",
              "-",           "pose.breakdown",  "-", "view.clip_box", "view.clip_plane", "measure.menu"};
-  if (editor.workspace == Workspace::Skin)
+  if (context.workspace() == Workspace::Skin)
     tools = with_brushes({"*", "-", "skin.gradient", "skin.region_box", "skin.seam_brush", "labels.brush",
                           "skin.pick_bone", "-", "view.clip_box", "view.clip_plane", "measure.menu"});
-  if (editor.workspace == Workspace::Rig)
+  if (context.workspace() == Workspace::Rig)
     tools = {"tool.select", "tool.cross_hair", "-", "tool.move",     "tool.rotate",     "tool.scale",  "-",
              "rig.add",     "tool.extrude",    "-", "view.clip_box", "view.clip_plane", "measure.menu"};
   // Compute the height of a button. In a low window the buttons are lower, so that all of them fit.
@@ -40,21 +43,21 @@ void draw_tool_strip(Editor& editor) {
       y += look.px(11);
       continue;
     }
-    const Operator* op = find_operator(editor, id);
+    const Operator* op = find_operator(context.operators, id);
     const Rect place{{rect.low.x + look.px(4), y}, {rect.low.x + look.px(40), y + height}};
-    const Pressed pressed = press_area(editor, id, place, disabled_reason(editor, *op).empty());
-    const bool on = op->checked && op->checked(editor);
+    const Pressed pressed = press_area(context.ui, id, place, disabled_reason(context, *op).empty());
+    const bool on = op->checked && op->checked(context);
     if (on) fill(place, look.theme.accent, look.px(5));
     else if (pressed.hovered) fill(place, look.theme.hover, look.px(5));
-    const Colour colour = on                                     ? look.theme.on_accent
-                          : disabled_reason(editor, *op).empty() ? look.theme.text
-                                                                 : look.theme.text3;
+    const Colour colour = on                                      ? look.theme.on_accent
+                          : disabled_reason(context, *op).empty() ? look.theme.text
+                                                                  : look.theme.text3;
     put_icon(look.fonts.icons, colour, place, op->icon);
-    if (pressed.hovered) operator_tooltip(editor, *op, place);
-    if (pressed.clicked) run(editor, *op);
+    if (pressed.hovered) operator_tooltip(context, *op, place);
+    if (pressed.clicked) run(context, *op);
     y = place.high.y + look.px(1);
   }
-  end_region(editor);
+  end_region(context.ui);
 }
 
 }  // namespace limber::editor

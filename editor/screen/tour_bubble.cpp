@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws the bubble of the guided tour: a box with text beside the widget that the text explains, with an arrow to the
 // widget.
+#include "core/project/document.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/screen.h"
+#include "editor/context/start_screen_state.h"
 #include "editor/files/tour.h"
+#include "editor/input/keymap.h"
+#include "editor/ui/messages.h"
 
 #include "editor/context/panels.h"
 #include "editor/context/pointer_context.h"
@@ -21,9 +28,9 @@ struct Place {
   glm::vec2 tip, base;  // ends of the arrow: its tip at the widget, its base at the bubble
 };
 
-Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) {
-  const Rect window = editor.layout.window.grown(-editor.look.px(8));
-  const float gap = editor.look.px(kArrow + 4);
+Place place_of(const Context& context, const Rect& target, const glm::vec2& size) {
+  const Rect window = context.screen->layout.window.grown(-context.ui->look.px(8));
+  const float gap = context.ui->look.px(kArrow + 4);
   const auto within = [&](glm::vec2 corner) {
     return Rect{glm::round(glm::clamp(corner, window.low, window.high - size)),
                 glm::round(glm::clamp(corner, window.low, window.high - size)) + size};
@@ -31,50 +38,51 @@ Place place_of(const Editor& editor, const Rect& target, const glm::vec2& size) 
   const glm::vec2 middle = target.centre();
   if (target.height() > 2 * size.y && target.width() > size.x) {
     // In a small view the bubble stays in the corner, so that the body and the middle of the view are free.
-    const float above = target.height() > 4 * size.y ? editor.look.px(60) : editor.look.px(12);
-    const Rect rect = within({target.low.x + editor.look.px(12), target.high.y - size.y - above});
+    const float above = target.height() > 4 * size.y ? context.ui->look.px(60) : context.ui->look.px(12);
+    const Rect rect = within({target.low.x + context.ui->look.px(12), target.high.y - size.y - above});
     return {rect, rect.low + glm::vec2(size.x * 0.8f, -gap), rect.low + glm::vec2(size.x * 0.8f, 0)};
   }
-  const Layout& layout = editor.layout;
+  const Layout& layout = context.screen->layout;
   const bool in_header = layout.top_bar.contains(middle) || layout.tool_header.contains(middle);
   if (layout.sidebar.contains(middle)) {
-    const Rect rect = within({layout.sidebar.low.x - gap - size.x, middle.y - editor.look.px(40)});
+    const Rect rect = within({layout.sidebar.low.x - gap - size.x, middle.y - context.ui->look.px(40)});
     return {rect,
-            {std::min(target.low.x - editor.look.px(2), rect.high.x + editor.look.px(40)), middle.y},
+            {std::min(target.low.x - context.ui->look.px(2), rect.high.x + context.ui->look.px(40)), middle.y},
             {rect.high.x, std::clamp(middle.y, rect.low.y + gap, rect.high.y - gap)}};
   }
-  if (in_header || (target.high.y + gap + size.y < window.high.y && target.height() < editor.look.px(60) &&
-                    target.high.x < window.high.x - editor.look.px(300))) {
-    const Rect rect = within({middle.x - editor.look.px(60), target.high.y + gap});
+  if (in_header || (target.high.y + gap + size.y < window.high.y && target.height() < context.ui->look.px(60) &&
+                    target.high.x < window.high.x - context.ui->look.px(300))) {
+    const Rect rect = within({middle.x - context.ui->look.px(60), target.high.y + gap});
     return {rect,
-            {middle.x, target.high.y + editor.look.px(2)},
+            {middle.x, target.high.y + context.ui->look.px(2)},
             {std::clamp(middle.x, rect.low.x + gap, rect.high.x - gap), rect.low.y}};
   }
   const bool right = target.high.x + gap + size.x < window.high.x;
-  const Rect rect = within({right ? target.high.x + gap : target.low.x - gap - size.x, middle.y - editor.look.px(40)});
+  const Rect rect =
+      within({right ? target.high.x + gap : target.low.x - gap - size.x, middle.y - context.ui->look.px(40)});
   const float y = std::clamp(middle.y, rect.low.y + gap, rect.high.y - gap);
   return {rect,
-          {right ? target.high.x + editor.look.px(2) : target.low.x - editor.look.px(2), middle.y},
+          {right ? target.high.x + context.ui->look.px(2) : target.low.x - context.ui->look.px(2), middle.y},
           {right ? rect.low.x : rect.high.x, y}};
 }
 
 }  // namespace
 
-void draw_tour(Editor& editor) {
-  if (!editor.tour.shown || editor.dialog || !editor.messages.errors.empty() || editor.start_screen ||
-      !editor.document().volume)
+void draw_tour(Context& context) {
+  if (!context.tour->shown || context.dialogs->shown || !context.messages->errors.empty() ||
+      context.start_screen->shown || !context.document().volume)
     return;
-  const Look& look = editor.look;
-  const TourStep& step = tour_steps()[editor.tour.step];
+  const Look& look = context.ui->look;
+  const TourStep& step = tour_steps()[context.tour->step];
   ImFont* font = look.fonts.regular;
   const float wrap = look.px(kWidth - 2 * kPadding), padding = look.px(kPadding);
   const float words = height_of_wrapped(font, step.text, wrap);
   const glm::vec2 size{look.px(kWidth), look.px(14 + 24 + 8 + 26 + 14) + words};
-  const Widget* target = editor.widgets.find(step.widget);
-  const Place place = place_of(editor, target ? target->rect : editor.layout.views, size);
+  const Widget* target = context.ui->widgets.find(step.widget);
+  const Place place = place_of(context, target ? target->rect : context.screen->layout.views, size);
 
-  begin_region(editor, Region::Toast, "tour", place.rect, 0);
-  register_widget(editor, "box", place.rect);
+  begin_region(context.ui, Region::Toast, "tour", place.rect, 0);
+  register_widget(context.ui, "box", place.rect);
   ImDrawList& canvas = *ImGui::GetForegroundDrawList();
   fill(place.rect, look.theme.panel, look.px(6));
   outline(place.rect, look.theme.accent, look.px(6), 2 * look.line());
@@ -86,24 +94,24 @@ void draw_tour(Editor& editor) {
   }
   const float left = place.rect.low.x + padding, right = place.rect.high.x - padding;
   float y = place.rect.low.y + look.px(12);
-  put_text(editor, look.fonts.semibold, look.theme.text, Rect{{left, y}, {right, y + look.px(20)}}, step.title);
-  if (const auto chord = editor.keymap.chord_of(step.operator_id)) {
+  put_text(context.ui, look.fonts.semibold, look.theme.text, Rect{{left, y}, {right, y + look.px(20)}}, step.title);
+  if (const auto chord = context.keymap->chord_of(step.operator_id)) {
     const auto caps = key_caps(*chord);
-    put_key_caps(editor, right - width_of_key_caps(editor, caps), y + look.px(10), caps);
+    put_key_caps(context.ui, right - width_of_key_caps(context.ui, caps), y + look.px(10), caps);
   }
   y += look.px(26);
-  put_wrapped(editor, font, look.theme.text2, {left, y}, wrap, step.text);
+  put_wrapped(context.ui, font, look.theme.text2, {left, y}, wrap, step.text);
 
   const float low = place.rect.high.y - look.px(12 + 26), high = low + look.px(26);
-  put_text(editor, look.fonts.small, look.theme.text2, Rect{{left, low}, {left + look.px(80), high}},
-           std::to_string(editor.tour.step + 1) + " of " + std::to_string(tour_steps().size()));
+  put_text(context.ui, look.fonts.small, look.theme.text2, Rect{{left, low}, {left + look.px(80), high}},
+           std::to_string(context.tour->step + 1) + " of " + std::to_string(tour_steps().size()));
   const float skip = look.px(80), end = look.px(76);
-  if (button(editor, "Skip step", {{right - skip, low}, {right, high}}, {"", "Skip step"}))
-    go_to_step(editor, editor.tour.step + 1);
-  if (button(editor, "End tour", {{right - skip - look.px(8) - end, low}, {right - skip - look.px(8), high}},
+  if (button(context.ui, "Skip step", {{right - skip, low}, {right, high}}, {"", "Skip step"}))
+    go_to_step(context, context.tour->step + 1);
+  if (button(context.ui, "End tour", {{right - skip - look.px(8) - end, low}, {right - skip - look.px(8), high}},
              {"", "End tour", ButtonStyle::Flat}))
-    end_tour(editor);
-  end_region(editor);
+    end_tour(context);
+  end_region(context.ui);
 }
 
 }  // namespace limber::editor

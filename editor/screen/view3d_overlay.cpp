@@ -5,8 +5,15 @@
 #include <cstdint>
 
 #include "core/deform/blend_rule.h"
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/modal_tool.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 #include "editor/dialogs/redo_last_operator.h"
 #include "editor/motion/constraint_overlay.h"
 #include "editor/motion/motion_path_overlay.h"
@@ -41,12 +48,13 @@ constexpr AxisEnd kEnds[] = {{"L", "view.left", {1, 0, 0}, 0, true}, {"R", "view
                              {"P", "view.back", {0, 1, 0}, 1, true}, {"A", "view.front", {0, -1, 0}, 1, false},
                              {"S", "view.top", {0, 0, 1}, 2, true},  {"I", "view.bottom", {0, 0, -1}, 2, false}};
 
-void draw_axis_ball(Editor& editor, const Rect& rect) {
-  if (!editor.views->axes || rect.width() < editor.look.px(220) || rect.height() < editor.look.px(140)) return;
-  const Look& look = editor.look;
+void draw_axis_ball(Context& context, const Rect& rect) {
+  if (!context.views->axes || rect.width() < context.ui->look.px(220) || rect.height() < context.ui->look.px(140))
+    return;
+  const Look& look = context.ui->look;
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
   const glm::vec2 centre{rect.high.x - look.px(52), rect.low.y + look.px(56)};
-  const glm::dquat view_from_world = glm::conjugate(editor.views->body.camera.world_from_view);
+  const glm::dquat view_from_world = glm::conjugate(context.views->body.camera.world_from_view);
 
   std::array<std::pair<double, int>, 6> order;
   std::array<glm::vec2, 6> places;
@@ -65,9 +73,11 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
       return other.first > nearest->first && glm::distance(places[other.second], places[i]) < 2 * radius;
     };
     if (std::any_of(order.begin(), order.end(), hides)) continue;
-    presses[i] = press_area(editor, std::string("axis ") + kEnds[i].letter, {places[i] - radius, places[i] + radius});
+    presses[i] =
+        press_area(context.ui, std::string("axis ") + kEnds[i].letter, {places[i] - radius, places[i] + radius});
     if (presses[i].hovered)
-      operator_tooltip(editor, *find_operator(editor, kEnds[i].operator_id), {places[i] - radius, places[i] + radius});
+      operator_tooltip(context, *find_operator(context.operators, kEnds[i].operator_id),
+                       {places[i] - radius, places[i] + radius});
   }
   for (const auto& [depth, i] : order) {
     const AxisEnd& end = kEnds[i];
@@ -82,66 +92,67 @@ void draw_axis_ball(Editor& editor, const Rect& rect) {
       canvas.AddCircle(im(places[i]), radius - look.px(1), colour, 32, 1.2f * look.scale);
     }
     if (end.positive || pressed.hovered)
-      put_text(editor, look.fonts.small, 0xFF141210, place, end.letter, Align::Centre);
-    if (pressed.clicked) run(editor, end.operator_id);
+      put_text(context.ui, look.fonts.small, 0xFF141210, place, end.letter, Align::Centre);
+    if (pressed.clicked) run(context, end.operator_id);
   }
 }
 
-std::string state_of(const Editor& editor) {
-  if (editor.modal && !editor.modal->title().empty()) return editor.modal->title();
-  if (!editor.document().volume) return "";
-  if (editor.views->scene.weights && editor.views->scene.weights->weights)
-    return std::string(name_of(editor.skin->display)) + " \u00b7 " +
-           grouped(editor.views->scene.weights->weights->size()) + " tissue voxels" +
-           (painted_region(editor) ? " \u00b7 region of " + grouped(painted_region_voxels(editor)) : "");
-  if (const ProposedJoint* proposed = proposed_joint(editor))
+std::string state_of(const Context& context) {
+  if (context.interaction->modal && !context.interaction->modal->title().empty())
+    return context.interaction->modal->title();
+  if (!context.document().volume) return "";
+  if (context.views->scene.weights && context.views->scene.weights->weights)
+    return std::string(name_of(context.skin->display)) + " \u00b7 " +
+           grouped(context.views->scene.weights->weights->size()) + " tissue voxels" +
+           (painted_region(context) ? " \u00b7 region of " + grouped(painted_region_voxels(context)) : "");
+  if (const ProposedJoint* proposed = proposed_joint(context))
     return std::string("X-ray \u00b7 bone overlap about the axis ") +
            (proposed->shows_after ? "after the fit" : "before the fit");
-  if (editor.bone_table->coloured && editor.workspace == Workspace::Rig && editor.views->scene.weights)
+  if (context.bone_table->coloured && context.workspace() == Workspace::Rig && context.views->scene.weights)
     return "X-ray \u00b7 bone tissue coloured by its rig bone";
-  std::string state = editor.views->display == render::Display::Solid   ? "Solid"
-                      : editor.views->display == render::Display::XRay  ? "X-ray"
-                      : editor.views->display == render::Display::Image ? "Image"
-                                                                        : "Tissue";
-  if (const auto posed = shown_result(editor); posed && !comparing(editor)) state += " \u00b7 " + posed->name;
-  if (const Solve* solve = watched_solve(editor)) state += " \u00b7 solving, " + progress_text(*solve);
-  else if (const PreviewMap* map = editor.views->scene.pose.get())
-    state += std::string(" \u00b7 ") + rule_of(preview_blend(editor)).label + " preview, " + std::to_string(map->step) +
-             "-voxel lattice";
-  if (editor.document().armature)
-    state += " \u00b7 " + std::to_string(editor.document().armature->bones.size()) + " bones";
-  if (!editor.views->renderer.note().empty()) state += " \u00b7 " + editor.views->renderer.note();
+  std::string state = context.views->display == render::Display::Solid   ? "Solid"
+                      : context.views->display == render::Display::XRay  ? "X-ray"
+                      : context.views->display == render::Display::Image ? "Image"
+                                                                         : "Tissue";
+  if (const auto posed = shown_result(context); posed && !comparing(context)) state += " \u00b7 " + posed->name;
+  if (const Solve* solve = watched_solve(context)) state += " \u00b7 solving, " + progress_text(*solve);
+  else if (const PreviewMap* map = context.views->scene.pose.get())
+    state += std::string(" \u00b7 ") + rule_of(preview_blend(context.resampling)).label + " preview, " +
+             std::to_string(map->step) + "-voxel lattice";
+  if (context.document().armature)
+    state += " \u00b7 " + std::to_string(context.document().armature->bones.size()) + " bones";
+  if (!context.views->renderer.note().empty()) state += " \u00b7 " + context.views->renderer.note();
   return state;
 }
 
 }  // namespace
 
-void draw_body_overlay(Editor& editor, const ViewPlace& place) {
+void draw_body_overlay(Context& context, const ViewPlace& place) {
   const Rect& rect = place.rect;
-  const BodyView& body = editor.views->body;
+  const BodyView& body = context.views->body;
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
-  if (editor.layout.by_sides) draw_side_chip(editor, place);
+  if (context.screen->layout.by_sides) draw_side_chip(context, place);
   // In a side-by-side comparison, the view of side A has only its title, clip handles and scale bar.
   if (place.side_a) {
-    draw_clip_handles(editor, rect);
-    return draw_scale_bar(editor, rect, visible_height / rect.height());
+    draw_clip_handles(context, rect);
+    return draw_scale_bar(context, rect, visible_height / rect.height());
   }
   const std::string projection = body.camera.projection == render::Projection::Perspective ? "Perspective" : "Parallel";
   std::string title = body.name.empty() ? projection : body.name + " \u00b7 " + projection;
-  if (!editor.name.empty()) title += " \u00b7 " + editor.name;
-  if (!editor.layout.by_sides) draw_view_title(editor, rect, title, state_of(editor));
-  draw_onion_skin(editor);
-  draw_motion_paths(editor);
-  draw_constraint_lines(editor);
-  draw_axis_ball(editor, rect);
-  if (!editor.document().volume) return draw_empty_view(editor, rect);
-  draw_clip_handles(editor, rect);
-  draw_proposed_joint(editor, rect);
+  if (!context.project->name.empty()) title += " \u00b7 " + context.project->name;
+  if (!context.screen->layout.by_sides) draw_view_title(context.ui, rect, title, state_of(context));
+  draw_onion_skin(context);
+  draw_motion_paths(context);
+  draw_constraint_lines(context);
+  draw_axis_ball(context, rect);
+  if (!context.document().volume) return draw_empty_view(context, rect);
+  draw_clip_handles(context, rect);
+  draw_proposed_joint(context, rect);
   Rect above = rect;  // the part of the view above the legends at its lower edge
-  if (draw_weight_legend(editor, rect) || draw_fem_legend(editor, rect)) above.high.y -= editor.look.px(60);
-  above.high.y -= editor.look.px(draw_marks_legend(editor, rect));
-  if (!proposed_joint(editor)) draw_last_operation(editor, above);
-  draw_scale_bar(editor, rect, visible_height / rect.height());
+  if (draw_weight_legend(context, rect) || draw_fem_legend(context, rect)) above.high.y -= context.ui->look.px(60);
+  above.high.y -= context.ui->look.px(draw_marks_legend(context, rect));
+  if (!proposed_joint(context)) draw_last_operation(context, above);
+  draw_scale_bar(context, rect, visible_height / rect.height());
 }
 
 }  // namespace limber::editor

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+struct Context;
 
 enum class StepState { Done, Next, Later, Working, Warning };
 
@@ -22,6 +22,6 @@ struct Step {
 };
 // Returns the five steps Prepare, Rig, Skin, Pose and Resample. At most one step has the state Next, which marks the
 // first step that is not done.
-std::vector<Step> steps(const Editor& editor);
+std::vector<Step> steps(const Context& context);
 
 }  // namespace limber::editor

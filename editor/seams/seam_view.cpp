@@ -5,10 +5,13 @@
 #include <cmath>
 
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/view_projection.h"
 #include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/ui/draw.h"
+#include "editor/ui/messages.h"
 #include "editor/volume/volume_edits.h"
 
 namespace limber::editor {
@@ -21,10 +24,10 @@ constexpr Colour kSeam = 0xFF4BFFD6, kUnder = 0x8C000000;
 constexpr float kSheet = 0.22f;                  // opacity of a seam in the 3D view, [0, 1]
 constexpr std::size_t kMostRectangles = 15'000;  // if seams have more rectangles, the 3D view draws only their rims
 
-const SeamSheet& drawn_sheet(Editor& editor, const std::shared_ptr<const Seams>& seams, std::int64_t strokes) {
-  auto& drawn = editor.seams->drawn;
+const SeamSheet& drawn_sheet(Context& context, const std::shared_ptr<const Seams>& seams, std::int64_t strokes) {
+  auto& drawn = context.seams->drawn;
   if (drawn.of != seams || drawn.strokes != strokes)
-    drawn = {seams, strokes, sheet_of(*seams, editor.document().volume->grid)};
+    drawn = {seams, strokes, sheet_of(*seams, context.document().volume->grid)};
   return drawn.sheet;
 }
 
@@ -64,43 +67,43 @@ std::optional<std::array<glm::dvec3, 2>> crossing(const std::array<glm::dvec3, 4
   return found == 2 ? std::optional(ends) : std::nullopt;
 }
 
-void draw_in_slice(const Editor& editor, const ViewProjection& seen, const SeamSheet& sheet) {
+void draw_in_slice(const Context& context, const ViewProjection& seen, const SeamSheet& sheet) {
   for (const auto& rectangle : sheet.rectangles)
-    if (const auto line = crossing(rectangle, editor.views->cross_hair, seen.towards_eye)) {
+    if (const auto line = crossing(rectangle, context.views->cross_hair, seen.towards_eye)) {
       const auto from = seen.pixel_of((*line)[0]), to = seen.pixel_of((*line)[1]);
-      if (from && to) draw_line(editor.look, *from, *to, 1.8f);
+      if (from && to) draw_line(context.ui->look, *from, *to, 1.8f);
     }
 }
 
 }  // namespace
 
-std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor) {
-  if (editor.seams->running) return editor.seams->running->seams;
-  const Document& document = editor.document();
+std::optional<std::shared_ptr<const Seams>> shown_seams(const Context& context) {
+  if (context.seams->running) return context.seams->running->seams;
+  const Document& document = context.document();
   if (!document.volume || !document.tissues) return nullptr;
   return body_seams().known(seam_source(document));
 }
 
-std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor) {
-  const std::shared_ptr<const TissueVoxels>& whole = tissue_voxels(*editor.views, editor.document());
-  const auto seams = shown_seams(editor);
+std::shared_ptr<const TissueVoxels> parted_tissue(Context& context) {
+  const std::shared_ptr<const TissueVoxels>& whole = tissue_voxels(*context.views, context.document());
+  const auto seams = shown_seams(context);
   if (!seams || !*seams || (*seams)->empty() || (*seams)->grid_size() != whole->grid_size()) return whole;
   auto parted = std::make_shared<TissueVoxels>(*whole);
   parted->set_seams(*seams);
   return parted;
 }
 
-void note_weights_source(Editor& editor) {
-  auto& from = editor.seams->weights_from;
-  const Document& document = editor.document();
+void note_weights_source(Context& context) {
+  auto& from = context.seams->weights_from;
+  const Document& document = context.document();
   const bool same_body = from && from->volume && document.volume && from->volume->grid == document.volume->grid &&
                          from->armature == document.armature;
   if (!same_body) from = seam_source(document);
 }
 
-std::string why_weights_are_old(const Editor& editor) {
-  const auto& from = editor.seams->weights_from;
-  const Document& document = editor.document();
+std::string why_weights_are_old(const Context& context) {
+  const auto& from = context.seams->weights_from;
+  const Document& document = context.document();
   if (!document.weights || !document.volume || !from || !from->volume) return "";
   if (from->volume != document.volume) {
     const bool same_body = from->volume->grid == document.volume->grid && from->armature == document.armature;
@@ -110,81 +113,82 @@ std::string why_weights_are_old(const Editor& editor) {
   return from->bone_map != document.bone_map ? "Weights are older than the bone map" : "";
 }
 
-void draw_seams(Editor& editor, const ViewPlace& view) {
-  const render::Scene& scene = scene_of(editor, view);
-  if (!editor.seams->shown || editor.workspace != Workspace::Skin || scene.pose || !scene.volume ||
-      scene.volume->grid.size != editor.document().volume->grid.size)
+void draw_seams(Context& context, const ViewPlace& view) {
+  const render::Scene& scene = scene_of(context, view);
+  if (!context.seams->shown || context.workspace() != Workspace::Skin || scene.pose || !scene.volume ||
+      scene.volume->grid.size != context.document().volume->grid.size)
     return;
-  const auto seams = shown_seams(editor);
+  const auto seams = shown_seams(context);
   if (!seams || !*seams || (*seams)->empty()) return;
-  const SeamSheet& sheet = drawn_sheet(editor, *seams, editor.seams->running ? editor.seams->running->faces : -1);
-  const ViewProjection seen(editor, view);
-  if (view.id == ViewId::Body) draw_in_body(editor.look, seen, sheet);
-  else draw_in_slice(editor, seen, sheet);
+  const SeamSheet& sheet = drawn_sheet(context, *seams, context.seams->running ? context.seams->running->faces : -1);
+  const ViewProjection seen(context, view);
+  if (view.id == ViewId::Body) draw_in_body(context.ui->look, seen, sheet);
+  else draw_in_slice(context, seen, sheet);
 }
 
-const std::vector<SeamPair>* counted_pairs(Editor& editor) {
-  SeamView& view = *editor.seams;
-  const auto shown = shown_seams(editor);
+const std::vector<SeamPair>* counted_pairs(Context& context) {
+  SeamView& view = *context.seams;
+  const auto shown = shown_seams(context);
   if (view.running || !shown || !*shown) return nullptr;
-  const SeamSource source = seam_source(editor.document());
+  const SeamSource source = seam_source(context.document());
   if (view.counted.seams == *shown && view.counted.source == source) return &view.counted.pairs;
-  if ((view.counting && editor.tasks.contains(*view.counting)) || !source.armature) return nullptr;
+  if ((view.counting && context.background->tasks.contains(*view.counting)) || !source.armature) return nullptr;
   view.counting = start_task(
-      editor, "",
+      context, "",
       [source, seams = *shown](Progress& progress) -> Finish {
         const TissueVoxels tissue(*source.volume);
         const BoneParts parts =
             split_bones(*source.volume, tissue, *source.tissues, *source.armature, progress, usable_bone_map(source));
         auto pairs = seam_pairs(*seams, *source.volume, tissue, *source.armature, parts, progress);
-        return [counted = SeamView::Counted{source, seams, std::move(pairs)}](Editor& e) {
-          e.seams->counted = counted;
-          e.touch();
+        return [counted = SeamView::Counted{source, seams, std::move(pairs)}](Context& c) {
+          c.seams->counted = counted;
+          c.ui->touch();
         };
       },
-      [source, seams = *shown](Editor& e, const std::string& error) {
+      [source, seams = *shown](Context& c, const std::string& error) {
         // Store an empty count for these seams. Without it, the failed task would start again in the next frame.
-        e.seams->counted = {source, seams, {}};
-        e.messages.show_error(error, "Counting seams");
+        c.seams->counted = {source, seams, {}};
+        c.messages->show_error(error, "Counting seams");
       });
   return nullptr;
 }
 
-std::string why_no_seams(const Editor& editor) {
-  const Document& document = editor.document();
+std::string why_no_seams(const Context& context) {
+  const Document& document = context.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
   if (!document.armature) return "Import a rig first: limbs are found by its bone names";
   if (!body_seams().has_limbs(document.armature)) return "No bone of the rig is named as an arm, leg or finger";
-  return editor.seams->searching && editor.tasks.contains(*editor.seams->searching) ? "The search for seams is running"
-                                                                                    : "";
+  return context.seams->searching && context.background->tasks.contains(*context.seams->searching)
+             ? "The search for seams is running"
+             : "";
 }
 
-void find_seams_again(Editor& editor) {
-  SeamSource source = seam_source(editor.document());
+void find_seams_again(Context& context) {
+  SeamSource source = seam_source(context.document());
   const bool was_edited = source.kept != nullptr;
   source.kept = nullptr;
-  editor.seams->searching = start_task(editor, "Find seams", [source, was_edited](Progress& progress) -> Finish {
+  context.seams->searching = start_task(context, "Find seams", [source, was_edited](Progress& progress) -> Finish {
     const auto found = body_seams().of(source, progress);
-    return [source, was_edited, faces = found ? found->size() : 0](Editor& e) {
-      if (was_edited && e.document().volume == source.volume && e.document().seams) {
-        note_weights_source(e);
-        Document next = e.document();
+    return [source, was_edited, faces = found ? found->size() : 0](Context& c) {
+      if (was_edited && c.document().volume == source.volume && c.document().seams) {
+        note_weights_source(c);
+        Document next = c.document();
         next.seams.reset();
-        e.history.commit("Find seams", std::move(next));
+        c.history->commit("Find seams", std::move(next));
       }
-      e.messages.ok("Find seams",
-                    faces > 0 ? grouped(faces) + " voxel faces between limbs that touch" : "No limbs touch");
-      e.touch();
+      c.messages->ok("Find seams",
+                     faces > 0 ? grouped(faces) + " voxel faces between limbs that touch" : "No limbs touch");
+      c.ui->touch();
     };
   });
-  editor.touch();
+  context.ui->touch();
 }
 
-void clear_seams(Editor& editor) {
-  note_weights_source(editor);
-  Document next = editor.document();
+void clear_seams(Context& context) {
+  note_weights_source(context);
+  Document next = context.document();
   next.seams = std::make_shared<const Seams>(next.volume->grid.size);
-  editor.history.commit("Remove seams", std::move(next));
+  context.history->commit("Remove seams", std::move(next));
 }
 
 }  // namespace limber::editor

@@ -14,10 +14,12 @@
 
 #include "core/seams/seam_edits.h"
 #include "core/seams/seam_pairs.h"
-#include "editor/context/editor.h"
+#include "editor/context/view_place.h"
 #include "editor/volume/body_seams.h"
 
 namespace limber::editor {
+
+struct Context;
 
 enum class SeamStroke { Cut, Join };
 
@@ -69,28 +71,29 @@ struct SeamView {
 
 // Stores the seams and the bone map from which the current weights were computed. Call it before the document's seams
 // or bone map change.
-void note_weights_source(Editor& editor);
+void note_weights_source(Context& context);
 // Returns why the weights are out of date, such as "Weights are older than the seams". Returns "" if the weights are up
 // to date, or if it is unknown from which seams they were computed.
-std::string why_weights_are_old(const Editor& editor);
+std::string why_weights_are_old(const Context& context);
 
 // Returns the seams that the views show: during a stroke of the seam brush the changed seams, otherwise the document's
 // edited seams, and without these the seams that were found automatically. Returns std::nullopt if there was no search
 // for seams yet, and a null pointer if there are no seams.
-std::optional<std::shared_ptr<const Seams>> shown_seams(const Editor& editor);
+std::optional<std::shared_ptr<const Seams>> shown_seams(const Context& context);
 // Returns the tissue voxels of the open volume for brushes and edits of weights. Two voxels with a seam between them do
 // not count as neighbours, so that brushes and edits do not cross seams.
-std::shared_ptr<const TissueVoxels> parted_tissue(Editor& editor);
+std::shared_ptr<const TissueVoxels> parted_tissue(Context& context);
 // Returns the number of seam faces for each pair of body parts that a seam separates. If they are not counted yet,
 // starts a background task that counts them, and returns null until the task has ended.
-const std::vector<SeamPair>* counted_pairs(Editor& editor);
+const std::vector<SeamPair>* counted_pairs(Context& context);
 
-std::string why_no_seams(const Editor& editor);  // returns why a search for seams is impossible now; "": it is possible
+std::string why_no_seams(
+    const Context& context);  // returns why a search for seams is impossible now; "": it is possible
 // Starts a background task that searches for seams again. When it ends, one edit removes seams that were changed by
 // hand, so that the found seams are used.
-void find_seams_again(Editor& editor);
-void clear_seams(Editor& editor);
+void find_seams_again(Context& context);
+void clear_seams(Context& context);
 
-void draw_seams(Editor& editor, const ViewPlace& view);
+void draw_seams(Context& context, const ViewPlace& view);
 
 }  // namespace limber::editor

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/selection.h"
+#include "editor/context/workspace.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/rig/rig_edits.h"
 #include "editor/ui/draw.h"
@@ -25,10 +28,10 @@ struct SeenBone {
   std::vector<glm::dvec2> points;
 };
 
-std::vector<SeenBone> bones_seen(const Editor& editor, const ViewProjection& view) {
-  const bool posed = editor.workspace == Workspace::Pose;
-  const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
-  const auto moved = posed_from_rest(*rig, posed ? seen_pose(editor) : rest_pose(*rig));
+std::vector<SeenBone> bones_seen(const Context& context, const ViewProjection& view) {
+  const bool posed = context.workspace() == Workspace::Pose;
+  const std::shared_ptr<const Armature> rig = posed ? context.document().armature : shown_rig(context);
+  const auto moved = posed_from_rest(*rig, posed ? seen_pose(context) : rest_pose(*rig));
   std::vector<SeenBone> seen;
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone) {
     SeenBone one{bone, {}};
@@ -45,23 +48,23 @@ std::vector<SeenBone> bones_seen(const Editor& editor, const ViewProjection& vie
 
 class AreaSelection : public Modal {
  public:
-  explicit AreaSelection(Editor& editor)
-      : view_(editor, place_of_tool(editor)),
-        before_(editor.selection),
-        pointer_(editor.input.pointer),
-        bones_(bones_seen(editor, view_)) {}
+  explicit AreaSelection(Context& context)
+      : view_(context, place_of_tool(context)),
+        before_(context.selection),
+        pointer_(context.ui->input.pointer),
+        bones_(bones_seen(context, view_)) {}
 
-  bool moved(Editor& editor, const glm::vec2&) override {
-    pointer_ = editor.input.pointer;
-    editor.touch();
+  bool moved(Context& context, const glm::vec2&) override {
+    pointer_ = context.ui->input.pointer;
+    context.ui->touch();
     return true;
   }
-  bool key(Editor& editor, const KeyChanged& event) override {
+  bool key(Context& context, const KeyChanged& event) override {
     if (!event.down) return true;
-    if (event.key == Key::Escape) cancel(editor);
+    if (event.key == Key::Escape) cancel(context);
     return event.key != Key::Escape && !(ends_by_key() && (event.key == Key::Return || event.key == Key::NumEnter));
   }
-  void cancel(Editor& editor) override { editor.selection = before_; }
+  void cancel(Context& context) override { *context.selection = before_; }
 
  protected:
   virtual bool ends_by_key() const { return false; }
@@ -70,18 +73,18 @@ class AreaSelection : public Modal {
   // active bone stays active as long as it is selected.
   //   inside  returns true if a pixel lies in the area
   template <class Inside>
-  void take(Editor& editor, const Inside& inside) {
-    Selection& selection = editor.selection;
+  void take(Context& context, const Inside& inside) {
+    Selection& selection = context.selection;
     for (const SeenBone& bone : bones_) {
       if (std::none_of(bone.points.begin(), bone.points.end(), inside)) continue;
-      if (editor.input.down(Key::Shift)) selection.bones.erase(bone.bone);
+      if (context.ui->input.down(Key::Shift)) selection.bones.erase(bone.bone);
       else selection.bones.insert(bone.bone);
     }
     if (!selection.bone || !selection.bones.contains(*selection.bone))
       selection.bone = selection.bones.empty() ? std::nullopt : std::optional(*selection.bones.begin());
     selection.tissues.clear();
     selection.tissue.reset();
-    editor.transform_settings->part = TransformSettings::Part::Whole;
+    context.transform_settings->part = TransformSettings::Part::Whole;
   }
 
   ViewProjection view_;
@@ -96,34 +99,34 @@ class BoxSelection final : public AreaSelection {
  public:
   using AreaSelection::AreaSelection;
 
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool button(Context& context, const ButtonChanged& event) override {
     if (event.button == MouseButton::Right && event.down) return false;
     if (event.button != MouseButton::Left) return true;
     if (event.down) {
-      from_ = editor.input.pointer;
+      from_ = context.ui->input.pointer;
       return true;
     }
     if (!from_) return true;
     const glm::dvec2 low = glm::min(*from_, pointer_), high = glm::max(*from_, pointer_);
-    take(editor, [&](const glm::dvec2& p) { return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y; });
+    take(context, [&](const glm::dvec2& p) { return p.x >= low.x && p.x <= high.x && p.y >= low.y && p.y <= high.y; });
     return false;
   }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
-    const Theme& theme = editor.look.theme;
+    const Theme& theme = context.ui->look.theme;
     if (!from_) {
       const Colour line = with_alpha(theme.view_text, 0.5f);
-      fill({{place.rect.low.x, pointer_.y}, {place.rect.high.x, pointer_.y + editor.look.line()}}, line);
-      fill({{pointer_.x, place.rect.low.y}, {pointer_.x + editor.look.line(), place.rect.high.y}}, line);
+      fill({{place.rect.low.x, pointer_.y}, {place.rect.high.x, pointer_.y + context.ui->look.line()}}, line);
+      fill({{pointer_.x, place.rect.low.y}, {pointer_.x + context.ui->look.line(), place.rect.high.y}}, line);
       return;
     }
     const Rect box{glm::min(*from_, pointer_), glm::max(*from_, pointer_)};
     fill(box, with_alpha(theme.view_text, 0.08f));
-    outline(box, theme.view_text, 0, editor.look.line());
+    outline(box, theme.view_text, 0, context.ui->look.line());
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"LMB"}, "Draw a box"}, {{"Shift"}, "Deselect"}, {{"Esc"}, "Cancel"}};
   }
   std::string title() const override { return "Select in a box"; }
@@ -136,42 +139,42 @@ class CircleSelection final : public AreaSelection {
  public:
   using AreaSelection::AreaSelection;
 
-  bool moved(Editor& editor, const glm::vec2& pixels) override {
-    AreaSelection::moved(editor, pixels);
-    if (painting_) paint(editor);
+  bool moved(Context& context, const glm::vec2& pixels) override {
+    AreaSelection::moved(context, pixels);
+    if (painting_) paint(context);
     return true;
   }
-  bool wheel(Editor& editor, float steps) override {
+  bool wheel(Context& context, float steps) override {
     radius_ = std::clamp(radius_ * std::pow(kGrowth, steps), kLeast, kMost);
-    editor.touch();
+    context.ui->touch();
     return true;
   }
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool button(Context& context, const ButtonChanged& event) override {
     if (event.button == MouseButton::Right && event.down) return false;
     if (event.button != MouseButton::Left) return true;
     painting_ = event.down;
-    if (painting_) paint(editor);
+    if (painting_) paint(context);
     return true;
   }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (place.id != view_.place.id) return;
-    const bool taking_out = editor.input.down(Key::Shift);
-    ImGui::GetWindowDrawList()->AddCircle(im(pointer_), radius_ * editor.look.scale,
-                                          taking_out ? kViewError : editor.look.theme.view_text, 64,
-                                          1.5f * editor.look.line());
+    const bool taking_out = context.ui->input.down(Key::Shift);
+    ImGui::GetWindowDrawList()->AddCircle(im(pointer_), radius_ * context.ui->look.scale,
+                                          taking_out ? kViewError : context.ui->look.theme.view_text, 64,
+                                          1.5f * context.ui->look.line());
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"LMB"}, "Paint"}, {{"Shift"}, "Deselect"}, {{"Wheel"}, "Size"}, {{"Enter"}, "Done"}, {{"Esc"}, "Cancel"}};
   }
   std::string title() const override { return "Select with a circle"; }
 
  private:
   bool ends_by_key() const override { return true; }
-  void paint(Editor& editor) {
-    const double reach = radius_ * editor.look.scale;
-    take(editor, [&](const glm::dvec2& p) { return glm::distance(p, glm::dvec2(pointer_)) <= reach; });
+  void paint(Context& context) {
+    const double reach = radius_ * context.ui->look.scale;
+    take(context, [&](const glm::dvec2& p) { return glm::distance(p, glm::dvec2(pointer_)) <= reach; });
   }
 
   float radius_ = kRadius;
@@ -180,8 +183,8 @@ class CircleSelection final : public AreaSelection {
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_box_selection(Editor& editor) { return std::make_unique<BoxSelection>(editor); }
+std::unique_ptr<Modal> begin_box_selection(Context& context) { return std::make_unique<BoxSelection>(context); }
 
-std::unique_ptr<Modal> begin_circle_selection(Editor& editor) { return std::make_unique<CircleSelection>(editor); }
+std::unique_ptr<Modal> begin_circle_selection(Context& context) { return std::make_unique<CircleSelection>(context); }
 
 }  // namespace limber::editor

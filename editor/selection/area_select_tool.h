@@ -11,7 +11,9 @@
 
 namespace limber::editor {
 
-std::unique_ptr<Modal> begin_box_selection(Editor& editor);
-std::unique_ptr<Modal> begin_circle_selection(Editor& editor);
+struct Context;
+
+std::unique_ptr<Modal> begin_box_selection(Context& context);
+std::unique_ptr<Modal> begin_circle_selection(Context& context);
 
 }  // namespace limber::editor

@@ -6,6 +6,11 @@
 #include <numbers>
 #include <tuple>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/view_projection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/selection/transform_gizmo.h"
 #include "editor/ui/widgets.h"
 #include "editor/viewport/gizmo_draw.h"
@@ -29,8 +34,8 @@ struct SeenBone {
   bool chosen, active;
 };
 
-std::vector<SeenBone> seen_bones(const Editor& editor, const ViewProjection& view) {
-  const render::Scene& scene = editor.views->scene;
+std::vector<SeenBone> seen_bones(const Context& context, const ViewProjection& view) {
+  const render::Scene& scene = context.views->scene;
   std::vector<SeenBone> seen;
   for (int b = 0; b < std::ssize(scene.armature->bones); ++b) {
     const Bone& bone = scene.armature->bones[b];
@@ -38,7 +43,7 @@ std::vector<SeenBone> seen_bones(const Editor& editor, const ViewProjection& vie
     const glm::dvec3 head = posed * bone.head, tail = posed * bone.tail;
     const auto from = view.pixel_of(head), to = view.pixel_of(tail);
     const bool chosen = scene.bones[b].selected;
-    if (!from || !to || (!chosen && glm::distance(*from, *to) < kShortest * editor.look.scale)) continue;
+    if (!from || !to || (!chosen && glm::distance(*from, *to) < kShortest * context.ui->look.scale)) continue;
     seen.push_back({b, glm::vec2(*from), glm::vec2(*to), glm::dot((head + tail) / 2.0, view.towards_eye), chosen,
                     scene.bones[b].active});
   }
@@ -58,34 +63,36 @@ struct Circle {
 
 class Names {
  public:
-  Names(Editor& editor, const ViewProjection& view) : editor_(editor), inside_(view.place.rect) {
-    const auto gizmo = gizmo_in(editor, view);
+  Names(Context& context, const ViewProjection& view) : context_(context), inside_(view.place.rect) {
+    const auto gizmo = gizmo_in(context, view);
     const auto centre = gizmo ? view.pixel_of(gizmo->centre) : std::nullopt;
     if (centre)
       gizmo_ = {glm::vec2(*centre),
-                px(editor.workspace == Workspace::Rig && editor.tool == Tool::Rotate ? kJointGizmo : kGizmo)};
+                px(context.workspace() == Workspace::Rig && context.interaction->tool == Tool::Rotate ? kJointGizmo
+                                                                                                      : kGizmo)};
     // Reserve the areas of the view's title, axis ball, scale bar and tool numbers, which bone names must not cover.
     taken_.push_back({inside_.low, inside_.low + glm::vec2(px(300), px(48))});
-    if (editor.views->axes)
+    if (context.views->axes)
       taken_.push_back({{inside_.high.x - px(100), inside_.low.y}, {inside_.high.x, inside_.low.y + px(104)}});
-    if (editor.views->scale_bar) taken_.push_back({inside_.high - glm::vec2(px(170), px(52)), inside_.high});
-    if (editor.modal && centre) taken_.push_back(place_of_read_out(editor.look, inside_, gizmo_->centre));
+    if (context.views->scale_bar) taken_.push_back({inside_.high - glm::vec2(px(170), px(52)), inside_.high});
+    if (context.interaction->modal && centre)
+      taken_.push_back(place_of_read_out(context.ui->look, inside_, gizmo_->centre));
   }
 
   void put(const SeenBone& bone, const std::string& name) {
-    const Look& look = editor_.look;
+    const Look& look = context_.ui->look;
     const glm::vec2 size{std::ceil(text_size(look.fonts.small, name).x) + px(2 * kPad), px(kHeight)};
     const auto place = place_for(bone, size);
     if (!place) return;
     taken_.push_back(*place);
-    register_widget(editor_, "bone name " + name, *place);
+    register_widget(context_.ui, "bone name " + name, *place);
     fill(*place, with_alpha(look.theme.view_plate, 0.7f), px(3));
-    put_text(editor_, look.fonts.small, bone.active ? look.theme.select_light : look.theme.view_text,
+    put_text(context_.ui, look.fonts.small, bone.active ? look.theme.select_light : look.theme.view_text,
              Rect{{place->low.x + px(kPad), place->low.y}, {place->high.x, place->high.y}}, name);
   }
 
  private:
-  float px(float size) const { return editor_.look.px(size); }
+  float px(float size) const { return context_.ui->look.px(size); }
 
   bool is_free(const Rect& rect) const {
     return inside_.contains(rect) && !(gizmo_ && gizmo_->meets(rect)) &&
@@ -118,30 +125,30 @@ class Names {
     return std::nullopt;
   }
 
-  Editor& editor_;
+  Context& context_;
   const Rect inside_;
   std::optional<Circle> gizmo_;
   std::vector<Rect> taken_;
 };
 
 // Draws the local axes of a bone as lines that start at the bone's tail, with the letters X, Y and Z at their ends.
-void draw_axes(Editor& editor, const ViewProjection& view, const SeenBone& seen) {
-  const render::Scene& scene = editor.views->scene;
+void draw_axes(Context& context, const ViewProjection& view, const SeenBone& seen) {
+  const render::Scene& scene = context.views->scene;
   const Bone& bone = scene.armature->bones[seen.bone];
   const RigidTransform posed =
       seen.bone < std::ssize(scene.posed_from_rest) ? scene.posed_from_rest[seen.bone] : RigidTransform{};
   const glm::dmat3 axes = glm::mat3_cast(posed.rotation) * rest_axes(bone);
   const glm::dvec3 tail = posed * bone.tail;
-  const Look& look = editor.look;
+  const Look& look = context.ui->look;
   const double length = std::min(kAxisShare * glm::distance(bone.head, bone.tail),
                                  kLongestAxis * look.scale * view.millimetres_per_pixel(tail));
-  const GizmoPainter painter(editor, view);
+  const GizmoPainter painter(context, view);
   for (int axis = 0; axis < 3; ++axis) {
     const glm::dvec3 end = tail + axes[axis] * length,
                      beyond = tail + axes[axis] * (length + 7 * look.scale * view.millimetres_per_pixel(tail));
     painter.line(tail, end, look.theme.axis[axis], 1.6f);
     if (const auto at = view.pixel_of(beyond))
-      put_text(editor, look.fonts.small, look.theme.axis[axis],
+      put_text(context.ui, look.fonts.small, look.theme.axis[axis],
                Rect{glm::vec2(*at) - look.px(7), glm::vec2(*at) + look.px(7)}, std::string(1, "XYZ"[axis]),
                Align::Centre);
   }
@@ -149,14 +156,14 @@ void draw_axes(Editor& editor, const ViewProjection& view, const SeenBone& seen)
 
 }  // namespace
 
-void draw_bone_labels(Editor& editor, const ViewProjection& view) {
-  const Views& views = *editor.views;
+void draw_bone_labels(Context& context, const ViewProjection& view) {
+  const Views& views = *context.views;
   if (view.place.id != ViewId::Body || !views.scene.armature || (!views.bone_names && !views.bone_axes)) return;
-  const std::vector<SeenBone> bones = seen_bones(editor, view);
+  const std::vector<SeenBone> bones = seen_bones(context, view);
   if (views.bone_axes)
-    for (const SeenBone& bone : bones) draw_axes(editor, view, bone);
+    for (const SeenBone& bone : bones) draw_axes(context, view, bone);
   if (!views.bone_names) return;
-  Names names(editor, view);
+  Names names(context, view);
   for (const SeenBone& bone : bones) names.put(bone, views.scene.armature->bones[bone.bone].name);
 }
 

@@ -4,10 +4,11 @@
 // bones and of bones near the eye are placed first.
 #pragma once
 
-#include "editor/context/view_projection.h"
-
 namespace limber::editor {
 
-void draw_bone_labels(Editor& editor, const ViewProjection& view);
+struct Context;
+struct ViewProjection;
+
+void draw_bone_labels(Context& context, const ViewProjection& view);
 
 }  // namespace limber::editor

@@ -3,72 +3,81 @@
 #include <cmath>
 
 #include "core/rig/mirror.h"
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
+#include "editor/context/pick_list.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/selection/area_select_tool.h"
 #include "editor/selection/transform_gizmo.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/tissue_edits.h"
 
 namespace limber::editor {
 
 namespace {
 
-void pick(Editor& editor) {
-  if (editor.tool == Tool::CrossHair) return run(editor, "view.place_cross_hair");
-  editor.transform_settings->part = TransformSettings::Part::Whole;
-  if (pick_bone_part(editor)) return;
-  if (const auto bone = bone_at_pointer(editor)) return choose_bone(editor, *bone);
-  const Hover& hover = editor.views->hover;
-  if (hover.inside) select_tissue(editor, hover.label, false);
-  else editor.selection = {};
+void pick(Context& context) {
+  if (context.interaction->tool == Tool::CrossHair) return run(context, "view.place_cross_hair");
+  context.transform_settings->part = TransformSettings::Part::Whole;
+  if (pick_bone_part(context)) return;
+  if (const auto bone = bone_at_pointer(context)) return choose_bone(context, *bone);
+  const Hover& hover = context.views->hover;
+  if (hover.inside) select_tissue(context, hover.label, false);
+  else *context.selection = {};
 }
 
-void extend(Editor& editor) {
-  editor.transform_settings->part = TransformSettings::Part::Whole;
-  if (const auto bone = bone_at_pointer(editor)) {
+void extend(Context& context) {
+  context.transform_settings->part = TransformSettings::Part::Whole;
+  if (const auto bone = bone_at_pointer(context)) {
     // If the bone under the pointer is the active bone, deselect it.
-    if (editor.selection.bone == bone) {
-      editor.selection.bones.erase(*bone);
-      editor.selection.bone =
-          editor.selection.bones.empty() ? std::nullopt : std::optional(*editor.selection.bones.begin());
+    if (context.selection->bone == bone) {
+      context.selection->bones.erase(*bone);
+      context.selection->bone =
+          context.selection->bones.empty() ? std::nullopt : std::optional(*context.selection->bones.begin());
     } else {
-      editor.selection.bone = bone;
-      editor.selection.bones.insert(*bone);
+      context.selection->bone = bone;
+      context.selection->bones.insert(*bone);
     }
     return;
   }
-  if (editor.views->hover.inside) select_tissue(editor, editor.views->hover.label, true);
+  if (context.views->hover.inside) select_tissue(context, context.views->hover.label, true);
 }
 
 // Returns the visible tissues under the pointer, each with its distance from the eye, mm. In the 3D view, these are all
 // tissues along the line of sight, nearest first. In a slice, it is one tissue, at distance 0.
-std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
-  const Hover& hover = editor.views->hover;
+std::vector<std::pair<double, Label>> tissues_below(const Context& context) {
+  const Hover& hover = context.views->hover;
   std::vector<std::pair<double, Label>> found;
-  const ViewPlace* under = hovered_view(editor);
+  const ViewPlace* under = hovered_view(context);
   if (!hover.inside || !under) return found;
-  const render::Scene& scene = scene_at_pointer(editor, *under);
+  const render::Scene& scene = scene_at_pointer(context, *under);
   const LabelVolume& volume = *scene.volume;
   const auto add = [&](double depth, Label label) {
     const bool known =
         std::any_of(found.begin(), found.end(), [&](const auto& other) { return other.second == label; });
-    if (label != 0 && look_of(editor.document(), label).visible && !known) found.push_back({depth, label});
+    if (label != 0 && look_of(context.document(), label).visible && !known) found.push_back({depth, label});
   };
   if (hover.view != ViewId::Body) {
     add(0, hover.label);
     return found;
   }
-  const render::Camera& camera = editor.views->body.camera;
+  const render::Camera& camera = context.views->body.camera;
   const auto depth_of = [&](const glm::dvec3& point) {
     return -(render::view_from_world(camera) * glm::dvec4(point, 1)).z;
   };
   add(depth_of(hover.point), hover.label);
   const render::Ray ray =
-      render::ray_through(camera, editor.input.pointer - under->rect.low, glm::ivec2(under->rect.size()));
+      render::ray_through(camera, context.ui->input.pointer - under->rect.low, glm::ivec2(under->rect.size()));
   const double step = std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z}) / 2;
   const double reach = glm::length(volume.grid.spacing * glm::dvec3(volume.grid.size));
   for (double t = 0; t < reach; t += step) {
@@ -80,80 +89,82 @@ std::vector<std::pair<double, Label>> tissues_below(const Editor& editor) {
 
 // Selects the bone or tissue under the pointer, as a click does. If several bones and tissues lie under the pointer,
 // opens a list of them, nearest first.
-void pick_list(Editor& editor) {
-  pick(editor);
+void pick_list(Context& context) {
+  pick(context);
   std::vector<std::pair<double, Pickable>> below;
-  for (const auto& [depth, label] : tissues_below(editor)) below.push_back({depth, {std::nullopt, label}});
-  for (const auto& [depth, bone] : bones_below(editor)) below.push_back({depth, {bone}});
+  for (const auto& [depth, label] : tissues_below(context)) below.push_back({depth, {std::nullopt, label}});
+  for (const auto& [depth, bone] : bones_below(context)) below.push_back({depth, {bone}});
   std::stable_sort(below.begin(), below.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  editor.pick_list.clear();
-  for (const auto& [depth, thing] : below) editor.pick_list.push_back(thing);
-  editor.open_pick_list = editor.pick_list.size() > 1;
+  context.pick_list->rows.clear();
+  for (const auto& [depth, thing] : below) context.pick_list->rows.push_back(thing);
+  context.pick_list->opens = context.pick_list->rows.size() > 1;
 }
 
-void add_bone(Editor& editor, int bone) {
-  editor.selection.bone = bone;
-  editor.selection.bones.insert(bone);
+void add_bone(Context& context, int bone) {
+  context.selection->bone = bone;
+  context.selection->bones.insert(bone);
 }
 
-void go_to_parent(Editor& editor, bool extend) {
-  const int parent = editor.document().armature->bones[*editor.selection.bone].parent;
-  if (parent >= 0) extend ? add_bone(editor, parent) : choose_bone(editor, parent);
+void go_to_parent(Context& context, bool extend) {
+  const int parent = context.document().armature->bones[*context.selection->bone].parent;
+  if (parent >= 0) extend ? add_bone(context, parent) : choose_bone(context, parent);
 }
 
-void go_to_child(Editor& editor, bool extend) {
-  const std::vector<Bone>& bones = editor.document().armature->bones;
+void go_to_child(Context& context, bool extend) {
+  const std::vector<Bone>& bones = context.document().armature->bones;
   for (int b = 0; b < std::ssize(bones); ++b)
-    if (bones[b].parent == *editor.selection.bone) return extend ? add_bone(editor, b) : choose_bone(editor, b);
+    if (bones[b].parent == *context.selection->bone) return extend ? add_bone(context, b) : choose_bone(context, b);
 }
 
 // Adds all descendants of the selected bones to the selection. One pass is enough, because an armature lists parents
 // before their children.
-void choose_chain(Editor& editor) {
-  const std::vector<Bone>& bones = editor.document().armature->bones;
+void choose_chain(Context& context) {
+  const std::vector<Bone>& bones = context.document().armature->bones;
   for (int b = 0; b < std::ssize(bones); ++b)
-    if (bones[b].parent >= 0 && editor.selection.bones.contains(bones[b].parent)) editor.selection.bones.insert(b);
+    if (bones[b].parent >= 0 && context.selection->bones.contains(bones[b].parent)) context.selection->bones.insert(b);
 }
 
-void choose_mirrored(Editor& editor) {
-  const std::vector<int> pairs = mirror_pairs(*editor.document().armature);
+void choose_mirrored(Context& context) {
+  const std::vector<int> pairs = mirror_pairs(*context.document().armature);
   std::set<int> bones;
-  for (int bone : editor.selection.bones) bones.insert(pairs[bone]);
-  editor.selection.bones = bones;
-  editor.selection.bone = pairs[*editor.selection.bone];
+  for (int bone : context.selection->bones) bones.insert(pairs[bone]);
+  context.selection->bones = bones;
+  context.selection->bone = pairs[*context.selection->bone];
 }
 
-void choose_all(Editor& editor) {
-  const Document& document = editor.document();
-  if (document.armature && (editor.workspace == Workspace::Pose ||
-                            (editor.workspace == Workspace::Rig && editor.selection.tissues.empty()))) {
-    for (int b = 0; b < std::ssize(document.armature->bones); ++b) editor.selection.bones.insert(b);
-    if (!editor.selection.bone) editor.selection.bone = 0;
+void choose_all(Context& context) {
+  const Document& document = context.document();
+  if (document.armature && (context.workspace() == Workspace::Pose ||
+                            (context.workspace() == Workspace::Rig && context.selection->tissues.empty()))) {
+    for (int b = 0; b < std::ssize(document.armature->bones); ++b) context.selection->bones.insert(b);
+    if (!context.selection->bone) context.selection->bone = 0;
     return;
   }
-  for (const Tissue& tissue : document.tissues->tissues) editor.selection.tissues.insert(tissue.label);
+  for (const Tissue& tissue : document.tissues->tissues) context.selection->tissues.insert(tissue.label);
 }
 
-std::string needs_bones(const Editor& editor) {
-  if (editor.workspace != Workspace::Rig && editor.workspace != Workspace::Pose)
+std::string needs_bones(const Context& context) {
+  if (context.workspace() != Workspace::Rig && context.workspace() != Workspace::Pose)
     return "Switch to the Rig or Pose workspace first";
-  return editor.document().armature ? "" : "Import a rig first";
+  return context.document().armature ? "" : "Import a rig first";
 }
 
-bool chooses_bones(const Editor& editor) { return needs_bones(editor).empty() && editor.selection.tissues.empty(); }
+bool chooses_bones(const Context& context) {
+  return needs_bones(context).empty() && context.selection->tissues.empty();
+}
 
-void invert(Editor& editor) {
-  Selection& selection = editor.selection;
-  if (chooses_bones(editor)) {
+void invert(Context& context) {
+  Selection& selection = context.selection;
+  if (chooses_bones(context)) {
     std::set<int> others;
-    for (int b = 0; b < std::ssize(editor.document().armature->bones); ++b)
+    for (int b = 0; b < std::ssize(context.document().armature->bones); ++b)
       if (!selection.bones.contains(b)) others.insert(b);
     selection.bone = others.empty() ? std::nullopt : std::optional(*others.begin());
     selection.bones = std::move(others);
     return;
   }
   std::set<Label> others;
-  for (const Tissue& tissue : editor.document().tissues->tissues)
+  for (const Tissue& tissue : context.document().tissues->tissues)
     if (!selection.tissues.contains(tissue.label)) others.insert(tissue.label);
   selection.tissue = others.empty() ? std::nullopt : std::optional(*others.begin());
   selection.tissues = std::move(others);
@@ -161,17 +172,17 @@ void invert(Editor& editor) {
 
 // Selects, in addition to the selected bones, all bones that are similar to one of them.
 //   alike  returns true if the bone `other` is similar to the selected bone `chosen`
-void choose_alike(Editor& editor, const std::function<bool(const Armature&, int chosen, int other)>& alike) {
-  const Armature& rig = *editor.document().armature;
-  const std::set<int> chosen = editor.selection.bones;
+void choose_alike(Context& context, const std::function<bool(const Armature&, int chosen, int other)>& alike) {
+  const Armature& rig = *context.document().armature;
+  const std::set<int> chosen = context.selection->bones;
   for (int other = 0; other < std::ssize(rig.bones); ++other)
     if (std::any_of(chosen.begin(), chosen.end(), [&](int bone) { return alike(rig, bone, other); }))
-      editor.selection.bones.insert(other);
+      context.selection->bones.insert(other);
 }
 
 Operator alike_operator(const char* id, const char* label, const char* description,
                         bool (*alike)(const Armature&, int chosen, int other)) {
-  return {id, label, "", "Select", description, [alike](Editor& e) { choose_alike(e, alike); }, needs_bone};
+  return {id, label, "", "Select", description, [alike](Context& c) { choose_alike(c, alike); }, needs_bone};
 }
 
 double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail); }
@@ -179,8 +190,8 @@ double length_of(const Bone& bone) { return glm::distance(bone.head, bone.tail);
 Operator tool_operator(const char* id, const char* label, const char* icon, const char* description, Tool tool) {
   return {id,          label,
           icon,        "Tool",
-          description, [tool](Editor& e) { e.tool = tool; },
-          nullptr,     [tool](const Editor& e) { return e.tool == tool; }};
+          description, [tool](Context& c) { c.interaction->tool = tool; },
+          nullptr,     [tool](const Context& c) { return c.interaction->tool == tool; }};
 }
 
 }  // namespace
@@ -195,7 +206,7 @@ std::vector<Operator> select_operators() {
       {"select.pick_list", "Select from list", icon::kPick, "Select",
        "Select the bone or tissue under the pointer, and list everything under the pointer.", pick_list, needs_volume},
       {"select.none", "Select nothing", "", "Select", "Deselect all bones and tissues.",
-       [](Editor& e) { e.selection = {}; }},
+       [](Context& c) { *c.selection = {}; }},
       {"select.all", "Select all", "", "Select",
        "Select all bones in the Rig and Pose workspaces, and all tissues elsewhere. Also all tissues in Rig, if a "
        "tissue "
@@ -205,13 +216,13 @@ std::vector<Operator> select_operators() {
        "Select the bones or tissues that are not selected, and deselect the others.", invert, needs_volume},
       {"select.box", "Box select", "", "Select",
        "Draw a box to add the bones in it to the selection. Shift removes them instead.",
-       [](Editor& e) { e.modal = begin_box_selection(e); }, needs_bones},
+       [](Context& c) { c.interaction->modal = begin_box_selection(c); }, needs_bones},
       {"select.circle", "Circle select", "", "Select",
        "Paint with a circle to add the bones under it to the selection. Shift removes them instead.",
-       [](Editor& e) { e.modal = begin_circle_selection(e); }, needs_bones},
+       [](Context& c) { c.interaction->modal = begin_circle_selection(c); }, needs_bones},
       {"select.similar", "Select similar", "", "Select",
        "Open a menu of ways to select bones that are similar to the selected bones.",
-       [](Editor& e) { e.open_popup = "Similar"; }, needs_bone},
+       [](Context& c) { c.menus->open_popup = "Similar"; }, needs_bone},
       alike_operator("select.siblings", "Siblings", "Select bones with the same parent as the selected bones.",
                      [](const Armature& rig, int chosen, int other) {
                        return rig.bones[chosen].parent == rig.bones[other].parent;
@@ -230,13 +241,14 @@ std::vector<Operator> select_operators() {
                               0.1 * length_of(rig.bones[chosen]);
                      }),
       {"select.parent", "Select parent", "", "Select", "Select the parent of the active bone.",
-       [](Editor& e) { go_to_parent(e, false); }, needs_bone},
+       [](Context& c) { go_to_parent(c, false); }, needs_bone},
       {"select.child", "Select child", "", "Select", "Select the first child of the active bone.",
-       [](Editor& e) { go_to_child(e, false); }, needs_bone},
+       [](Context& c) { go_to_child(c, false); }, needs_bone},
       {"select.extend_parent", "Extend to parent", "", "Select", "Add the parent of the active bone to the selection.",
-       [](Editor& e) { go_to_parent(e, true); }, needs_bone},
+       [](Context& c) { go_to_parent(c, true); }, needs_bone},
       {"select.extend_child", "Extend to child", "", "Select",
-       "Add the first child of the active bone to the selection.", [](Editor& e) { go_to_child(e, true); }, needs_bone},
+       "Add the first child of the active bone to the selection.", [](Context& c) { go_to_child(c, true); },
+       needs_bone},
       {"select.chain", "Select chain", "", "Select", "Add all descendants of the selected bones to the selection.",
        choose_chain, needs_bone},
       {"select.mirror", "Select mirrored", "", "Select",

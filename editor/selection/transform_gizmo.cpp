@@ -8,7 +8,14 @@
 
 #include "core/rig/anatomical_position.h"
 #include "core/rig/joint_limits.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_tools.h"
 #include "editor/rig/joint_gizmo.h"
@@ -132,32 +139,32 @@ std::optional<GizmoPart> moving_part(const Gizmo& gizmo, const ViewProjection& v
 
 // Returns the bone whose tail is drawn nearest to the pixel, at most kJointHit away. If no tail is that near, returns
 // the bone under the pointer.
-std::optional<int> joint_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
-  const Armature& armature = *editor.document().armature;
-  const auto posed = posed_from_rest(armature, seen_pose(editor));
+std::optional<int> joint_at(const Context& context, const ViewProjection& view, const glm::dvec2& pixel) {
+  const Armature& armature = *context.document().armature;
+  const auto posed = posed_from_rest(armature, seen_pose(context));
   std::optional<int> found;
-  double nearest = kJointHit * editor.look.scale;
+  double nearest = kJointHit * context.ui->look.scale;
   for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
     if (const auto tail = view.pixel_of(posed[bone] * armature.bones[bone].tail);
         tail && view.shows(posed[bone] * armature.bones[bone].tail) && glm::distance(*tail, pixel) <= nearest) {
       nearest = glm::distance(*tail, pixel);
       found = bone;
     }
-  return found ? found : bone_at_pointer(editor);
+  return found ? found : bone_at_pointer(context);
 }
 
-bool press_joint(Editor& editor, const ViewProjection& view) {
-  const auto bone = joint_at(editor, view, glm::dvec2(editor.input.pointer));
+bool press_joint(Context& context, const ViewProjection& view) {
+  const auto bone = joint_at(context, view, glm::dvec2(context.ui->input.pointer));
   if (!bone) return false;
-  choose_bone(editor, *bone);
-  begin_tool(editor, begin_dragging(editor, {.held = MouseButton::Left}));
+  choose_bone(context, *bone);
+  begin_tool(context, begin_dragging(context, {.held = MouseButton::Left}));
   return true;
 }
 
-void draw_rotating(const Gizmo& gizmo, const ViewProjection& view, const Editor& editor, const GizmoPainter& painter,
+void draw_rotating(const Gizmo& gizmo, const ViewProjection& view, const Context& context, const GizmoPainter& painter,
                    const std::optional<GizmoPart>& hovered) {
-  const Theme& theme = editor.look.theme;
-  const float scale = editor.look.scale;
+  const Theme& theme = context.ui->look.theme;
+  const float scale = context.ui->look.scale;
   const auto over = [&](GizmoPart::Kind kind, int axis = -1) { return hovered && *hovered == GizmoPart{kind, axis}; };
   const auto centre = view.pixel_of(gizmo.centre);
   if (centre && over(GizmoPart::Kind::Trackball))
@@ -179,10 +186,10 @@ void draw_rotating(const Gizmo& gizmo, const ViewProjection& view, const Editor&
   }
 }
 
-void draw_moving(const Gizmo& gizmo, const ViewProjection& view, const Editor& editor, const GizmoPainter& painter,
+void draw_moving(const Gizmo& gizmo, const ViewProjection& view, const Context& context, const GizmoPainter& painter,
                  const std::optional<GizmoPart>& hovered) {
-  const Theme& theme = editor.look.theme;
-  const float scale = editor.look.scale;
+  const Theme& theme = context.ui->look.theme;
+  const float scale = context.ui->look.scale;
   const double unit = view.millimetres_per_pixel(gizmo.centre) * scale;
   for (int axis = 0; axis < 3; ++axis) {
     const bool on = hovered && *hovered == GizmoPart{GizmoPart::Kind::Arrow, axis};
@@ -208,11 +215,11 @@ struct BonePart {
 // Returns the head or tail of a bone that is drawn nearest to the pixel, at most kJointHit away. Of ends at the same
 // position, an end of the active bone is preferred. If no end is that near, returns the whole bone under the pixel;
 // this works only in the 3D view.
-std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return std::nullopt;
+std::optional<BonePart> bone_part_at(const Context& context, const ViewProjection& view, const glm::dvec2& pixel) {
+  const std::shared_ptr<const Armature> rig = shown_rig(context);
+  if (context.workspace() != Workspace::Rig || !rig || !context.views->bones) return std::nullopt;
   std::optional<BonePart> found;
-  double nearest = kJointHit * editor.look.scale;
+  double nearest = kJointHit * context.ui->look.scale;
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone)
     for (const bool tail : {false, true}) {
       const glm::dvec3& place = place_of(*rig, {bone, tail});
@@ -220,14 +227,14 @@ std::optional<BonePart> bone_part_at(const Editor& editor, const ViewProjection&
       // If several bone ends have the same position, the subtracted amounts prefer an end of the active bone, and a
       // tail to a head.
       const double distance =
-          seen ? glm::distance(*seen, pixel) - (editor.selection.bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
+          seen ? glm::distance(*seen, pixel) - (context.selection->bone == bone ? 1e-3 : 0) - (tail ? 5e-4 : 0) : 1e9;
       if (distance > nearest) continue;
       nearest = distance;
       found = BonePart{bone, tail ? TransformSettings::Part::Tail : TransformSettings::Part::Head};
     }
   if (found || view.place.id != ViewId::Body) return found;
   if (const auto bone =
-          body_at_pointer(editor, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low))))
+          body_at_pointer(context, view.place).pick_bone(glm::ivec2(pixel - glm::dvec2(view.place.rect.low))))
     return BonePart{*bone, TransformSettings::Part::Whole};
   return std::nullopt;
 }
@@ -239,13 +246,13 @@ struct DrawnBone {
   glm::dvec3 head, tail;
 };
 
-std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
-  const bool posed = editor.workspace == Workspace::Pose;
-  const std::shared_ptr<const Armature> rig = posed ? editor.document().armature : shown_rig(editor);
+std::vector<DrawnBone> bones_in_slices(const Context& context) {
+  const bool posed = context.workspace() == Workspace::Pose;
+  const std::shared_ptr<const Armature> rig = posed ? context.document().armature : shown_rig(context);
   std::vector<DrawnBone> drawn;
-  if ((!posed && editor.workspace != Workspace::Rig) || !rig || !editor.views->bones) return drawn;
+  if ((!posed && context.workspace() != Workspace::Rig) || !rig || !context.views->bones) return drawn;
   const std::vector<RigidTransform> moved =
-      posed ? posed_from_rest(*rig, seen_pose(editor)) : std::vector<RigidTransform>(rig->bones.size());
+      posed ? posed_from_rest(*rig, seen_pose(context)) : std::vector<RigidTransform>(rig->bones.size());
   for (int bone = 0; bone < std::ssize(rig->bones); ++bone)
     drawn.push_back({bone, moved[bone] * rig->bones[bone].head, moved[bone] * rig->bones[bone].tail});
   return drawn;
@@ -253,38 +260,39 @@ std::vector<DrawnBone> bones_in_slices(const Editor& editor) {
 
 // Draws the bones as lines if the view is a slice; bones with no end near the slice are fainter. In the Rig workspace,
 // also marks the selected joint in every view.
-void draw_rig(Editor& editor, const ViewProjection& view) {
-  const GizmoPainter painter(editor, view);
-  const Theme& theme = editor.look.theme;
+void draw_rig(Context& context, const ViewProjection& view) {
+  const GizmoPainter painter(context, view);
+  const Theme& theme = context.ui->look.theme;
   if (view.place.id != ViewId::Body)
-    for (const DrawnBone& bone : bones_in_slices(editor)) {
-      const bool chosen = editor.selection.bones.contains(bone.bone);
+    for (const DrawnBone& bone : bones_in_slices(context)) {
+      const bool chosen = context.selection->bones.contains(bone.bone);
       const float alpha = view.shows(bone.head) || view.shows(bone.tail) ? 0.9f : 0.25f;
       const Colour colour = with_alpha(chosen ? theme.select : theme.view_text, alpha);
       painter.line(bone.head, bone.tail, colour, 2);
       for (const glm::dvec3& end : {bone.head, bone.tail}) painter.dot(end, colour, with_alpha(0xFF1A1614, alpha), 4);
     }
-  const std::shared_ptr<const Armature> rig = shown_rig(editor);
-  if (editor.workspace != Workspace::Rig || !rig || !editor.views->bones) return;
-  const auto bone = editor.selection.bone;
-  if (editor.transform_settings->part == TransformSettings::Part::Whole || !bone || *bone >= std::ssize(rig->bones))
+  const std::shared_ptr<const Armature> rig = shown_rig(context);
+  if (context.workspace() != Workspace::Rig || !rig || !context.views->bones) return;
+  const auto bone = context.selection->bone;
+  if (context.transform_settings->part == TransformSettings::Part::Whole || !bone || *bone >= std::ssize(rig->bones))
     return;
-  const glm::dvec3& place = place_of(*rig, {*bone, editor.transform_settings->part == TransformSettings::Part::Tail});
+  const glm::dvec3& place = place_of(*rig, {*bone, context.transform_settings->part == TransformSettings::Part::Tail});
   if (view.shows(place)) painter.dot(place, theme.select_light, theme.select, 5);
 }
 
 // Begins a drag in the Rig workspace: the Move tool moves the joint or bone under the pointer, the Extrude tool
 // extrudes a new bone from it. Returns false if another tool is active, or if no joint or bone is under the pointer.
-bool press_rig(Editor& editor, const ViewProjection& view) {
-  if (editor.tool != Tool::Move && editor.tool != Tool::Extrude) return false;
-  const auto part = bone_part_at(editor, view, glm::dvec2(editor.input.pointer));
+bool press_rig(Context& context, const ViewProjection& view) {
+  if (context.interaction->tool != Tool::Move && context.interaction->tool != Tool::Extrude) return false;
+  const auto part = bone_part_at(context, view, glm::dvec2(context.ui->input.pointer));
   if (!part) return false;
-  choose_bone(editor, part->bone);
-  editor.transform_settings->part = part->part;
-  begin_tool(editor,
-             begin_rig_change(
-                 editor, editor.tool == Tool::Move ? chosen_change(editor, RigChange::Kind::Move) : extrusion(editor),
-                 {.held = MouseButton::Left}));
+  choose_bone(context, part->bone);
+  context.transform_settings->part = part->part;
+  begin_tool(context,
+             begin_rig_change(context,
+                              context.interaction->tool == Tool::Move ? chosen_change(context, RigChange::Kind::Move)
+                                                                      : extrusion(context),
+                              {.held = MouseButton::Left}));
   return true;
 }
 
@@ -295,39 +303,40 @@ struct Pole {
   glm::dvec3 middle, point;
 };
 
-std::vector<Pole> poles_of(const Editor& editor) {
-  const std::shared_ptr<const Armature> armature = editor.document().armature;
-  if (editor.workspace != Workspace::Pose || !armature || !editor.views->bones) return {};
+std::vector<Pole> poles_of(const Context& context) {
+  const std::shared_ptr<const Armature> armature = context.document().armature;
+  if (context.workspace() != Workspace::Pose || !armature || !context.views->bones) return {};
   std::vector<Pole> poles;
-  const auto posed = posed_from_rest(*armature, seen_pose(editor));
-  const auto& shown = editor.transform_settings->shown_pole;
-  for (const auto& [name, point] : anchors_of(editor.document()).poles)
+  const auto posed = posed_from_rest(*armature, seen_pose(context));
+  const auto& shown = context.transform_settings->shown_pole;
+  for (const auto& [name, point] : anchors_of(context.document()).poles)
     if (const auto bone = armature->find(name))
       poles.push_back({*bone, posed[*bone] * armature->bones[*bone].head, shown.bone == name ? shown.place : point});
   return poles;
 }
 
-std::optional<int> pole_at(const Editor& editor, const ViewProjection& view, const glm::dvec2& pixel) {
-  for (const Pole& pole : poles_of(editor))
+std::optional<int> pole_at(const Context& context, const ViewProjection& view, const glm::dvec2& pixel) {
+  for (const Pole& pole : poles_of(context))
     if (const auto seen = view.pixel_of(pole.point);
-        seen && glm::distance(*seen, pixel) <= kJointHit * editor.look.scale)
+        seen && glm::distance(*seen, pixel) <= kJointHit * context.ui->look.scale)
       return pole.bone;
   return std::nullopt;
 }
 
 // Draws marks in the 3D view of the Pose workspace: on pinned joints, and on poles (points towards which the middle
 // joints of limbs point).
-void draw_marks(Editor& editor, const ViewProjection& view) {
-  const std::shared_ptr<const Armature> armature = editor.document().armature;
-  if (editor.workspace != Workspace::Pose || view.place.id != ViewId::Body || !armature || !editor.views->bones) return;
-  const GizmoPainter painter(editor, view);
-  if (const Anchors& anchors = anchors_of(editor.document()); !anchors.pins.empty()) {
-    const auto posed = posed_from_rest(*armature, seen_pose(editor));
+void draw_marks(Context& context, const ViewProjection& view) {
+  const std::shared_ptr<const Armature> armature = context.document().armature;
+  if (context.workspace() != Workspace::Pose || view.place.id != ViewId::Body || !armature || !context.views->bones)
+    return;
+  const GizmoPainter painter(context, view);
+  if (const Anchors& anchors = anchors_of(context.document()); !anchors.pins.empty()) {
+    const auto posed = posed_from_rest(*armature, seen_pose(context));
     for (const std::string& name : anchors.pins)
       if (const auto bone = armature->find(name))
         painter.diamond(posed[*bone] * armature->bones[*bone].tail, kViewAccent, 12);
   }
-  for (const Pole& pole : poles_of(editor)) {
+  for (const Pole& pole : poles_of(context)) {
     painter.line(pole.middle, pole.point, kViewAccent, 1, true);
     painter.dot(pole.point, kViewAccent, 0xFF1A1614, 5);
   }
@@ -339,28 +348,29 @@ constexpr double kLimits = 58, kTwist = 18;
 // Draws the limits of the joint at the active bone's head: the range of a hinge as a fan, or the cone and the twist
 // range of a ball joint. In the Rig workspace, the limits are drawn at rest. In the Pose workspace, the limits move
 // with the parent bone, and are drawn only while Keep to joint limits is on.
-void draw_limits(Editor& editor, const ViewProjection& view) {
-  const bool posed = editor.workspace == Workspace::Pose;
-  if (posed ? !editor.posing.keep_limits || editor.modal : editor.workspace != Workspace::Rig) return;
-  const std::shared_ptr<const Armature> armature = posed ? editor.document().armature : shown_rig(editor);
-  const auto chosen = editor.selection.bone;
+void draw_limits(Context& context, const ViewProjection& view) {
+  const bool posed = context.workspace() == Workspace::Pose;
+  if (posed ? !context.posing->keep_limits || context.interaction->modal : context.workspace() != Workspace::Rig)
+    return;
+  const std::shared_ptr<const Armature> armature = posed ? context.document().armature : shown_rig(context);
+  const auto chosen = context.selection->bone;
   if (view.place.id != ViewId::Body || !armature || !chosen || *chosen >= std::ssize(armature->bones) ||
-      !editor.views->bones)
+      !context.views->bones)
     return;
   const Bone& bone = armature->bones[*chosen];
   RigidTransform carried;  // transform of the parent bone from the rest pose to the shown pose
   if (posed) {
-    const Pose pose = seen_pose(editor);
+    const Pose pose = seen_pose(context);
     carried = bone.parent < 0 ? RigidTransform{{1, 0, 0, 0}, pose.root_translation}
                               : posed_from_rest(*armature, pose)[bone.parent];
   }
   const JointLimits& limits = bone.limits;
-  const GizmoPainter painter(editor, view);
+  const GizmoPainter painter(context, view);
   const Colour line = with_alpha(kViewWarn, posed ? 0.6f : 0.9f), area = with_alpha(kViewWarn, posed ? 0.09f : 0.16f);
   const glm::dvec3 head = carried * bone.head, along = carried.rotation * (bone.tail - bone.head);
   if (limits.type == JointLimits::Type::Hinge) {
     const glm::dvec3 axis = carried.rotation * limits.axis, across = along - glm::dot(along, axis) * axis;
-    Ring fan = ring_of(view, editor.look.scale, head, axis, kLimits);
+    Ring fan = ring_of(view, context.ui->look.scale, head, axis, kLimits);
     if (glm::length(across) < 1e-6) return;
     fan.from = glm::normalize(across);
     painter.sector(fan, limits.minimum, limits.maximum - limits.minimum, area);
@@ -375,53 +385,56 @@ void draw_limits(Editor& editor, const ViewProjection& view) {
   }
   if (limits.type == JointLimits::Type::Ball) {
     const glm::dvec3 axis = carried.rotation * twist_axis(bone);
-    Ring rim = ring_of(view, editor.look.scale, head, axis, kLimits);
+    Ring rim = ring_of(view, context.ui->look.scale, head, axis, kLimits);
     const double reach = rim.radius;
     rim.centre = head + axis * (reach * std::cos(limits.cone));
     rim.radius = reach * std::sin(limits.cone);
     painter.ring(rim, line, 2, GizmoPainter::Part::Whole);
     for (int spoke = 0; spoke < 8; ++spoke)
       painter.line(head, rim.at(spoke * glm::two_pi<double>() / 8), with_alpha(line, 0.4f), 1);
-    const Ring twist = ring_of(view, editor.look.scale, head, axis, kTwist);
+    const Ring twist = ring_of(view, context.ui->look.scale, head, axis, kTwist);
     painter.arc(twist, limits.twist_minimum, limits.twist_maximum, line, 2.5f);
   }
 }
 
 }  // namespace
 
-std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view) {
-  if (!editor.document().volume || !editor.views->bones) return std::nullopt;
-  const std::shared_ptr<const Armature> armature = shown_rig(editor);
-  const auto bone = editor.selection.bone;
+std::optional<Gizmo> gizmo_in(const Context& context, const ViewProjection& view) {
+  if (!context.document().volume || !context.views->bones) return std::nullopt;
+  const std::shared_ptr<const Armature> armature = shown_rig(context);
+  const auto bone = context.selection->bone;
   if (!armature || !bone || *bone >= std::ssize(armature->bones)) return std::nullopt;
-  if (editor.workspace == Workspace::Rig &&
-      (editor.tool == Tool::Move || editor.tool == Tool::Rotate || editor.tool == Tool::Scale)) {
-    const glm::dvec3& place = place_of(
-        *armature,
-        {*bone, editor.tool == Tool::Move && editor.transform_settings->part == TransformSettings::Part::Tail});
+  if (context.workspace() == Workspace::Rig &&
+      (context.interaction->tool == Tool::Move || context.interaction->tool == Tool::Rotate ||
+       context.interaction->tool == Tool::Scale)) {
+    const glm::dvec3& place =
+        place_of(*armature, {*bone, context.interaction->tool == Tool::Move &&
+                                        context.transform_settings->part == TransformSettings::Part::Tail});
     if (!view.shows(place)) return std::nullopt;
-    return Gizmo{editor.tool, place,
-                 axes_of(editor.transform_settings->space, *armature, rest_pose(*armature), *bone, view)};
+    return Gizmo{context.interaction->tool, place,
+                 axes_of(context.transform_settings->space, *armature, rest_pose(*armature), *bone, view)};
   }
-  if (editor.workspace != Workspace::Pose || (editor.tool != Tool::Rotate && editor.tool != Tool::Move))
+  if (context.workspace() != Workspace::Pose ||
+      (context.interaction->tool != Tool::Rotate && context.interaction->tool != Tool::Move))
     return std::nullopt;
-  const Pose pose = seen_pose(editor);
+  const Pose pose = seen_pose(context);
   const Bone& b = armature->bones[*bone];
-  const bool at_head = editor.tool == Tool::Rotate || b.parent < 0;
+  const bool at_head = context.interaction->tool == Tool::Rotate || b.parent < 0;
   const glm::dvec3 place = posed_from_rest(*armature, pose)[*bone] * (at_head ? b.head : b.tail);
   if (!view.shows(place)) return std::nullopt;
-  const Space space = editor.transform_settings->space;
-  const bool rings = editor.tool == Tool::Rotate;
-  return Gizmo{editor.tool, place,
-               rings ? axes_of_rings(editor, space, *armature, pose, *bone, view)
+  const Space space = context.transform_settings->space;
+  const bool rings = context.interaction->tool == Tool::Rotate;
+  return Gizmo{context.interaction->tool, place,
+               rings ? axes_of_rings(context.posing, space, *armature, pose, *bone, view)
                      : axes_of(space, *armature, pose, *bone, view)};
 }
 
-std::optional<Rect> gizmo_rect(const Editor& editor, const ViewProjection& view) {
-  const auto gizmo = gizmo_in(editor, view);
+std::optional<Rect> gizmo_rect(const Context& context, const ViewProjection& view) {
+  const auto gizmo = gizmo_in(context, view);
   const auto centre = gizmo ? view.pixel_of(gizmo->centre) : std::nullopt;
   if (!centre) return std::nullopt;
-  const float reach = editor.look.px(static_cast<float>(gizmo->tool == Tool::Rotate ? kViewRing : kArrowEnd + kCone));
+  const float reach =
+      context.ui->look.px(static_cast<float>(gizmo->tool == Tool::Rotate ? kViewRing : kArrowEnd + kCone));
   return Rect{glm::vec2(*centre) - reach, glm::vec2(*centre) + reach};
 }
 
@@ -432,108 +445,110 @@ std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view,
                                     : moving_part(gizmo, view, scale, pixel, *centre);
 }
 
-bool press_gizmo(Editor& editor) {
-  const ViewPlace* place = hovered_view(editor);
-  if (!place || editor.input.down(Key::Alt)) return false;
-  const ViewProjection view(editor, *place);
+bool press_gizmo(Context& context) {
+  const ViewPlace* place = hovered_view(context);
+  if (!place || context.ui->input.down(Key::Alt)) return false;
+  const ViewProjection view(context, *place);
   if (const auto pole =
-          place->id == ViewId::Body ? pole_at(editor, view, glm::dvec2(editor.input.pointer)) : std::nullopt) {
-    choose_bone(editor, *pole);
-    begin_tool(editor, begin_dragging_pole(editor, {.held = MouseButton::Left}));
+          place->id == ViewId::Body ? pole_at(context, view, glm::dvec2(context.ui->input.pointer)) : std::nullopt) {
+    choose_bone(context, *pole);
+    begin_tool(context, begin_dragging_pole(context, {.held = MouseButton::Left}));
     return true;
   }
-  if (press_joint_handle(editor, view)) return true;
-  if (editor.tool == Tool::Reach && editor.workspace == Workspace::Pose && editor.document().armature)
-    return press_joint(editor, view);
-  const auto gizmo = gizmo_in(editor, view);
-  const auto part = gizmo ? part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer)) : std::nullopt;
+  if (press_joint_handle(context, view)) return true;
+  if (context.interaction->tool == Tool::Reach && context.workspace() == Workspace::Pose && context.document().armature)
+    return press_joint(context, view);
+  const auto gizmo = gizmo_in(context, view);
+  const auto part =
+      gizmo ? part_at(*gizmo, view, context.ui->look.scale, glm::dvec2(context.ui->input.pointer)) : std::nullopt;
   // The Rig workspace ignores the gizmo's trackball, so that the user can drag joints and bones that lie inside it.
-  if (editor.workspace == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball))
-    return press_rig(editor, view);
+  if (context.workspace() == Workspace::Rig && (!part || part->kind == GizmoPart::Kind::Trackball))
+    return press_rig(context, view);
   if (!part) return false;
-  const Grip grip{.lock = {part->axis, editor.transform_settings->space, part->kind == GizmoPart::Kind::Plane},
+  const Grip grip{.lock = {part->axis, context.transform_settings->space, part->kind == GizmoPart::Kind::Plane},
                   .held = MouseButton::Left,
                   .trackball = part->kind == GizmoPart::Kind::Trackball};
-  if (editor.workspace == Workspace::Rig) {
+  if (context.workspace() == Workspace::Rig) {
     const RigChange::Kind kind = gizmo->tool == Tool::Rotate  ? RigChange::Kind::Turn
                                  : gizmo->tool == Tool::Scale ? RigChange::Kind::Scale
                                                               : RigChange::Kind::Move;
-    begin_tool(editor, begin_rig_change(editor, chosen_change(editor, kind), grip));
+    begin_tool(context, begin_rig_change(context, chosen_change(context, kind), grip));
     return true;
   }
-  begin_tool(editor, gizmo->tool == Tool::Rotate ? begin_turning(editor, grip) : begin_dragging(editor, grip));
+  begin_tool(context, gizmo->tool == Tool::Rotate ? begin_turning(context, grip) : begin_dragging(context, grip));
   return true;
 }
 
-void choose_bone(Editor& editor, int bone) {
-  editor.selection = {};
-  editor.selection.bone = bone;
-  editor.selection.bones = {bone};
+void choose_bone(Context& context, int bone) {
+  *context.selection = {};
+  context.selection->bone = bone;
+  context.selection->bones = {bone};
 }
 
-std::optional<int> bone_at_pointer(const Editor& editor) {
-  const ViewPlace* place = hovered_view(editor);
-  if (!editor.document().armature || !place) return std::nullopt;
+std::optional<int> bone_at_pointer(const Context& context) {
+  const ViewPlace* place = hovered_view(context);
+  if (!context.document().armature || !place) return std::nullopt;
   if (place->id == ViewId::Body)
-    return body_at_pointer(editor, *place).pick_bone(glm::ivec2(editor.input.pointer - place->rect.low));
+    return body_at_pointer(context, *place).pick_bone(glm::ivec2(context.ui->input.pointer - place->rect.low));
   // In a slice, whole bones can be picked only in the Pose workspace. In the Rig workspace, the user picks joints in
   // slices instead (see bone_part_at).
-  if (editor.workspace != Workspace::Pose) return std::nullopt;
-  const auto below = bones_below(editor);
+  if (context.workspace() != Workspace::Pose) return std::nullopt;
+  const auto below = bones_below(context);
   const auto nearest = std::min_element(below.begin(), below.end());
   return nearest == below.end() ? std::nullopt : std::optional(nearest->second);
 }
 
-std::vector<std::pair<double, int>> bones_below(const Editor& editor) {
-  const ViewPlace* place = hovered_view(editor);
+std::vector<std::pair<double, int>> bones_below(const Context& context) {
+  const ViewPlace* place = hovered_view(context);
   std::vector<std::pair<double, int>> found;
-  if (!place || !editor.views->scene.armature) return found;
-  const ViewProjection view(editor, *place);
-  const glm::dvec2 pixel(editor.input.pointer);
+  if (!place || !context.views->scene.armature) return found;
+  const ViewProjection view(context, *place);
+  const glm::dvec2 pixel(context.ui->input.pointer);
   if (place->id == ViewId::Body) {
     for (const render::BoneHit& hit :
-         body_at_pointer(editor, *place).pick_bones(glm::ivec2(pixel - glm::dvec2(place->rect.low))))
+         body_at_pointer(context, *place).pick_bones(glm::ivec2(pixel - glm::dvec2(place->rect.low))))
       found.push_back({hit.depth, hit.bone});
     return found;
   }
-  for (const DrawnBone& bone : bones_in_slices(editor)) {
+  for (const DrawnBone& bone : bones_in_slices(context)) {
     const auto head = view.pixel_of(bone.head), tail = view.pixel_of(bone.tail);
     double share = 0;
-    if (!head || !tail || distance_to_segment(pixel, *head, *tail, share) > kHit * editor.look.scale) continue;
+    if (!head || !tail || distance_to_segment(pixel, *head, *tail, share) > kHit * context.ui->look.scale) continue;
     const glm::dvec3 at = glm::mix(bone.head, bone.tail, share);
     if (view.shows(at)) found.push_back({std::abs(glm::dot(at - view.slice.centre, view.towards_eye)), bone.bone});
   }
   return found;
 }
 
-bool pick_bone_part(Editor& editor) {
-  const ViewPlace* place = hovered_view(editor);
-  const auto part =
-      place ? bone_part_at(editor, ViewProjection(editor, *place), glm::dvec2(editor.input.pointer)) : std::nullopt;
+bool pick_bone_part(Context& context) {
+  const ViewPlace* place = hovered_view(context);
+  const auto part = place
+                        ? bone_part_at(context, ViewProjection(context, *place), glm::dvec2(context.ui->input.pointer))
+                        : std::nullopt;
   if (!part) return false;
-  choose_bone(editor, part->bone);
-  editor.transform_settings->part = part->part;
+  choose_bone(context, part->bone);
+  context.transform_settings->part = part->part;
   return true;
 }
 
-void draw_gizmo(Editor& editor, const ViewPlace& place) {
-  const ViewProjection view(editor, place);
-  draw_rig(editor, view);
-  draw_bone_labels(editor, view);
-  draw_rig_check(editor, view);
-  draw_marks(editor, view);
-  draw_limits(editor, view);
-  if (!editor.modal) draw_joint_handles(editor, view);
-  if (editor.modal) return editor.modal->draw(editor, place);
-  const auto gizmo = gizmo_in(editor, view);
+void draw_gizmo(Context& context, const ViewPlace& place) {
+  const ViewProjection view(context, place);
+  draw_rig(context, view);
+  draw_bone_labels(context, view);
+  draw_rig_check(context, view);
+  draw_marks(context, view);
+  draw_limits(context, view);
+  if (!context.interaction->modal) draw_joint_handles(context, view);
+  if (context.interaction->modal) return context.interaction->modal->draw(context, place);
+  const auto gizmo = gizmo_in(context, view);
   if (!gizmo) return;
-  const GizmoPainter painter(editor, view);
-  const ViewPlace* under = editor.drag || editor.dialog ? nullptr : hovered_view(editor);
+  const GizmoPainter painter(context, view);
+  const ViewPlace* under = context.interaction->drag || context.dialogs->shown ? nullptr : hovered_view(context);
   std::optional<GizmoPart> hovered;
   if (under && under->id == place.id)
-    hovered = part_at(*gizmo, view, editor.look.scale, glm::dvec2(editor.input.pointer));
-  if (gizmo->tool == Tool::Rotate) draw_rotating(*gizmo, view, editor, painter, hovered);
-  else draw_moving(*gizmo, view, editor, painter, hovered);
+    hovered = part_at(*gizmo, view, context.ui->look.scale, glm::dvec2(context.ui->input.pointer));
+  if (gizmo->tool == Tool::Rotate) draw_rotating(*gizmo, view, context, painter, hovered);
+  else draw_moving(*gizmo, view, context, painter, hovered);
 }
 
 }  // namespace limber::editor

@@ -11,10 +11,14 @@
 #include <utility>
 #include <vector>
 
-#include "editor/context/editor.h"
-#include "editor/context/view_projection.h"
+#include "editor/context/tool.h"
+#include "editor/ui/rect.h"
 
 namespace limber::editor {
+
+struct Context;
+struct ViewPlace;
+struct ViewProjection;
 
 struct GizmoPart {
   enum class Kind { Ring, ViewRing, Trackball, Arrow, Plane, Centre };
@@ -31,31 +35,31 @@ struct Gizmo {
 };
 
 // Returns the gizmo that the selected tool shows in a view; nothing when it shows none.
-std::optional<Gizmo> gizmo_in(const Editor& editor, const ViewProjection& view);
+std::optional<Gizmo> gizmo_in(const Context& context, const ViewProjection& view);
 // Returns the rectangle that the gizmo covers in a view, pixels; nothing when there is none.
-std::optional<Rect> gizmo_rect(const Editor& editor, const ViewProjection& view);
+std::optional<Rect> gizmo_rect(const Context& context, const ViewProjection& view);
 // Returns the part of the gizmo under the pixel; nothing when there is none.
 //   scale  scale of the interface, 1: 100 %
 std::optional<GizmoPart> part_at(const Gizmo& gizmo, const ViewProjection& view, float scale, const glm::dvec2& pixel);
 
 // Selects this bone, makes it the active bone, and deselects all other bones and all tissues.
-void choose_bone(Editor& editor, int bone);
+void choose_bone(Context& context, int bone);
 
 // Selects the joint or bone under the pointer, in any view of the Rig workspace. Returns false in other workspaces, or
 // if no joint or bone is under the pointer.
-bool pick_bone_part(Editor& editor);
+bool pick_bone_part(Context& context);
 
 // Returns the bone under the pointer; nothing if there is none. In slices, finds bones only in the Pose workspace.
-std::optional<int> bone_at_pointer(const Editor& editor);
+std::optional<int> bone_at_pointer(const Context& context);
 
 // Returns all bones under the pointer, each with a distance in mm. In the 3D view this is the distance from the eye, in
 // a slice the distance from the slice's plane.
-std::vector<std::pair<double, int>> bones_below(const Editor& editor);
+std::vector<std::pair<double, int>> bones_below(const Context& context);
 
 // Begins to drag the pole (the point towards which a limb's elbow or knee points), joint handle, part of the gizmo,
 // joint or bone under the pointer. Returns false if the pointer is on nothing that the selected tool can drag.
-bool press_gizmo(Editor& editor);
+bool press_gizmo(Context& context);
 // Draws the gizmo, bone names, pinned joints, poles, joint limits and the marks of the rig check over a view.
-void draw_gizmo(Editor& editor, const ViewPlace& place);
+void draw_gizmo(Context& context, const ViewPlace& place);
 
 }  // namespace limber::editor

@@ -3,15 +3,21 @@
 // right. The functions find which result a view shows, and which result lies under the pointer.
 #pragma once
 
-#include "editor/context/editor.h"
+#include "render/view.h"
 
 namespace limber::editor {
 
-float wipe_line(const Editor& editor, const Rect& rect);  // returns the x of the line between A and B, window pixels
-bool over_side_a(const Editor& editor, const ViewPlace& place);
+struct Comparison;
+struct Context;
+struct Rect;
+struct ViewPlace;
+
+float wipe_line(const Comparison& comparison,
+                const Rect& rect);  // returns the x of the line between A and B, window pixels
+bool over_side_a(const Context& context, const ViewPlace& place);
 // Returns the scene that a view shows. If a line divides the view between results A and B, returns the scene of B.
-const render::Scene& scene_of(const Editor& editor, const ViewPlace& place);
-const render::Scene& scene_at_pointer(const Editor& editor, const ViewPlace& place);
-const render::View3D& body_at_pointer(const Editor& editor, const ViewPlace& place);
+const render::Scene& scene_of(const Context& context, const ViewPlace& place);
+const render::Scene& scene_at_pointer(const Context& context, const ViewPlace& place);
+const render::View3D& body_at_pointer(const Context& context, const ViewPlace& place);
 
 }  // namespace limber::editor

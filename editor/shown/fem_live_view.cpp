@@ -4,7 +4,9 @@
 #include <cstdio>
 #include <utility>
 
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/workspace.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -27,12 +29,12 @@ SolveFeed::Seen SolveFeed::seen() const {
   return seen_;
 }
 
-const Solve* watched_solve(const Editor& editor) {
-  if (editor.workspace != Workspace::Resample) return nullptr;
-  const auto found = editor.fem->solves.find(editor.fem->watched);
-  if (found == editor.fem->solves.end()) return nullptr;
+const Solve* watched_solve(const Context& context) {
+  if (context.workspace() != Workspace::Resample) return nullptr;
+  const auto found = context.fem->solves.find(context.fem->watched);
+  if (found == context.fem->solves.end()) return nullptr;
   const Solve& solve = found->second;
-  return solve.from.volume == editor.document().volume && solve.feed->seen().mesh.posed ? &solve : nullptr;
+  return solve.from.volume == context.document().volume && solve.feed->seen().mesh.posed ? &solve : nullptr;
 }
 
 std::string progress_text(const Solve& solve) {
@@ -44,11 +46,11 @@ std::string progress_text(const Solve& solve) {
   return text;
 }
 
-void watch(Editor& editor) {
-  if (!editor.fem->solves.empty()) editor.fem->watched = editor.fem->solves.rbegin()->first;
-  editor.touch();
+void watch(Context& context) {
+  if (!context.fem->solves.empty()) context.fem->watched = context.fem->solves.rbegin()->first;
+  context.ui->touch();
 }
 
-void stop_watching(Editor& editor) { editor.fem->watched = 0; }
+void stop_watching(FemView& fem) { fem.watched = 0; }
 
 }  // namespace limber::editor

@@ -19,7 +19,7 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 
 // Passes the progress of the worker process from the job's thread to the editor's thread.
 class SolveFeed {
@@ -55,13 +55,13 @@ struct FemView {
 
 // Returns the solve that the views show. Returns null if they show no solve, or if the document's volume has been
 // replaced since the solve was started.
-const Solve* watched_solve(const Editor& editor);
+const Solve* watched_solve(const Context& context);
 // Returns the progress of a solve as text, such as "34.5 of 90.0 ..., iteration 12, moving 0.80 mm". The numbers are
 // the joint angle reached so far, the pose's joint angle, the iteration, and the longest move of a mesh node in this
 // iteration. Returns "" before the first iteration.
 std::string progress_text(const Solve& solve);
 // Makes the views show the finite element solve that was started last, in place of a resampled volume.
-void watch(Editor& editor);
-void stop_watching(Editor& editor);
+void watch(Context& context);
+void stop_watching(FemView& fem);
 
 }  // namespace limber::editor

@@ -5,31 +5,36 @@
 #include <numeric>
 #include <utility>
 
+#include "editor/context/context.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/shown/test_pose.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
 Pose pose_of(const Document& document) { return document.pose ? *document.pose : rest_pose(*document.armature); }
 
-Pose shown_pose(const Editor& editor) {
-  if (editor.views->preview_pose) return *editor.views->preview_pose;
-  return editor.workspace == Workspace::Skin ? test_pose(editor) : pose_of(editor.document());
+Pose shown_pose(const Context& context) {
+  if (context.views->preview_pose) return *context.views->preview_pose;
+  return context.workspace() == Workspace::Skin ? test_pose(context) : pose_of(context.document());
 }
 
-void show_pose(Editor& editor, Pose pose) {
-  editor.views->preview_pose = std::make_shared<const Pose>(std::move(pose));
-  editor.touch();
+void show_pose(Context& context, Pose pose) {
+  context.views->preview_pose = std::make_shared<const Pose>(std::move(pose));
+  context.ui->touch();
 }
 
-void drop_shown_pose(Editor& editor) {
-  editor.views->preview_pose.reset();
-  editor.touch();
+void drop_shown_pose(Context& context) {
+  context.views->preview_pose.reset();
+  context.ui->touch();
 }
 
-std::vector<int> chosen_bones(const Editor& editor) {
-  const std::shared_ptr<const Armature> armature = editor.document().armature;
+std::vector<int> chosen_bones(const Context& context) {
+  const std::shared_ptr<const Armature> armature = context.document().armature;
   if (!armature) return {};
-  std::vector<int> bones(editor.selection.bones.begin(), editor.selection.bones.end());
+  std::vector<int> bones(context.selection->bones.begin(), context.selection->bones.end());
   std::erase_if(bones, [&](int bone) { return bone >= std::ssize(armature->bones); });
   if (bones.empty()) {
     bones.resize(armature->bones.size());

@@ -7,9 +7,11 @@
 #include <memory>
 #include <string>
 
-#include "editor/context/editor.h"
+#include "core/project/document.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // The colours that mark results A and B of a comparison. The letter A or B is always drawn beside the colour.
 // In RGB: B07AD9 (A), 3FB6A8 (B); the constants are ABGR.
@@ -17,28 +19,28 @@ inline constexpr std::uint32_t kColourOfA = 0xFFD97AB0, kColourOfB = 0xFFA8B63F;
 // Returns the result with this name; null if there is none.
 std::shared_ptr<const Result> result_named(const Document& document, const std::string& name);
 // Returns why no two results can be compared now, as a hint for the user; "" when they can.
-std::string why_no_comparison(const Editor& editor);
+std::string why_no_comparison(const Context& context);
 // How the views compare two results, which they do only in the Resample workspace. wiping(): true if a line divides
 // each view between both results. side_by_side(): true if each view is drawn twice, once for each result.
-bool wiping(const Editor& editor);
-bool side_by_side(const Editor& editor);
-bool comparing(const Editor& editor);  // true if wiping() or side_by_side() is true
+bool wiping(const Context& context);
+bool side_by_side(const Context& context);
+bool comparing(const Context& context);  // true if wiping() or side_by_side() is true
 // Returns the name that the views show for one side of a comparison: the name of the result, or "At rest" if the
 // document has no result of this name.
-std::string name_of_side(const Editor& editor, const std::string& result);
+std::string name_of_side(const Document& document, const std::string& result);
 
 // Returns the result that the views show. Returns null if the views show the volume at rest or the preview of the pose.
 // The Rig and Skin workspaces show the body itself. The Pose workspace shows a result only while the current pose is
 // the pose from which the result was made.
-std::shared_ptr<const Result> shown_result(const Editor& editor);
+std::shared_ptr<const Result> shown_result(const Context& context);
 // Returns the result that the tables of results describe. This is the result of the side that the user selected, even
 // if the workspace shows something else; if there is none, it is the document's last result.
-std::shared_ptr<const Result> chosen_result(const Editor& editor);
+std::shared_ptr<const Result> chosen_result(const Context& context);
 
 // Returns the volume that the views show: the volume of the shown result, or the document's volume if no result is
 // shown. At least one of these volumes must exist.
-std::shared_ptr<const LabelVolume> shown_volume(const Editor& editor);
+std::shared_ptr<const LabelVolume> shown_volume(const Context& context);
 // Returns a copy of the document that has shown_volume() in place of its own volume.
-Document shown_document(const Editor& editor);
+Document shown_document(const Context& context);
 
 }  // namespace limber::editor

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/shown/shown_pose.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -28,19 +33,19 @@ glm::dvec3 bend_axis(const Armature& armature, int index) {
 
 }  // namespace
 
-bool shows_pose(const Editor& editor) {
-  const Document& document = editor.document();
+bool shows_pose(const Context& context) {
+  const Document& document = context.document();
   if (!document.armature) return false;
-  if (editor.workspace == Workspace::Pose) return true;
-  const TestPose& test = *editor.trial;
-  return editor.workspace == Workspace::Skin && document.weights &&
-         (test.posed || test.degrees != 0 || editor.views->preview_pose);
+  if (context.workspace() == Workspace::Pose) return true;
+  const TestPose& test = *context.trial;
+  return context.workspace() == Workspace::Skin && document.weights &&
+         (test.posed || test.degrees != 0 || context.views->preview_pose);
 }
 
-Pose test_pose(const Editor& editor) {
-  const TestPose& test = *editor.trial;
-  const Armature& armature = *editor.document().armature;
-  Pose pose = test.posed ? pose_of(editor.document()) : rest_pose(armature);
+Pose test_pose(const Context& context) {
+  const TestPose& test = *context.trial;
+  const Armature& armature = *context.document().armature;
+  Pose pose = test.posed ? pose_of(context.document()) : rest_pose(armature);
   const auto bone = armature.find(test.bone);
   if (test.degrees == 0 || !bone || armature.bones[static_cast<std::size_t>(*bone)].parent < 0) return pose;
   glm::dquat& rotation = pose.rotation[static_cast<std::size_t>(*bone)];
@@ -48,45 +53,46 @@ Pose test_pose(const Editor& editor) {
   return pose;
 }
 
-std::optional<int> skin_bone(const Editor& editor) {
-  const auto& armature = editor.document().armature;
+std::optional<int> skin_bone(const Context& context) {
+  const auto& armature = context.document().armature;
   if (!armature || armature->bones.empty()) return std::nullopt;
-  return editor.selection.bone && *editor.selection.bone < std::ssize(armature->bones) ? *editor.selection.bone : 0;
+  return context.selection->bone && *context.selection->bone < std::ssize(armature->bones) ? *context.selection->bone
+                                                                                           : 0;
 }
 
-std::string why_not_bend(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
-  const auto bone = skin_bone(editor);
+std::string why_not_bend(const Context& context) {
+  if (context.workspace() != Workspace::Skin) return "Switch to the Skin workspace first";
+  const auto bone = skin_bone(context);
   if (!bone) return "Import a rig first";
-  if (!editor.document().weights) return "Compute the weights first";
-  return editor.document().armature->bones[static_cast<std::size_t>(*bone)].parent < 0
+  if (!context.document().weights) return "Compute the weights first";
+  return context.document().armature->bones[static_cast<std::size_t>(*bone)].parent < 0
              ? "A bone without a parent cannot be bent: select another bone"
              : "";
 }
 
-double bend(const Editor& editor) {
-  const TestPose& test = *editor.trial;
-  const auto bone = skin_bone(editor);
-  return bone && editor.document().armature->bones[static_cast<std::size_t>(*bone)].name == test.bone ? test.degrees
-                                                                                                      : 0;
+double bend(const Context& context) {
+  const TestPose& test = *context.trial;
+  const auto bone = skin_bone(context);
+  return bone && context.document().armature->bones[static_cast<std::size_t>(*bone)].name == test.bone ? test.degrees
+                                                                                                       : 0;
 }
 
-void set_bend(Editor& editor, double degrees) {
-  TestPose& test = *editor.trial;
-  test.bone = editor.document().armature->bones[static_cast<std::size_t>(*skin_bone(editor))].name;
+void set_bend(Context& context, double degrees) {
+  TestPose& test = *context.trial;
+  test.bone = context.document().armature->bones[static_cast<std::size_t>(*skin_bone(context))].name;
   test.degrees = std::clamp(degrees, -TestPose::kMost, TestPose::kMost);
   if (test.degrees == 0) test.before.degrees = 0;
-  editor.touch();
+  context.ui->touch();
 }
 
-void clear_bend(Editor& editor) {
-  TestPose& test = *editor.trial;
+void clear_bend(Context& context) {
+  TestPose& test = *context.trial;
   test.degrees = test.before.degrees = 0;
-  editor.touch();
+  context.ui->touch();
 }
 
-void toggle_test_pose(Editor& editor) {
-  TestPose& test = *editor.trial;
+void toggle_test_pose(Context& context) {
+  TestPose& test = *context.trial;
   if (test.posed || test.degrees != 0) {
     test.before = {test.posed, test.degrees};
     test.posed = false;
@@ -95,7 +101,7 @@ void toggle_test_pose(Editor& editor) {
     test.degrees = test.before.degrees;
     test.posed = test.before.posed || test.degrees == 0;
   }
-  editor.touch();
+  context.ui->touch();
 }
 
 }  // namespace limber::editor

@@ -6,9 +6,11 @@
 
 #include <string>
 
-#include "editor/context/editor.h"
+#include "core/rig/pose.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // The settings of the test pose, in which the Skin workspace shows the body.
 struct TestPose {
@@ -25,23 +27,23 @@ struct TestPose {
 };
 
 // Returns true if the views show the body in a pose, which shown_pose() returns, and false if they show it at rest.
-bool shows_pose(const Editor& editor);
+bool shows_pose(const Context& context);
 // Returns the pose in which the Skin workspace shows the body. Needs a rig.
-Pose test_pose(const Editor& editor);
+Pose test_pose(const Context& context);
 
 // Returns the bone whose weights the Skin workspace shows. This is the active bone, or the rig's first bone if no bone
 // is active. Returns nothing without a rig.
-std::optional<int> skin_bone(const Editor& editor);
+std::optional<int> skin_bone(const Context& context);
 
 // Returns why the active bone cannot be bent to test its weights; "" when it can.
-std::string why_not_bend(const Editor& editor);
+std::string why_not_bend(const Context& context);
 // Return and set the angle by which the test pose bends the active bone, degrees. set_bend() straightens any other bone
 // that the test pose has bent so far.
-double bend(const Editor& editor);
-void set_bend(Editor& editor, double degrees);
-void clear_bend(Editor& editor);
+double bend(const Context& context);
+void set_bend(Context& context, double degrees);
+void clear_bend(Context& context);
 // Shows the body at rest if it is shown posed. Otherwise shows the last test pose again, or the document's pose if
 // there was no test pose before.
-void toggle_test_pose(Editor& editor);
+void toggle_test_pose(Context& context);
 
 }  // namespace limber::editor

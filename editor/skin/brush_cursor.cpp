@@ -5,7 +5,8 @@
 #include <cmath>
 #include <optional>
 
-#include "editor/context/editor.h"
+#include "editor/context/views.h"
+#include "editor/skin/painting.h"
 
 namespace limber::editor {
 
@@ -63,8 +64,8 @@ std::optional<double> height_of(const SeenBody& body, const glm::dvec3& point, c
 
 }  // namespace
 
-std::vector<RingPoint> ring_on_body(const Editor& editor, const BrushPlace& place, double radius, int count) {
-  const render::Scene& scene = editor.views->scene;
+std::vector<RingPoint> ring_on_body(const Views& views, const BrushPlace& place, double radius, int count) {
+  const render::Scene& scene = views.scene;
   const std::optional<SeenBody> body = scene.volume ? std::optional<SeenBody>(scene) : std::nullopt;
   const glm::dvec3 up = glm::normalize(place.normal),
                    along =

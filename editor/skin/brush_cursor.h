@@ -6,9 +6,12 @@
 
 #include <vector>
 
-#include "editor/skin/painting.h"
+#include <glm/glm.hpp>
 
 namespace limber::editor {
+
+struct BrushPlace;
+struct Views;
 
 struct RingPoint {
   glm::dvec3 at{0};      // position of the point in the world, mm
@@ -16,6 +19,6 @@ struct RingPoint {
 };
 
 // Returns `count` points of the projected circle at equal angles. radius: mm, positive.
-std::vector<RingPoint> ring_on_body(const Editor& editor, const BrushPlace& place, double radius, int count);
+std::vector<RingPoint> ring_on_body(const Views& views, const BrushPlace& place, double radius, int count);
 
 }  // namespace limber::editor

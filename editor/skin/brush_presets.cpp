@@ -11,9 +11,14 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_text.h"
+#include "editor/context/context.h"
+#include "editor/context/preferences_state.h"
 #include "editor/labels/label_brush.h"
 #include "editor/seams/seam_view.h"
+#include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -28,8 +33,8 @@ constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear",
 constexpr std::size_t kMostPoints = 16;
 constexpr std::size_t kLongestName = 100;
 
-Path presets_path(const Editor& editor) {
-  return editor.preferences_path.empty() ? Path() : editor.preferences_path.parent_path() / "brushes.json";
+Path presets_path(const PreferencesState& preferences_state) {
+  return preferences_state.path.empty() ? Path() : preferences_state.path.parent_path() / "brushes.json";
 }
 
 Json json_of(const BrushPreset& preset) {
@@ -126,17 +131,17 @@ std::string text_of_file(const Json& file) { return file.dump(1, ' ', false, Jso
 
 // Reads the presets file again, lets `change` change its list of presets, and writes the file. Reading it again keeps
 // the presets that another running Limber has saved meanwhile, and entries that this version cannot read.
-void change_file(Editor& editor, const std::function<void(Json& presets)>& change) {
-  const Path path = presets_path(editor);
-  Json file = file_of(path.empty() ? brush_presets(editor) : std::vector<BrushPreset>{});
+void change_file(Context& context, const std::function<void(Json& presets)>& change) {
+  const Path path = presets_path(context.preferences_state);
+  Json file = file_of(path.empty() ? brush_presets(context) : std::vector<BrushPreset>{});
   if (!path.empty() && std::filesystem::exists(path)) file = file_from(read_file(path), path.string());
   change(file["presets"]);
   if (!path.empty()) {
     std::filesystem::create_directories(path.parent_path());
     write_file_atomically(path, text_of_file(file));
   }
-  editor.skin->painting->presets = std::make_shared<BrushPresets>(BrushPresets{presets_in(file)});
-  editor.touch();
+  context.skin->painting->presets = std::make_shared<BrushPresets>(BrushPresets{presets_in(file)});
+  context.ui->touch();
 }
 
 bool is_preset_named(const Json& entry, const std::string& name) {
@@ -152,32 +157,32 @@ std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const 
   return presets_in(file_from(text, where));
 }
 
-bool has_brush_presets(const Editor& editor) {
-  if (const auto& presets = editor.skin->painting->presets) return !presets->list.empty();
+bool has_brush_presets(const Context& context) {
+  if (const auto& presets = context.skin->painting->presets) return !presets->list.empty();
   std::error_code unknown;
-  const Path path = presets_path(editor);
+  const Path path = presets_path(context.preferences_state);
   return !path.empty() && std::filesystem::exists(path, unknown);
 }
 
-const std::vector<BrushPreset>& brush_presets(Editor& editor) {
-  auto& presets = editor.skin->painting->presets;
+const std::vector<BrushPreset>& brush_presets(Context& context) {
+  auto& presets = context.skin->painting->presets;
   if (presets) return presets->list;
   presets = std::make_shared<BrushPresets>();
-  const Path path = presets_path(editor);
+  const Path path = presets_path(context.preferences_state);
   std::error_code unknown;
   if (path.empty() || !std::filesystem::exists(path, unknown)) return presets->list;
   try {
     presets->list = brush_presets_from_json(read_file(path), path.string());
   } catch (const Error& error) {
-    editor.messages.warn("The brush presets could not be read", error.what());
+    context.messages->warn("The brush presets could not be read", error.what());
   }
   return presets->list;
 }
 
-int brush_preset_in_use(Editor& editor) {
-  const auto& presets = brush_presets(editor);
+int brush_preset_in_use(Context& context) {
+  const auto& presets = brush_presets(context);
   for (std::size_t i = 0; i < presets.size(); ++i)
-    if (preset_of_brush(*editor.skin->painting, presets[i].name) == presets[i]) return static_cast<int>(i);
+    if (preset_of_brush(*context.skin->painting, presets[i].name) == presets[i]) return static_cast<int>(i);
   return -1;
 }
 
@@ -190,9 +195,9 @@ void require_preset_name(const std::vector<BrushPreset>& presets, const std::str
     throw Error("there are too many brush presets", std::to_string(presets.size()), "delete one first");
 }
 
-void save_brush_preset(Editor& editor, const std::string& name) {
-  const Json saved = json_of(preset_of_brush(*editor.skin->painting, name));
-  change_file(editor, [&](Json& presets) {
+void save_brush_preset(Context& context, const std::string& name) {
+  const Json saved = json_of(preset_of_brush(*context.skin->painting, name));
+  change_file(context, [&](Json& presets) {
     require_preset_name(presets_in(Json{{"presets", presets}}), name);
     for (Json& entry : presets)
       if (is_preset_named(entry, name)) return void(entry = saved);
@@ -200,8 +205,8 @@ void save_brush_preset(Editor& editor, const std::string& name) {
   });
 }
 
-void delete_brush_preset(Editor& editor, const std::string& name) {
-  change_file(editor, [&](Json& presets) {
+void delete_brush_preset(Context& context, const std::string& name) {
+  change_file(context, [&](Json& presets) {
     Json kept = Json::array();
     for (const Json& entry : presets)
       if (!is_preset_named(entry, name)) kept.push_back(entry);
@@ -209,9 +214,9 @@ void delete_brush_preset(Editor& editor, const std::string& name) {
   });
 }
 
-void use_brush_preset(Editor& editor, const std::string& name) {
-  Painting& painting = *editor.skin->painting;
-  for (const BrushPreset& preset : brush_presets(editor)) {
+void use_brush_preset(Context& context, const std::string& name) {
+  Painting& painting = *context.skin->painting;
+  for (const BrushPreset& preset : brush_presets(context)) {
     if (preset.name != name) continue;
     painting.kind = preset.kind;
     painting.radius = preset.radius;
@@ -220,8 +225,8 @@ void use_brush_preset(Editor& editor, const std::string& name) {
     painting.falloff = preset.falloff;
     painting.falloff_curve = preset.falloff_curve;
     if (preset.kind == BrushKind::JointCapsule) painting.blend_mm = preset.blend;
-    editor.seams->brush = painting.labels->on = false;
-    return editor.touch();
+    context.seams->brush = painting.labels->on = false;
+    return context.ui->touch();
   }
   throw Error("there is no such brush preset any more", name, "select another one");
 }

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/paint/stroke.h"
-#include "editor/context/editor.h"
-#include "editor/skin/painting.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct BrushPreset {
   std::string name;  // name of the preset, different from that of every other preset
@@ -35,11 +35,11 @@ std::string brush_presets_json(const std::vector<BrushPreset>& presets);
 std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const std::string& where);
 
 // Returns the user's presets. Reads the file at the first call; warns if it is damaged.
-const std::vector<BrushPreset>& brush_presets(Editor& editor);
+const std::vector<BrushPreset>& brush_presets(Context& context);
 // Returns false if the user is known to have no preset. Does not read the file.
-bool has_brush_presets(const Editor& editor);
+bool has_brush_presets(const Context& context);
 // Returns the index of the preset whose settings all equal the brush's settings; -1: none.
-int brush_preset_in_use(Editor& editor);
+int brush_preset_in_use(Context& context);
 
 // save_brush_preset() saves the brush's settings under a name and replaces a preset of the same name.
 // delete_brush_preset() deletes a preset. Both write the file; presets that other programs have saved meanwhile, and
@@ -47,9 +47,9 @@ int brush_preset_in_use(Editor& editor);
 // the presets then do not change. require_preset_name() throws Error if the name is blank or too long, or if there are
 // too many presets.
 void require_preset_name(const std::vector<BrushPreset>& presets, const std::string& name);
-void save_brush_preset(Editor& editor, const std::string& name);
-void delete_brush_preset(Editor& editor, const std::string& name);
+void save_brush_preset(Context& context, const std::string& name);
+void delete_brush_preset(Context& context, const std::string& name);
 // Gives the weight brush the settings of a preset, and selects it instead of the label brush or the seam brush.
-void use_brush_preset(Editor& editor, const std::string& name);
+void use_brush_preset(Context& context, const std::string& name);
 
 }  // namespace limber::editor

@@ -10,13 +10,15 @@
 
 namespace limber::editor {
 
+struct Context;
+
 enum class BrushNumber { Radius, Strength, Value };
 
-std::unique_ptr<Modal> begin_brush_number(Editor& editor, BrushNumber which);
+std::unique_ptr<Modal> begin_brush_number(Context& context, BrushNumber which);
 
 // Begins a tool in which the user draws a line with the left button. The weight fades from full at the line's start to
 // none at its end. The R key switches between fading along the line and fading in all directions from the line's start.
 // Escape or the right button cancels the tool.
-std::unique_ptr<Modal> begin_gradient(Editor& editor);
+std::unique_ptr<Modal> begin_gradient(Context& context);
 
 }  // namespace limber::editor

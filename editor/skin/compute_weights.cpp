@@ -8,11 +8,18 @@
 #include "core/binding/rigid.h"
 #include "core/bones/bone_parts.h"
 #include "core/skin/merge_recomputed.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/selection.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/seams/seam_view.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/body_seams.h"
 #include "editor/volume/tissue_edits.h"
 #include "editor/volume/volume_edits.h"
@@ -46,22 +53,22 @@ struct Part {
   std::vector<int> regions;
 };
 
-std::vector<int> chosen_of(const Editor& editor) {
-  std::vector<int> chosen(editor.selection.bones.begin(), editor.selection.bones.end());
-  if (chosen.empty()) chosen.push_back(*skin_bone(editor));
+std::vector<int> chosen_of(const Context& context) {
+  std::vector<int> chosen(context.selection->bones.begin(), context.selection->bones.end());
+  if (chosen.empty()) chosen.push_back(*skin_bone(context));
   return chosen;
 }
 
-Part part_of(Editor& editor, const Computation& computation) {
-  Part part{.edited = layer_to_edit(editor)};
-  const Document& document = editor.document();
-  if (computation.bones == Computation::Bones::Chosen) part.bones = chosen_of(editor);
+Part part_of(Context& context, const Computation& computation) {
+  Part part{.edited = layer_to_edit(context)};
+  const Document& document = context.document();
+  if (computation.bones == Computation::Bones::Chosen) part.bones = chosen_of(context);
   if (computation.bones == Computation::Bones::Unlocked)
     for (const Bone& bone : document.armature->bones) part.scope.locked.push_back(is_locked(document, bone.name));
-  if (computation.where == Computation::Where::ChosenBones) part.regions = chosen_of(editor);
+  if (computation.where == Computation::Where::ChosenBones) part.regions = chosen_of(context);
   if (computation.where == Computation::Where::ChosenTissue) {
     part.labels.assign(65536, 0);
-    for (const Label label : editor.selection.tissues) part.labels[label] = 1;
+    for (const Label label : context.selection->tissues) part.labels[label] = 1;
   }
   return part;
 }
@@ -103,13 +110,13 @@ void require_same(const Document& now, const Document& from) {
 
 }  // namespace
 
-void start_binding(Editor& editor, const Computation& computation) {
-  const Document from = editor.document();
+void start_binding(Context& context, const Computation& computation) {
+  const Document from = context.document();
   auto report = std::make_shared<WeightsReport>();
   auto changed = std::make_shared<std::int64_t>(0);
   const std::string label = label_of(computation.method);
-  const std::optional<Part> part = computation.in_part() ? std::optional(part_of(editor, computation)) : std::nullopt;
-  const int id = editor.jobs.start(label, [from, computation, report, changed, part](Progress& progress) -> Edit {
+  const std::optional<Part> part = computation.in_part() ? std::optional(part_of(context, computation)) : std::nullopt;
+  const int id = context.jobs->start(label, [from, computation, report, changed, part](Progress& progress) -> Edit {
     const TissueVoxels tissue(*from.volume);
     auto weights = std::make_shared<const SkinWeights>(computed(from, tissue, computation, progress, *report));
     if (!part) {
@@ -134,22 +141,22 @@ void start_binding(Editor& editor, const Computation& computation) {
       return *changed ? with_edited(now, edited, made) : now;
     };
   });
-  editor.step_of_job[id] = StepOfWork::Skin;
-  editor.after_job[id] = [label, report, changed, in_part = part.has_value(), source = seam_source(from)](
-                             Editor& e, const JobStatus& job) {
-    if (job.state != JobState::Done || !e.document().weights) return;
-    if (!in_part) e.seams->weights_from = source;
+  context.background->step_of_job[id] = StepOfWork::Skin;
+  context.background->after_job[id] = [label, report, changed, in_part = part.has_value(), source = seam_source(from)](
+                                          Context& c, const JobStatus& job) {
+    if (job.state != JobState::Done || !c.document().weights) return;
+    if (!in_part) c.seams->weights_from = source;
     if (in_part)
-      e.messages.ok(label, *changed ? grouped(*changed) + " voxels were computed again" : "No weight changed");
+      c.messages->ok(label, *changed ? grouped(*changed) + " voxels were computed again" : "No weight changed");
     else
-      e.messages.ok(label, grouped(e.document().weights->size()) + " voxels follow " +
-                               std::to_string(e.document().armature->bones.size()) + " bones");
-    for (const std::string& warning : report->warnings) e.messages.warn(label, capitalized(warning));
+      c.messages->ok(label, grouped(c.document().weights->size()) + " voxels follow " +
+                                std::to_string(c.document().armature->bones.size()) + " bones");
+    for (const std::string& warning : report->warnings) c.messages->warn(label, capitalized(warning));
   };
-  editor.touch();
+  context.ui->touch();
 }
 
-void ask_computation(Editor& editor) {
+void ask_computation(Context& context) {
   enum Field { Method, Bones, Where, Skin, Fat, Muscle, Other };
   constexpr double kSoftest = 0.1, kStiffest = 10;
   const auto stiffness = [&](const char* name) {
@@ -158,12 +165,12 @@ void ask_computation(Editor& editor) {
                      "bone to the next.",
                      1, kSoftest, kStiffest, "%.2f", "\u00d7");
   };
-  const auto asked = [](const Editor& e, const std::vector<FormField>& fields) {
+  const auto asked = [](const Context& c, const std::vector<FormField>& fields) {
     Computation computation{static_cast<BindingMethod>(fields[Method].chosen),
                             static_cast<Computation::Bones>(fields[Bones].chosen),
                             static_cast<Computation::Where>(fields[Where].chosen),
                             {}};
-    for (const Tissue& tissue : e.document().tissues->tissues) {
+    for (const Tissue& tissue : c.document().tissues->tissues) {
       if (is_bone(tissue.kind)) continue;
       const Field of = tissue.kind == TissueKind::Skin     ? Skin
                        : tissue.kind == TissueKind::Fat    ? Fat
@@ -173,13 +180,13 @@ void ask_computation(Editor& editor) {
     }
     return computation;
   };
-  const auto outcome = [asked](const Editor& e, const std::vector<FormField>& fields) -> std::string {
-    const Computation computation = asked(e, fields);
+  const auto outcome = [asked](const Context& c, const std::vector<FormField>& fields) -> std::string {
+    const Computation computation = asked(c, fields);
     if (!computation.in_part())
-      return e.document().layers ? "Computes the base weights below all layers again." : "Computes all weights again.";
-    if (!of_rig(e.document()))
+      return c.document().layers ? "Computes the base weights below all layers again." : "Computes all weights again.";
+    if (!of_rig(c.document()))
       throw Error("there are no weights of this rig yet", "computing some of them", "compute all weights first");
-    if (computation.where == Computation::Where::ChosenTissue && e.selection.tissues.empty())
+    if (computation.where == Computation::Where::ChosenTissue && c.selection->tissues.empty())
       throw NotYet{"Select tissues in the list first"};
     const std::string what =
         computation.bones == Computation::Bones::Chosen
@@ -189,7 +196,7 @@ void ask_computation(Editor& editor) {
             : "Changes the weights of all bones in the selected tissues or regions.";
     return what;
   };
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Compute weights",
        "Changes only the weights selected by Bones and Where. In stiffer tissue, the weights of two bones blend over a "
        "shorter distance.",
@@ -203,7 +210,7 @@ void ask_computation(Editor& editor) {
                   {"Everywhere", "Selected tissue", "Selected bones"}),
         stiffness("Skin"), stiffness("Fat"), stiffness("Muscle"), stiffness("Other tissue")},
        outcome,
-       [asked](Editor& e, const std::vector<FormField>& fields) { start_binding(e, asked(e, fields)); }}));
+       [asked](Context& c, const std::vector<FormField>& fields) { start_binding(c, asked(c, fields)); }}));
 }
 
 }  // namespace limber::editor

@@ -4,9 +4,10 @@
 #pragma once
 
 #include "core/binding/heat_diffusion.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
+
+struct Context;
 
 enum class BindingMethod { Heat, Geodesic, Rigid };
 
@@ -28,8 +29,8 @@ struct Computation {
 
 // Starts the computation in a job. Needs a volume, tissues and an armature. A partial computation also needs weights
 // that belong to this armature.
-void start_binding(Editor& editor, const Computation& computation);
+void start_binding(Context& context, const Computation& computation);
 // Opens a dialog that asks for the computation's settings and starts it.
-void ask_computation(Editor& editor);
+void ask_computation(Context& context);
 
 }  // namespace limber::editor

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/project/history.h"
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
 #include "editor/skin/compute_weights.h"
 #include "editor/ui/icons.h"
@@ -7,22 +10,22 @@ namespace limber::editor {
 
 namespace {
 
-std::string needs_rig(const Editor& editor) {
-  if (!editor.document().volume || !editor.document().tissues) return "Open a volume first";
-  return editor.document().armature ? "" : "Import a rig first";
+std::string needs_rig(const Context& context) {
+  if (!context.document().volume || !context.document().tissues) return "Open a volume first";
+  return context.document().armature ? "" : "Import a rig first";
 }
 
 Operator binding_operator(const char* id, const char* label, const char* description, BindingMethod method) {
   return {id,        label,       icon::kSkin,
-          "Weights", description, [method](Editor& e) { start_binding(e, {.method = method}); },
+          "Weights", description, [method](Context& c) { start_binding(c, {.method = method}); },
           needs_rig};
 }
 
-void drop_weights(Editor& editor) {
-  Document next = editor.document();
+void drop_weights(Context& context) {
+  Document next = context.document();
   next.weights.reset();
   next.layers.reset();
-  editor.history.commit("Remove weights", std::move(next));
+  context.history->commit("Remove weights", std::move(next));
 }
 
 }  // namespace
@@ -41,7 +44,7 @@ std::vector<Operator> skin_operators() {
        ask_computation, needs_rig},
       {"skin.drop_weights", "Remove weights", icon::kTrash, "Weights",
        "Remove all weights and layers from the project.", drop_weights,
-       [](const Editor& e) { return e.document().weights ? std::string() : std::string("There are no weights"); }},
+       [](const Context& c) { return c.document().weights ? std::string() : std::string("There are no weights"); }},
   };
 }
 

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
 
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/brush_tools.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_edits.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 #include "editor/viewport/transform_tool.h"
 
@@ -18,45 +22,45 @@ using Fields = std::vector<FormField>;
 
 class GradientTool final : public Modal {
  public:
-  explicit GradientTool(Editor& editor) : pointer_(editor.input.pointer) {}
+  explicit GradientTool(Context& context) : pointer_(context.ui->input.pointer) {}
 
-  bool moved(Editor& editor, const glm::vec2&) override {
-    pointer_ = editor.input.pointer;
+  bool moved(Context& context, const glm::vec2&) override {
+    pointer_ = context.ui->input.pointer;
     if (view_) to_ = at_pointer();
-    editor.touch();
+    context.ui->touch();
     return true;
   }
-  bool key(Editor& editor, const KeyChanged& event) override {
+  bool key(Context& context, const KeyChanged& event) override {
     if (!event.down) return true;
     if (event.key == Key::R) radial_ = !radial_;
-    editor.touch();
+    context.ui->touch();
     return event.key != Key::Escape;
   }
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool button(Context& context, const ButtonChanged& event) override {
     if (event.button == MouseButton::Right && event.down) return false;
     if (event.button != MouseButton::Left) return true;
     if (event.down) {
-      const ViewPlace* place = editor.layout.view_at(pointer_);
+      const ViewPlace* place = context.screen->layout.view_at(pointer_);
       if (!place) return false;
-      view_.emplace(editor, *place);
+      view_.emplace(context, *place);
       // The line starts at the body's surface under the pointer. If no tissue is under the pointer, the line starts at
       // the depth of the camera's centre (3D view) or of the crosshair (slice).
-      const auto body = brush_place(editor, *place, pointer_);
+      const auto body = brush_place(context, *place, pointer_);
       from_ = body                        ? body->seen
-              : place->id == ViewId::Body ? editor.views->body.camera.centre
-                                          : editor.views->cross_hair;
+              : place->id == ViewId::Body ? context.views->body.camera.centre
+                                          : context.views->cross_hair;
       from_ = to_ = at_pointer();
       begun_ = pointer_;
       return true;
     }
     if (!view_) return true;
-    if (glm::distance(begun_, pointer_) >= kLeast * editor.look.scale) keep(editor);
+    if (glm::distance(begun_, pointer_) >= kLeast * context.ui->look.scale) keep(context);
     return false;
   }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
+  void draw(Context& context, const ViewPlace& place) override {
     if (!view_ || place.id != view_->place.id) return;
-    const GizmoPainter painter(editor, *view_);
+    const GizmoPainter painter(context, *view_);
     const double length = glm::distance(from_, to_);
     const Colour dark = with_alpha(0xFF000000, 0.55f);
     if (radial_ && length > 0)
@@ -73,7 +77,7 @@ class GradientTool final : public Modal {
     painter.dot(to_, 0xFF69625E, 0xFFFFFFFF, 5);
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"LMB"}, "Drag from full weight to none"},
             {{"R"}, radial_ ? "Fade along the line" : "Fade around the line's start"},
             {{"Esc"}, "Cancel"}};
@@ -86,10 +90,10 @@ class GradientTool final : public Modal {
  private:
   glm::dvec3 at_pointer() const { return view_->in_plane(pointer_, from_, view_->towards_eye).value_or(from_); }
 
-  void keep(Editor& editor) {
-    const Painting& painting = *editor.skin->painting;
+  void keep(Context& context) {
+    const Painting& painting = *context.skin->painting;
     edit_weights(
-        editor,
+        context,
         {choice_of("Shape",
                    "Linear: the weight fades along the line. Radial: it fades in all directions from the line's start.",
                    {"Linear", "Radial"}, radial_ ? 1 : 0),
@@ -98,14 +102,14 @@ class GradientTool final : public Modal {
          choice_of("Falloff", "How the weight changes from the start of the line to its end.",
                    {"Smooth", "Sphere", "Root", "Sharp", "Linear"}, static_cast<int>(FalloffShape::Linear)),
          number_of("Amount", "How much of the change is applied. 0 = none, 1 = all.", 1, 0, 1, "%.2f")},
-        [from = from_, to = to_](const Editor& e, const Fields& fields) {
+        [from = from_, to = to_](const Context& c, const Fields& fields) {
           Gradient gradient{from,
                             to,
                             fields[0].chosen == 1,
                             fields[1].value,
                             fields[2].value,
                             static_cast<FalloffShape>(fields[3].chosen)};
-          return WeightOperation{.label = "Gradient of " + painted_name(e),
+          return WeightOperation{.label = "Gradient of " + painted_name(c),
                                  .work = [gradient, amount = fields[4].value](const WeightsToEdit& what,
                                                                               const EditScope& scope) -> EditedWeights {
                                    return {with_gradient(what.body(), *what.document.weights, what.settings.bones,
@@ -123,6 +127,6 @@ class GradientTool final : public Modal {
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_gradient(Editor& editor) { return std::make_unique<GradientTool>(editor); }
+std::unique_ptr<Modal> begin_gradient(Context& context) { return std::make_unique<GradientTool>(context); }
 
 }  // namespace limber::editor

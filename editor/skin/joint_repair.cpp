@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/seams/seam_view.h"
 #include "editor/shown/preview_blend.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -37,15 +42,16 @@ std::string gain_of(const JointRepair& figures) {
 
 }  // namespace
 
-void start_repairing_joint(Editor& editor) {
-  const Document of = editor.document();
-  const int bone = *skin_bone(editor);
-  const JointRepairSettings settings{
-      .range = {}, .blend = preview_blend(editor), .locked = stroke_settings(editor, BrushKind::Smooth).locked};
+void start_repairing_joint(Context& context) {
+  const Document of = context.document();
+  const int bone = *skin_bone(context);
+  const JointRepairSettings settings{.range = {},
+                                     .blend = preview_blend(context.resampling),
+                                     .locked = stroke_settings(context, BrushKind::Smooth).locked};
   const LayerToEdit edited{of.layers, std::nullopt, of.weights, of.weights};
   const std::string name = of.armature->bones[static_cast<std::size_t>(bone)].name;
-  start_task(editor, kRepairing,
-             [of, bone, settings, edited, name, tissue = parted_tissue(editor)](Progress& progress) -> Finish {
+  start_task(context, kRepairing,
+             [of, bone, settings, edited, name, tissue = parted_tissue(context)](Progress& progress) -> Finish {
                JointRepair repair = repair_joint({*of.volume, *tissue, *of.tissues, *of.armature}, *of.weights, bone,
                                                  settings, progress);
                auto told = std::make_shared<RepairedJoint>(RepairedJoint{.bone = name, .figures = {}, .in = {}});
@@ -53,23 +59,23 @@ void start_repairing_joint(Editor& editor) {
                if (repair.is_better) made = on_own_layer(edited, "Joint of " + name, repair.weights);
                repair.weights = {};
                told->figures = std::move(repair);
-               return [edited, name, told, made](Editor& e) {
+               return [edited, name, told, made](Context& c) {
                  if (made) {
-                   commit_weights(e, "Repair the joint of " + name, edited, *made);
-                   choose_layer(e, made->layers->layers.size() - 1);
-                   e.messages.ok(kRepairing, gain_of(told->figures));
+                   commit_weights(c, "Repair the joint of " + name, edited, *made);
+                   choose_layer(c, made->layers->layers.size() - 1);
+                   c.messages->ok(kRepairing, gain_of(told->figures));
                  } else {
-                   e.messages.info(kRepairing, "No better weights were found: nothing was changed");
+                   c.messages->info(kRepairing, "No better weights were found: nothing was changed");
                  }
-                 told->in = e.document().weights;
-                 e.skin->painting->repaired_joint = told;
-                 e.touch();
+                 told->in = c.document().weights;
+                 c.skin->painting->repaired_joint = told;
+                 c.ui->touch();
                };
              });
 }
 
-bool repairs_joint(const Editor& editor) {
-  const auto all = editor.jobs.statuses();
+bool repairs_joint(const Jobs& jobs) {
+  const auto all = jobs.statuses();
   return std::any_of(all.begin(), all.end(),
                      [](const JobStatus& job) { return job.label == kRepairing && job.active(); });
 }

@@ -6,12 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/project/job.h"
 #include "core/repair/repair_joint.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
 
 class Column;
+struct Context;
 
 // The outcome of the last repair.
 struct RepairedJoint {
@@ -24,10 +25,10 @@ struct RepairedJoint {
 
 // Starts the repair in a job. The document must have weights that belong to its rig, and an active bone with a parent.
 // If the repair improves nothing, the document does not change and a message says so.
-void start_repairing_joint(Editor& editor);
-bool repairs_joint(const Editor& editor);
+void start_repairing_joint(Context& context);
+bool repairs_joint(const Jobs& jobs);
 
 // Draws the section "Joint" of the sidebar.
-void draw_joint_repair(Editor& editor, Column& column);
+void draw_joint_repair(Context& context, Column& column);
 
 }  // namespace limber::editor

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The operator that repairs the joint of the active bone.
 
+#include "editor/context/context.h"
 #include "editor/context/operator.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/joint_repair.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_problems.h"
@@ -11,13 +13,13 @@ namespace limber::editor {
 
 namespace {
 
-std::string needs_joint(const Editor& editor) {
-  if (std::string why = why_not_these_weights(editor); !why.empty()) return why;
-  const auto& bones = editor.document().armature->bones;
-  const std::optional<int> bone = skin_bone(editor);
+std::string needs_joint(const Context& context) {
+  if (std::string why = why_not_these_weights(context); !why.empty()) return why;
+  const auto& bones = context.document().armature->bones;
+  const std::optional<int> bone = skin_bone(context);
   if (!bone) return "Select the bone below the joint first";
   if (bones[static_cast<std::size_t>(*bone)].parent < 0) return "This bone has no joint: select a bone with a parent";
-  return repairs_joint(editor) ? "A joint is being repaired" : "";
+  return repairs_joint(context.jobs) ? "A joint is being repaired" : "";
 }
 
 }  // namespace

@@ -6,16 +6,24 @@
 #include <utility>
 
 #include "core/rig/mirror.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
 #include "editor/context/document_edits.h"
-#include "editor/context/editor.h"
+#include "editor/context/interaction.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/screen.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/view_projection.h"
+#include "editor/context/views.h"
+#include "editor/input/keymap.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/brush_cursor.h"
 #include "editor/skin/label_strokes.h"
 #include "editor/skin/seam_brush.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
 #include "editor/ui/draw.h"
+#include "editor/ui/messages.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
@@ -61,7 +69,7 @@ struct Painting::Running {
 
 namespace {
 
-void show_stroke(Editor& editor, Painting::Running& running) {
+void show_stroke(Context& context, Painting::Running& running) {
   const std::vector<int> dirty = running.stroke->take_dirty();
   if (dirty.empty()) return;
   if (const WeightLayers* layers = running.edited.layers.get()) {
@@ -77,48 +85,48 @@ void show_stroke(Editor& editor, Painting::Running& running) {
       };
       running.shown->set_chunk(brick, came_out());
     }
-    editor.views->preview_weights = std::make_shared<const SkinWeights>(*running.shown);
+    context.views->preview_weights = std::make_shared<const SkinWeights>(*running.shown);
   } else {
-    editor.views->preview_weights = std::make_shared<const SkinWeights>(running.stroke->weights());
+    context.views->preview_weights = std::make_shared<const SkinWeights>(running.stroke->weights());
   }
-  editor.touch();
+  context.ui->touch();
 }
 
-void drop_stroke(Editor& editor) {
-  editor.skin->painting->running.reset();
-  editor.views->preview_weights.reset();
-  editor.touch();
+void drop_stroke(Context& context) {
+  context.skin->painting->running.reset();
+  context.views->preview_weights.reset();
+  context.ui->touch();
 }
 
 // Paints along a straight line from the pixel of the last call to this pixel.
-void paint_to(Editor& editor, const glm::vec2& pixel) {
-  Painting& painting = *editor.skin->painting;
+void paint_to(Context& context, const glm::vec2& pixel) {
+  Painting& painting = *context.skin->painting;
   Painting::Running& running = *painting.running;
-  const ViewProjection seen(editor, running.view);
-  const glm::dvec3 reference = painting.place ? painting.place->seen : editor.views->cross_hair;
+  const ViewProjection seen(context, running.view);
+  const glm::dvec3 reference = painting.place ? painting.place->seen : context.views->cross_hair;
   const double radius_seen = painting.radius / std::max(seen.millimetres_per_pixel(reference), 1e-6);
   const int steps = std::clamp(
       static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / std::max(kStepOfRadius * radius_seen, 1.0))), 1,
       kMostSteps);
   for (int step = 1; step <= steps; ++step) {
-    const auto place = brush_place(editor, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
+    const auto place = brush_place(context, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
     painting.place = place;
     if (place) running.stroke->to(place->rest);
     else running.stroke->lift();
   }
   running.pixel = pixel;
-  show_stroke(editor, running);
+  show_stroke(context, running);
 }
 
-void end_stroke(Editor& editor) {
-  const std::shared_ptr<Painting::Running> running = editor.skin->painting->running;
+void end_stroke(Context& context) {
+  const std::shared_ptr<Painting::Running> running = context.skin->painting->running;
   Stroke& stroke = *running->stroke;
   const bool empty = stroke.empty();
   const int lock = stroke.blocked_count() > 0 ? stroke.blocked_by() : -1;
   if (!empty) {
     const SkinWeights after = stroke.finish();
     if (running->of == Painting::Running::Of::Canvas) {
-      commit_weights(editor, running->label, running->edited,
+      commit_weights(context, running->label, running->edited,
                      edited_layers(running->edited, std::make_shared<const SkinWeights>(after)));
     } else {
       WeightLayers next = *running->edited.layers;
@@ -127,18 +135,18 @@ void end_stroke(Editor& editor) {
           running->of == Painting::Running::Of::Mask
               ? mask_painted_on(next, *running->edited.layer, *running->before, after)
               : shares_painted_on(*layer, *running->before, after));
-      commit_layers(editor, running->label, std::move(next));
+      commit_layers(context, running->label, std::move(next));
     }
   }
-  drop_stroke(editor);
+  drop_stroke(context);
   if (!empty || lock < 0 || running->of == Painting::Running::Of::Mask) return;
   if (running->of == Painting::Running::Of::Shares && !is_locked(running->document, running->before->bones()[lock])) {
-    editor.messages.toast_error("The layer's weights here already sum to 1",
-                                "Normalize is off, so strokes do not take weight from the layer's other bones",
-                                "skin.normalize_unlocked");
+    context.messages->toast_error("The layer's weights here already sum to 1",
+                                  "Normalize is off, so strokes do not take weight from the layer's other bones",
+                                  "skin.normalize_unlocked");
   } else {
-    editor.messages.toast_error(lock_message(running->bones, lock),
-                                "No other unlocked bone can give or take weight here", "skin.unlock_all");
+    context.messages->toast_error(lock_message(running->bones, lock),
+                                  "No other unlocked bone can give or take weight here", "skin.unlock_all");
   }
 }
 
@@ -162,26 +170,26 @@ void keep_other_bones(const Armature& armature, StrokeSettings& settings) {
 
 }  // namespace
 
-void begin_stroke(Editor& editor, BrushKind kind) {
-  const ViewPlace* view = hovered_view(editor);
-  if (!view || !why_not_paint(editor).empty()) return;
-  if (editor.skin->painting->mask && active_layer(editor) && kind == BrushKind::JointCapsule)
-    return editor.messages.info("Paint", "The joint capsule brush cannot paint masks: select another brush");
+void begin_stroke(Context& context, BrushKind kind) {
+  const ViewPlace* view = hovered_view(context);
+  if (!view || !why_not_paint(context).empty()) return;
+  if (context.skin->painting->mask && active_layer(context) && kind == BrushKind::JointCapsule)
+    return context.messages->info("Paint", "The joint capsule brush cannot paint masks: select another brush");
   auto running = std::make_shared<Painting::Running>();
   running->kind = kind;
-  running->document = editor.document();
-  running->tissue = parted_tissue(editor);
+  running->document = context.document();
+  running->tissue = parted_tissue(context);
   running->view = *view;
-  running->pixel = editor.input.pointer;
+  running->pixel = context.ui->input.pointer;
   const Document& document = running->document;
-  const int bone = *skin_bone(editor);
-  running->edited = layer_to_edit(editor);
+  const int bone = *skin_bone(context);
+  running->edited = layer_to_edit(context);
   running->label = std::string(name_of(kind)) + " " + document.armature->bones[bone].name;
-  StrokeSettings settings = stroke_settings(editor, kind);
+  StrokeSettings settings = stroke_settings(context, kind);
   running->before = running->edited.weights;
   running->bones = *document.armature;
   if (running->edited.layers) running->shown = *document.weights;
-  if (editor.skin->painting->mask && running->edited.layer) {
+  if (context.skin->painting->mask && running->edited.layer) {
     const WeightLayer& layer = *running->edited.layers->layers[*running->edited.layer];
     running->label = std::string(name_of(kind)) + " mask of " + layer.name;
     running->of = Painting::Running::Of::Mask;
@@ -202,40 +210,41 @@ void begin_stroke(Editor& editor, BrushKind kind) {
   }
   running->stroke = std::make_unique<Stroke>(
       WeightedBody{*document.volume, *running->tissue, *document.tissues, running->bones}, running->before, settings);
-  editor.skin->painting->running = running;
-  paint_to(editor, editor.input.pointer);
-  editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { paint_to(e, e.input.pointer); }, end_stroke,
-                     drop_stroke};
+  context.skin->painting->running = running;
+  paint_to(context, context.ui->input.pointer);
+  context.interaction->drag =
+      Drag{MouseButton::Left, [](Context& c, const glm::vec2&) { paint_to(c, c.ui->input.pointer); }, end_stroke,
+           drop_stroke};
 }
 
-int dabs_of_stroke(const Editor& editor) {
-  const auto& running = editor.skin->painting->running;
+int dabs_of_stroke(const SkinDisplay& skin) {
+  const auto& running = skin.painting->running;
   return running ? running->stroke->dab_count() : 0;
 }
 
-void follow_brush(Editor& editor) {
-  Painting& painting = *editor.skin->painting;
-  editor.skin->ring = 0;
+void follow_brush(Context& context) {
+  Painting& painting = *context.skin->painting;
+  context.skin->ring = 0;
   LabelBrush& labels = *painting.labels;
   // Switches the label brush off, because the user selected the seam brush after it.
-  if (editor.seams->brush) labels.on = false;
+  if (context.seams->brush) labels.on = false;
   if (!painting.running && !labels.running) {
     painting.place.reset();
-    const ViewPlace* view = hovered_view(editor);
-    const bool works = labels.on             ? why_not_paint_labels(editor).empty()
-                       : editor.seams->brush ? why_not_cut(editor).empty()
-                                             : why_not_paint(editor).empty();
-    if (editor.workspace != Workspace::Skin || !view || (editor.drag && !editor.seams->running) || editor.dialog ||
-        !works)
+    const ViewPlace* view = hovered_view(context);
+    const bool works = labels.on              ? why_not_paint_labels(context).empty()
+                       : context.seams->brush ? why_not_cut(context).empty()
+                                              : why_not_paint(context).empty();
+    if (context.workspace() != Workspace::Skin || !view || (context.interaction->drag && !context.seams->running) ||
+        context.dialogs->shown || !works)
       return;
-    painting.place = labels.on ? label_brush_place(editor, *view, editor.input.pointer)
-                               : brush_place(editor, *view, editor.input.pointer);
+    painting.place = labels.on ? label_brush_place(context, *view, context.ui->input.pointer)
+                               : brush_place(context, *view, context.ui->input.pointer);
   }
   if (!painting.place) return;
-  for (const ViewPlace& view : editor.layout.view_places)
+  for (const ViewPlace& view : context.screen->layout.view_places)
     if (view.id == painting.place->view)
-      editor.skin->ring = static_cast<float>(painting.radius /
-                                             ViewProjection(editor, view).millimetres_per_pixel(painting.place->seen));
+      context.skin->ring = static_cast<float>(
+          painting.radius / ViewProjection(context, view).millimetres_per_pixel(painting.place->seen));
 }
 
 namespace {
@@ -251,15 +260,16 @@ StrokeEffect effect_of_kind(BrushKind brush, BrushKind stroke) {
                                        : StrokeEffect::OfBrush;
 }
 
-StrokeEffect effect_of_stroke(const Editor& editor) {
-  const Painting& painting = *editor.skin->painting;
+StrokeEffect effect_of_stroke(const Context& context) {
+  const Painting& painting = *context.skin->painting;
   if (painting.running) return effect_of_kind(painting.kind, painting.running->kind);
   const std::string* id = nullptr;
   for (const Chord::Kind kind : {Chord::Kind::Drag, Chord::Kind::Press})
-    if (!id) id = editor.keymap.find({kind, editor.input.modifiers(), Key::None, MouseButton::Left}, contexts(editor));
+    if (!id)
+      id = context.keymap->find({kind, context.ui->input.modifiers(), Key::None, MouseButton::Left}, contexts(context));
   const bool subtracts = id && *id == "skin.paint_subtract", smooths = id && *id == "skin.paint_smooth";
   if (painting.labels->on) return subtracts ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
-  if (editor.seams->brush) return subtracts || smooths ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
+  if (context.seams->brush) return subtracts || smooths ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
   if (smooths) return effect_of_kind(painting.kind, BrushKind::Smooth);
   return subtracts && painting.kind != BrushKind::Subtract ? StrokeEffect::TakesAway : StrokeEffect::OfBrush;
 }
@@ -286,26 +296,26 @@ void draw_sign(const Look& look, const glm::vec2& at, StrokeEffect effect, Colou
 // Draws the brush's ring, and inside it a dashed ring at half of its radius, around a point of the shown body.
 class RingPainter {
  public:
-  RingPainter(Editor& editor, const ViewProjection& seen, Colour colour)
-      : editor_(editor),
+  RingPainter(Context& context, const ViewProjection& seen, Colour colour)
+      : context_(context),
         seen_(seen),
-        painter_(editor, seen),
+        painter_(context, seen),
         colour_(colour) {}
 
   // In the 3D view, the ring follows the body's surface. Parts of the ring without a surface below them are faint. In a
   // slice, the ring is a plain circle.
   void ring(const glm::dvec3& centre, float alpha) const {
-    const Painting& painting = *editor_.skin->painting;
+    const Painting& painting = *context_.skin->painting;
     const BrushPlace& place = *painting.place;
     const double radius = painting.radius;
     // The label brush paints the same label everywhere in the ball, so it has no ring of half its effect.
     const bool fades = !painting.labels->on;
     if (seen_.place.id == ViewId::Body) {
       BrushPlace there = place;
-      if (centre != place.seen) there.normal = mirror_plane(*editor_.document().armature).direction(place.normal);
+      if (centre != place.seen) there.normal = mirror_plane(*context_.document().armature).direction(place.normal);
       there.seen = centre;
-      line(ring_on_body(editor_, there, radius, kRingPoints), alpha, 2, false);
-      if (fades) line(ring_on_body(editor_, there, radius / 2, kRingPoints), 0.7f * alpha, 1.2f, true);
+      line(ring_on_body(context_.views, there, radius, kRingPoints), alpha, 2, false);
+      if (fades) line(ring_on_body(context_.views, there, radius / 2, kRingPoints), 0.7f * alpha, 1.2f, true);
       return;
     }
     const Ring rim = ring_at(place, centre, radius), half = ring_at(place, centre, radius / 2);
@@ -328,7 +338,7 @@ class RingPainter {
       }
   }
 
-  Editor& editor_;
+  Context& context_;
   const ViewProjection& seen_;
   GizmoPainter painter_;
   Colour colour_;
@@ -336,27 +346,27 @@ class RingPainter {
 
 }  // namespace
 
-void draw_brush(Editor& editor, const ViewPlace& view) {
-  const Painting& painting = *editor.skin->painting;
-  if (!painting.place || painting.place->view != view.id || editor.modal) return;
-  const ViewProjection seen(editor, view);
-  const GizmoPainter painter(editor, seen);
+void draw_brush(Context& context, const ViewPlace& view) {
+  const Painting& painting = *context.skin->painting;
+  if (!painting.place || painting.place->view != view.id || context.interaction->modal) return;
+  const ViewProjection seen(context, view);
+  const GizmoPainter painter(context, seen);
   const BrushPlace& place = *painting.place;
-  const StrokeEffect effect = effect_of_stroke(editor);
+  const StrokeEffect effect = effect_of_stroke(context);
   const Colour colour = effect == StrokeEffect::TakesAway ? kViewError
                         : effect == StrokeEffect::Smooths ? kViewAccent
                                                           : 0xFFFFFFFF;
-  const RingPainter rings(editor, seen, colour);
+  const RingPainter rings(context, seen, colour);
   rings.ring(place.seen, 1);
   if (view.id == ViewId::Body)
     painter.line(place.seen,
-                 place.seen + place.normal * (22.0 * editor.look.scale * seen.millimetres_per_pixel(place.seen)),
+                 place.seen + place.normal * (22.0 * context.ui->look.scale * seen.millimetres_per_pixel(place.seen)),
                  with_alpha(colour, 0.8f), 1.5f);
   if (effect == StrokeEffect::OfBrush) painter.dot(place.seen, colour, with_alpha(0xFF000000, 0.55f), 2.5f);
-  else if (const auto at = seen.pixel_of(place.seen)) draw_sign(editor.look, glm::vec2(*at), effect, colour);
-  if (editor.transform_settings->x_mirror && !editor.views->scene.pose && !editor.seams->brush &&
+  else if (const auto at = seen.pixel_of(place.seen)) draw_sign(context.ui->look, glm::vec2(*at), effect, colour);
+  if (context.transform_settings->x_mirror && !context.views->scene.pose && !context.seams->brush &&
       !painting.labels->on) {
-    const glm::dvec3 other = mirrored(*editor.document().armature, place.seen);
+    const glm::dvec3 other = mirrored(*context.document().armature, place.seen);
     if (seen.shows(other)) rings.ring(other, 0.5f);
   }
 }

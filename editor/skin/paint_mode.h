@@ -7,13 +7,16 @@
 
 namespace limber::editor {
 
+struct Context;
+struct ViewPlace;
+
 // Begins a stroke with this brush at the pointer. The stroke ends when the button is released.
-void begin_stroke(Editor& editor, BrushKind kind);
+void begin_stroke(Context& context, BrushKind kind);
 // Returns the number of dabs of the running stroke; 0 without a stroke.
-int dabs_of_stroke(const Editor& editor);
+int dabs_of_stroke(const SkinDisplay& skin);
 // Moves the brush's cursor to the pointer. Call once per frame.
-void follow_brush(Editor& editor);
+void follow_brush(Context& context);
 // Draws the brush's ring over a view, and the mirrored ring if X mirror is on.
-void draw_brush(Editor& editor, const ViewPlace& view);
+void draw_brush(Context& context, const ViewPlace& view);
 
 }  // namespace limber::editor

@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
+#include "editor/context/views.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/brush_tools.h"
 #include "editor/skin/label_strokes.h"
 #include "editor/skin/paint_mode.h"
@@ -10,6 +16,7 @@
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 #include "editor/viewport/transform_tool.h"
 
 namespace limber::editor {
@@ -19,25 +26,25 @@ namespace {
 // Change of the brush per key press: the radius is multiplied by kGrowth, kStep is added to the strength.
 constexpr double kGrowth = 1.15, kStep = 0.05;
 
-bool paints_labels(const Editor& editor) { return editor.skin->painting->labels->on; }
+bool paints_labels(const SkinDisplay& skin) { return skin.painting->labels->on; }
 
-std::string needs_paint_below(const Editor& editor) {
-  if (paints_labels(editor)) {
-    const std::string why = why_not_paint_labels(editor);
-    return !why.empty() || editor.views->hover.view ? why : "Put the pointer on the body";
+std::string needs_paint_below(const Context& context) {
+  if (paints_labels(context.skin)) {
+    const std::string why = why_not_paint_labels(context);
+    return !why.empty() || context.views->hover.view ? why : "Put the pointer on the body";
   }
-  if (editor.seams->brush) {
-    const std::string why = why_not_cut(editor);
-    return !why.empty() || editor.views->hover.view ? why : "Put the pointer on the body";
+  if (context.seams->brush) {
+    const std::string why = why_not_cut(context);
+    return !why.empty() || context.views->hover.view ? why : "Put the pointer on the body";
   }
   for (const auto& disabled_reason : {why_not_paint, why_brush_reaches_nothing})
-    if (std::string why = disabled_reason(editor); !why.empty()) return why;
-  return editor.views->hover.view ? "" : "Put the pointer on the body";
+    if (std::string why = disabled_reason(context); !why.empty()) return why;
+  return context.views->hover.view ? "" : "Put the pointer on the body";
 }
 
-void begin_number(Editor& editor, BrushNumber which) {
-  editor.modal = begin_brush_number(editor, which);
-  editor.modal_wrap = {};
+void begin_number(Context& context, BrushNumber which) {
+  context.interaction->modal = begin_brush_number(context, which);
+  context.interaction->modal_wrap = {};
 }
 
 const char* icon_of(BrushKind kind) {
@@ -53,13 +60,13 @@ std::vector<Operator> brush_operators() {
   std::vector<Operator> all;
   for (const BrushRule& rule : brush_rules())
     all.push_back({operator_of(rule), rule.name, icon_of(rule.kind), "Brush", rule.description,
-                   [kind = rule.kind](Editor& e) {
-                     e.skin->painting->kind = kind;
-                     e.seams->brush = e.skin->painting->labels->on = false;
+                   [kind = rule.kind](Context& c) {
+                     c.skin->painting->kind = kind;
+                     c.seams->brush = c.skin->painting->labels->on = false;
                    },
                    nullptr,
-                   [kind = rule.kind](const Editor& e) {
-                     return e.skin->painting->kind == kind && !e.seams->brush && !paints_labels(e);
+                   [kind = rule.kind](const Context& c) {
+                     return c.skin->painting->kind == kind && !c.seams->brush && !paints_labels(c.skin);
                    }});
   return all;
 }
@@ -70,15 +77,15 @@ template <class Value>
 Operator setting(const char* id, const char* label, const char* description, Value Painting::*member, Value value) {
   return {id,          label,
           "",          "Brush",
-          description, [=](Editor& e) { (*e.skin->painting).*member = value; },
-          nullptr,     [=](const Editor& e) { return (*e.skin->painting).*member == value; }};
+          description, [=](Context& c) { (*c.skin->painting).*member = value; },
+          nullptr,     [=](const Context& c) { return (*c.skin->painting).*member == value; }};
 }
 
 Operator normalizing(const char* id, const char* label, const char* description, Normalize how) {
   return {id,          label,
           "",          "Brush",
-          description, [how](Editor& e) { e.skin->painting->normalize = how; },
-          nullptr,     [how](const Editor& e) { return normalize_of(e) == how; }};
+          description, [how](Context& c) { c.skin->painting->normalize = how; },
+          nullptr,     [how](const Context& c) { return normalize_of(c) == how; }};
 }
 
 Operator shape(const char* id, const char* label, const char* description, FalloffShape falloff) {
@@ -87,19 +94,19 @@ Operator shape(const char* id, const char* label, const char* description, Fallo
           "",
           "Brush",
           description,
-          [falloff](Editor& e) {
-            e.skin->painting->falloff = falloff;
-            e.skin->painting->falloff_curve.clear();
+          [falloff](Context& c) {
+            c.skin->painting->falloff = falloff;
+            c.skin->painting->falloff_curve.clear();
           },
           nullptr,
-          [falloff](const Editor& e) {
-            return e.skin->painting->falloff_curve.empty() && e.skin->painting->falloff == falloff;
+          [falloff](const Context& c) {
+            return c.skin->painting->falloff_curve.empty() && c.skin->painting->falloff == falloff;
           }};
 }
 
-std::string needs_layer(const Editor& editor) {
-  if (!active_layer(editor)) return "Select a layer first: strokes on the base are always normalized";
-  return editor.skin->painting->mask ? "The layer's mask is being painted, and a mask is not normalized" : "";
+std::string needs_layer(const Context& context) {
+  if (!active_layer(context)) return "Select a layer first: strokes on the base are always normalized";
+  return context.skin->painting->mask ? "The layer's mask is being painted, and a mask is not normalized" : "";
 }
 
 Operator leaving_normalizing() {
@@ -112,23 +119,21 @@ Operator leaving_normalizing() {
   return off;
 }
 
-void scale_radius(Editor& editor, double by) {
-  editor.skin->painting->radius =
-      std::clamp(editor.skin->painting->radius * by, Painting::kLeastRadius, Painting::kMostRadius);
+void scale_radius(SkinDisplay& skin, double by) {
+  skin.painting->radius = std::clamp(skin.painting->radius * by, Painting::kLeastRadius, Painting::kMostRadius);
 }
-void add_strength(Editor& editor, double step) {
-  editor.skin->painting->strength =
-      std::clamp(std::round((editor.skin->painting->strength + step) / kStep) * kStep, 0.0, 1.0);
+void add_strength(SkinDisplay& skin, double step) {
+  skin.painting->strength = std::clamp(std::round((skin.painting->strength + step) / kStep) * kStep, 0.0, 1.0);
 }
 
 // Sets the brush's value to the active bone's weight under the pointer.
-void sample(Editor& editor) {
-  const std::string& name = editor.document().armature->bones[*skin_bone(editor)].name;
+void sample(Context& context) {
+  const std::string& name = context.document().armature->bones[*skin_bone(context)].name;
   double value = 0;
-  for (const BoneWeight& weight : editor.views->hover.weights)
+  for (const BoneWeight& weight : context.views->hover.weights)
     if (weight.bone == name) value = weight.value;
-  editor.skin->painting->value = value;
-  editor.messages.info("Value " + text_of_number("%.3f", value), name);
+  context.skin->painting->value = value;
+  context.messages->info("Value " + text_of_number("%.3f", value), name);
 }
 
 }  // namespace
@@ -137,50 +142,52 @@ std::vector<Operator> paint_operators() {
   std::vector<Operator> all = {
       {"skin.paint", "Paint", icon::kSkin, "Brush",
        "Paint the active bone's weight with the brush until the mouse button is released.",
-       [](Editor& e) {
-         if (paints_labels(e)) return begin_label_stroke(e, false);
-         e.seams->brush ? begin_seam_stroke(e, SeamStroke::Cut) : begin_stroke(e, e.skin->painting->kind);
+       [](Context& c) {
+         if (paints_labels(c.skin)) return begin_label_stroke(c, false);
+         c.seams->brush ? begin_seam_stroke(c, SeamStroke::Cut) : begin_stroke(c, c.skin->painting->kind);
        },
        needs_paint_below},
       {"skin.paint_subtract", "Paint inverse", "", "Brush",
        "Paint with the opposite effect: subtract weight, or add weight if the brush subtracts.",
-       [](Editor& e) {
-         if (paints_labels(e)) return begin_label_stroke(e, true);
-         e.seams->brush
-             ? begin_seam_stroke(e, SeamStroke::Join)
-             : begin_stroke(e, e.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract);
+       [](Context& c) {
+         if (paints_labels(c.skin)) return begin_label_stroke(c, true);
+         c.seams->brush
+             ? begin_seam_stroke(c, SeamStroke::Join)
+             : begin_stroke(c, c.skin->painting->kind == BrushKind::Subtract ? BrushKind::Add : BrushKind::Subtract);
        },
        needs_paint_below},
       {"skin.paint_smooth", "Smooth weights", "", "Brush", "Smooth weights with the brush.",
-       [](Editor& e) { e.seams->brush ? begin_seam_stroke(e, SeamStroke::Join) : begin_stroke(e, BrushKind::Smooth); },
-       [](const Editor& e) { return paints_labels(e) ? "The label brush does not smooth" : needs_paint_below(e); }},
+       [](Context& c) { c.seams->brush ? begin_seam_stroke(c, SeamStroke::Join) : begin_stroke(c, BrushKind::Smooth); },
+       [](const Context& c) {
+         return paints_labels(c.skin) ? "The label brush does not smooth" : needs_paint_below(c);
+       }},
       {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Open a menu at the pointer to select a brush.",
-       [](Editor& e) { e.open_popup = "Brushes"; }},
+       [](Context& c) { c.menus->open_popup = "Brushes"; }},
       {"skin.radius", "Radius", "", "Brush", "Set the brush's radius by moving the pointer.",
-       [](Editor& e) { begin_number(e, BrushNumber::Radius); },
-       [](const Editor& e) {
-         return paints_labels(e) ? why_not_paint_labels(e) : e.seams->brush ? why_not_cut(e) : why_not_paint(e);
+       [](Context& c) { begin_number(c, BrushNumber::Radius); },
+       [](const Context& c) {
+         return paints_labels(c.skin) ? why_not_paint_labels(c) : c.seams->brush ? why_not_cut(c) : why_not_paint(c);
        }},
       {"skin.strength", "Strength", "", "Brush", "Set the brush's strength by moving the pointer.",
-       [](Editor& e) { begin_number(e, BrushNumber::Strength); }, why_not_paint},
+       [](Context& c) { begin_number(c, BrushNumber::Strength); }, why_not_paint},
       {"skin.value", "Value", "", "Brush", "Set the brush's value by moving the pointer.",
-       [](Editor& e) { begin_number(e, BrushNumber::Value); }, why_not_paint},
+       [](Context& c) { begin_number(c, BrushNumber::Value); }, why_not_paint},
       {"skin.radius_down", "Smaller brush", "", "Brush", "Make the brush smaller.",
-       [](Editor& e) { scale_radius(e, 1 / kGrowth); }},
+       [](Context& c) { scale_radius(c.skin, 1 / kGrowth); }},
       {"skin.radius_up", "Larger brush", "", "Brush", "Make the brush larger.",
-       [](Editor& e) { scale_radius(e, kGrowth); }},
+       [](Context& c) { scale_radius(c.skin, kGrowth); }},
       {"skin.strength_down", "Weaker brush", "", "Brush", "Lower the brush's strength.",
-       [](Editor& e) { add_strength(e, -kStep); }},
+       [](Context& c) { add_strength(c.skin, -kStep); }},
       {"skin.strength_up", "Stronger brush", "", "Brush", "Raise the brush's strength.",
-       [](Editor& e) { add_strength(e, kStep); }},
+       [](Context& c) { add_strength(c.skin, kStep); }},
       {"skin.sample", "Sample value", icon::kPick, "Brush",
        "Set the brush's value to the active bone's weight under the pointer. With the label brush, select the tissue "
        "under the pointer.",
-       [](Editor& e) { paints_labels(e) ? run(e, "labels.pick") : sample(e); },
-       [](const Editor& e) {
-         if (paints_labels(e)) return disabled_reason(e, *find_operator(e, "labels.pick"));
-         return !why_not_paint(e).empty()        ? why_not_paint(e)
-                : e.views->hover.weights.empty() ? std::string("Put the pointer on the body")
+       [](Context& c) { paints_labels(c.skin) ? run(c, "labels.pick") : sample(c); },
+       [](const Context& c) {
+         if (paints_labels(c.skin)) return disabled_reason(c, *find_operator(c.operators, "labels.pick"));
+         return !why_not_paint(c).empty()        ? why_not_paint(c)
+                : c.views->hover.weights.empty() ? std::string("Put the pointer on the body")
                                                  : std::string();
        }},
       setting("skin.reach_surface", "Surface", "Paint only the outermost tissue.", &Painting::depth,
@@ -191,11 +198,11 @@ std::vector<Operator> paint_operators() {
               BrushDepth::Through),
       {"skin.along_tissue", "Geodesic", "", "Brush",
        "Measure the brush's distances inside the tissue, so that it never crosses air to the next finger.",
-       [](Editor& e) {
-         e.skin->painting->distance =
-             e.skin->painting->distance == BrushDistance::Geodesic ? BrushDistance::Euclidean : BrushDistance::Geodesic;
+       [](Context& c) {
+         c.skin->painting->distance =
+             c.skin->painting->distance == BrushDistance::Geodesic ? BrushDistance::Euclidean : BrushDistance::Geodesic;
        },
-       nullptr, [](const Editor& e) { return e.skin->painting->distance == BrushDistance::Geodesic; }},
+       nullptr, [](const Context& c) { return c.skin->painting->distance == BrushDistance::Geodesic; }},
       setting("skin.paint_all", "All tissue", "Paint every tissue, including hidden ones.", &Painting::tissue,
               PaintedTissue::All),
       setting("skin.paint_soft", "Soft tissue", "Paint all visible tissue except bone.", &Painting::tissue,
@@ -206,8 +213,8 @@ std::vector<Operator> paint_operators() {
               PaintedTissue::Visible),
       {"skin.subtree", "Bone hierarchy", "", "Brush",
        "Paint only where the active bone, its parent or one of its descendants has most of the weight.",
-       [](Editor& e) { e.skin->painting->subtree = !e.skin->painting->subtree; }, nullptr,
-       [](const Editor& e) { return e.skin->painting->subtree; }},
+       [](Context& c) { c.skin->painting->subtree = !c.skin->painting->subtree; }, nullptr,
+       [](const Context& c) { return c.skin->painting->subtree; }},
       normalizing("skin.normalize_unlocked", "Normalize: unlocked",
                   "Keep the sum of weights at 1 by changing the other unlocked bones, not the painted one.",
                   Normalize::Unlocked),
@@ -217,11 +224,11 @@ std::vector<Operator> paint_operators() {
       leaving_normalizing(),
       {"skin.relative_to_locks", "Relative to locks", "", "Brush",
        "Apply values to the weight that is left by locked bones: 0.5 sets half of the weight that is left.",
-       [](Editor& e) { e.skin->painting->relative_to_locks = !e.skin->painting->relative_to_locks; }, nullptr,
-       [](const Editor& e) { return e.skin->painting->relative_to_locks; }},
+       [](Context& c) { c.skin->painting->relative_to_locks = !c.skin->painting->relative_to_locks; }, nullptr,
+       [](const Context& c) { return c.skin->painting->relative_to_locks; }},
       {"skin.accumulate", "Accumulate", "", "Brush", "Let a stroke act again each time it passes over the same tissue.",
-       [](Editor& e) { e.skin->painting->accumulate = !e.skin->painting->accumulate; }, nullptr,
-       [](const Editor& e) { return e.skin->painting->accumulate; }},
+       [](Context& c) { c.skin->painting->accumulate = !c.skin->painting->accumulate; }, nullptr,
+       [](const Context& c) { return c.skin->painting->accumulate; }},
       shape("skin.falloff_smooth", "Smooth falloff", "Fade the brush from its centre to its rim along an S curve.",
             FalloffShape::Smooth),
       shape("skin.falloff_sphere", "Sphere falloff",
@@ -235,10 +242,10 @@ std::vector<Operator> paint_operators() {
       {"skin.falloff_own", "Custom falloff", "", "Brush",
        "Fade the brush by a curve of your own. Drag its points in the sidebar; a click adds a point, a right click "
        "removes it.",
-       [](Editor& e) {
-         if (e.skin->painting->falloff_curve.empty()) begin_falloff_curve(*e.skin->painting);
+       [](Context& c) {
+         if (c.skin->painting->falloff_curve.empty()) begin_falloff_curve(*c.skin->painting);
        },
-       nullptr, [](const Editor& e) { return !e.skin->painting->falloff_curve.empty(); }},
+       nullptr, [](const Context& c) { return !c.skin->painting->falloff_curve.empty(); }},
   };
   for (Operator& op : brush_operators()) all.push_back(std::move(op));
   return all;

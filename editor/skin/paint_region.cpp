@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <numeric>
 
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_edits.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/volume_edits.h"
 
 namespace limber::editor {
@@ -32,29 +36,29 @@ TissueRegion together(const TissueRegion* old, TissueRegion made, RegionChange c
 
 }  // namespace
 
-void change_region(Editor& editor, const std::string& label, RegionChange change, const WhereOfRegion& where) {
-  const WeightsToEdit what = weights_to_edit(editor);
-  const auto old = painted_region(editor);
+void change_region(Context& context, const std::string& label, RegionChange change, const WhereOfRegion& where) {
+  const WeightsToEdit what = weights_to_edit(context);
+  const auto old = painted_region(context);
   const auto make = [=] { return together(old.get(), where(what), change); };
-  const auto keep = [volume = what.document.volume, label](Editor& e, TissueRegion made) {
+  const auto keep = [volume = what.document.volume, label](Context& c, TissueRegion made) {
     const std::int64_t voxels = count(made);
-    if (e.document().volume != volume) return;
-    if (voxels == 0) return e.messages.warn(label, "No tissue lies in this region: the old region stays");
-    e.skin->painting->region = {volume, std::make_shared<const TissueRegion>(std::move(made)), voxels};
-    e.messages.info(label, grouped(voxels) + " voxels can be changed by brushes and edits");
-    e.touch();
+    if (c.document().volume != volume) return;
+    if (voxels == 0) return c.messages->warn(label, "No tissue lies in this region: the old region stays");
+    c.skin->painting->region = {volume, std::make_shared<const TissueRegion>(std::move(made)), voxels};
+    c.messages->info(label, grouped(voxels) + " voxels can be changed by brushes and edits");
+    c.ui->touch();
   };
-  if (what.tissue->size() <= editor.skin->painting->edited_at_once) return keep(editor, make());
-  start_task(editor, label, [make, keep](Progress& progress) -> Finish {
+  if (what.tissue->size() <= context.skin->painting->edited_at_once) return keep(context, make());
+  start_task(context, label, [make, keep](Progress& progress) -> Finish {
     progress.update("where", 0);
     auto made = std::make_shared<TissueRegion>(make());
-    return [made, keep](Editor& e) { keep(e, std::move(*made)); };
+    return [made, keep](Context& c) { keep(c, std::move(*made)); };
   });
 }
 
-void clear_region(Editor& editor) {
-  editor.skin->painting->region = {};
-  editor.touch();
+void clear_region(Context& context) {
+  context.skin->painting->region = {};
+  context.ui->touch();
 }
 
 }  // namespace limber::editor

@@ -14,6 +14,7 @@
 
 namespace limber::editor {
 
+struct Context;
 struct WeightsToEdit;
 
 // How a new region combines with the existing region. TakeOut: the new one is subtracted. Common: the intersection.
@@ -22,10 +23,10 @@ enum class RegionChange { Replace, Add, TakeOut, Common };
 using WhereOfRegion = std::function<TissueRegion(const WeightsToEdit&)>;
 // Combines the region that `where` returns with the existing region; runs in a background task if the body is large. If
 // the combined region has no voxel, warns the user and keeps the existing region.
-void change_region(Editor& editor, const std::string& label, RegionChange change, const WhereOfRegion& where);
-void clear_region(Editor& editor);
+void change_region(Context& context, const std::string& label, RegionChange change, const WhereOfRegion& where);
+void clear_region(Context& context);
 
-std::unique_ptr<Modal> begin_region_box(Editor& editor);
-std::unique_ptr<Modal> begin_region_lasso(Editor& editor);
+std::unique_ptr<Modal> begin_region_box(Context& context);
+std::unique_ptr<Modal> begin_region_lasso(Context& context);
 
 }  // namespace limber::editor

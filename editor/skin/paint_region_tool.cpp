@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/screen.h"
 #include "editor/context/view_projection.h"
 #include "editor/skin/paint_region.h"
 #include "editor/skin/weight_edits.h"
@@ -61,8 +63,8 @@ double area_of(const std::vector<glm::dvec2>& outline) {
   return std::abs(twice) / 2;
 }
 
-RegionChange change_of(const Editor& editor) {
-  const bool shift = editor.input.down(Key::Shift), ctrl = editor.input.down(Key::Ctrl);
+RegionChange change_of(const Ui& ui) {
+  const bool shift = ui.input.down(Key::Shift), ctrl = ui.input.down(Key::Ctrl);
   return shift && ctrl ? RegionChange::Common
          : shift       ? RegionChange::Add
          : ctrl        ? RegionChange::TakeOut
@@ -71,38 +73,38 @@ RegionChange change_of(const Editor& editor) {
 
 class RegionTool final : public Modal {
  public:
-  RegionTool(Editor& editor, bool lasso) : lasso_(lasso), pointer_(editor.input.pointer) {}
+  RegionTool(Context& context, bool lasso) : lasso_(lasso), pointer_(context.ui->input.pointer) {}
 
-  bool moved(Editor& editor, const glm::vec2&) override {
-    pointer_ = editor.input.pointer;
+  bool moved(Context& context, const glm::vec2&) override {
+    pointer_ = context.ui->input.pointer;
     if (view_ && lasso_ && glm::distance(outline_.back(), glm::dvec2(pointer_)) >= kStep) outline_.push_back(pointer_);
-    editor.touch();
+    context.ui->touch();
     return true;
   }
-  bool key(Editor&, const KeyChanged& event) override { return !(event.down && event.key == Key::Escape); }
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool key(Context&, const KeyChanged& event) override { return !(event.down && event.key == Key::Escape); }
+  bool button(Context& context, const ButtonChanged& event) override {
     if (event.button == MouseButton::Right && event.down) return false;
     if (event.button != MouseButton::Left) return true;
     if (event.down) {
-      const ViewPlace* place = editor.layout.view_at(pointer_);
+      const ViewPlace* place = context.screen->layout.view_at(pointer_);
       if (!place) return false;
-      view_.emplace(editor, *place);
+      view_.emplace(context, *place);
       outline_ = {pointer_};
       return true;
     }
     if (!view_) return true;
-    keep(editor);
+    keep(context);
     return false;
   }
 
-  void draw(Editor& editor, const ViewPlace& place) override {
-    const Theme& theme = editor.look.theme;
+  void draw(Context& context, const ViewPlace& place) override {
+    const Theme& theme = context.ui->look.theme;
     const Colour line = theme.view_text;
     if (!view_) {
       if (!place.rect.contains(pointer_)) return;
-      fill({{place.rect.low.x, pointer_.y}, {place.rect.high.x, pointer_.y + editor.look.line()}},
+      fill({{place.rect.low.x, pointer_.y}, {place.rect.high.x, pointer_.y + context.ui->look.line()}},
            with_alpha(line, 0.5f));
-      fill({{pointer_.x, place.rect.low.y}, {pointer_.x + editor.look.line(), place.rect.high.y}},
+      fill({{pointer_.x, place.rect.low.y}, {pointer_.x + context.ui->look.line(), place.rect.high.y}},
            with_alpha(line, 0.5f));
       return;
     }
@@ -110,17 +112,17 @@ class RegionTool final : public Modal {
     if (!lasso_) {
       const Rect box{glm::min(glm::vec2(outline_[0]), pointer_), glm::max(glm::vec2(outline_[0]), pointer_)};
       fill(box, with_alpha(line, 0.08f));
-      outline(box, line, 0, editor.look.line());
+      outline(box, line, 0, context.ui->look.line());
       return;
     }
     std::vector<ImVec2> points;
     for (const glm::dvec2& point : outline_) points.push_back(im(glm::vec2(point)));
     points.push_back(im(pointer_));
     ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), line, ImDrawFlags_Closed,
-                                            1.5f * editor.look.line());
+                                            1.5f * context.ui->look.line());
   }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"LMB"}, lasso_ ? "Draw an outline" : "Draw a box"},
             {{"Shift"}, "Add to region"},
             {{"Ctrl"}, "Subtract from region"},
@@ -130,7 +132,7 @@ class RegionTool final : public Modal {
   std::string title() const override { return lasso_ ? "Region by a lasso" : "Region by a box"; }
 
  private:
-  void keep(Editor& editor) {
+  void keep(Context& context) {
     std::vector<glm::dvec2> outline = outline_;
     const glm::dvec2 end(pointer_);
     if (lasso_) outline.push_back(end);
@@ -138,7 +140,7 @@ class RegionTool final : public Modal {
     if (area_of(outline) < kLeastArea) return;
     const ViewProjection view = *view_;
     const auto stencil = std::make_shared<const Stencil>(view.place.rect, outline);
-    change_region(editor, lasso_ ? "Region by a lasso" : "Region by a box", change_of(editor),
+    change_region(context, lasso_ ? "Region by a lasso" : "Region by a box", change_of(context.ui),
                   [view, stencil](const WeightsToEdit& what) {
                     const AffineTransform world = world_from_voxel(what.document.volume->grid);
                     return region_where(*what.tissue, [&](std::int64_t, const glm::ivec3& voxel) {
@@ -156,7 +158,7 @@ class RegionTool final : public Modal {
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_region_box(Editor& editor) { return std::make_unique<RegionTool>(editor, false); }
-std::unique_ptr<Modal> begin_region_lasso(Editor& editor) { return std::make_unique<RegionTool>(editor, true); }
+std::unique_ptr<Modal> begin_region_box(Context& context) { return std::make_unique<RegionTool>(context, false); }
+std::unique_ptr<Modal> begin_region_lasso(Context& context) { return std::make_unique<RegionTool>(context, true); }
 
 }  // namespace limber::editor

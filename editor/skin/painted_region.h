@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <memory>
 
-#include "editor/context/editor.h"
-#include "editor/skin/painting.h"
+#include "core/skin/weight_edits.h"
 
 namespace limber::editor {
 
+struct Context;
+
 // Returns the region that limits brushes and edits; null if there is none, or if it was drawn on another volume.
-std::shared_ptr<const TissueRegion> painted_region(const Editor& editor);
-std::int64_t painted_region_voxels(const Editor& editor);
+std::shared_ptr<const TissueRegion> painted_region(const Context& context);
+std::int64_t painted_region_voxels(const Context& context);
 
 }  // namespace limber::editor

@@ -11,7 +11,7 @@
 #include "core/paint/stroke.h"
 #include "core/skin/weight_edits.h"
 #include "core/skin/weight_layers.h"
-#include "editor/context/layout.h"
+#include "editor/context/view_place.h"
 
 namespace limber::editor {
 

@@ -4,10 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/project/history.h"
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
 #include "editor/context/pointer_context.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -35,67 +42,68 @@ void change_at(SeamView::Running& running, const ViewProjection& seen, const Bru
   running.blade = blade;
 }
 
-void stroke_to(Editor& editor, const glm::vec2& pixel) {
-  SeamView::Running& running = *editor.seams->running;
-  Painting& painting = *editor.skin->painting;
-  const ViewProjection seen(editor, running.view);
-  const int steps =
-      std::max(1, static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / (kPixelStep * editor.look.scale))));
+void stroke_to(Context& context, const glm::vec2& pixel) {
+  SeamView::Running& running = *context.seams->running;
+  Painting& painting = *context.skin->painting;
+  const ViewProjection seen(context, running.view);
+  const int steps = std::max(
+      1, static_cast<int>(std::ceil(glm::distance(pixel, running.pixel) / (kPixelStep * context.ui->look.scale))));
   for (int step = 1; step <= steps; ++step) {
-    painting.place = brush_place(editor, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
+    painting.place = brush_place(context, running.view, glm::mix(running.pixel, pixel, float(step) / float(steps)));
     if (painting.place) change_at(running, seen, *painting.place, painting.radius);
     else running.blade.reset();
   }
   running.pixel = pixel;
-  editor.touch();
+  context.ui->touch();
 }
 
-void drop_stroke(Editor& editor) {
-  editor.seams->running.reset();
-  editor.touch();
+void drop_stroke(Context& context) {
+  context.seams->running.reset();
+  context.ui->touch();
 }
 
-void end_stroke(Editor& editor) {
-  const auto running = editor.seams->running;
-  drop_stroke(editor);
+void end_stroke(Context& context) {
+  const auto running = context.seams->running;
+  drop_stroke(context);
   const bool cuts = running->stroke == SeamStroke::Cut;
   if (running->faces == 0)
-    return editor.messages.info(
+    return context.messages->info(
         cuts ? "No seam was cut" : "No seam was erased",
         cuts ? "Draw a line over soft tissue: the brush cuts along it" : "No seam lies within the brush");
-  Document next = editor.document();
+  Document next = context.document();
   if (next.volume != running->volume) return;
-  note_weights_source(editor);
+  note_weights_source(context);
   next.seams = running->seams;
-  editor.history.commit(cuts ? "Cut seam" : "Erase seam", std::move(next));
+  context.history->commit(cuts ? "Cut seam" : "Erase seam", std::move(next));
 }
 
 }  // namespace
 
-std::string why_not_cut(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
-  const Document& document = editor.document();
+std::string why_not_cut(const Context& context) {
+  if (context.workspace() != Workspace::Skin) return "Switch to the Skin workspace first";
+  const Document& document = context.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
-  if (editor.views->scene.pose) return "Show the body at rest first";
-  return shown_seams(editor) ? "" : "Find the seams first";
+  if (context.views->scene.pose) return "Show the body at rest first";
+  return shown_seams(context) ? "" : "Find the seams first";
 }
 
-void begin_seam_stroke(Editor& editor, SeamStroke stroke) {
-  const ViewPlace* view = hovered_view(editor);
-  const auto before = shown_seams(editor);
-  if (!view || !before || !why_not_cut(editor).empty()) return;
-  const Document& document = editor.document();
+void begin_seam_stroke(Context& context, SeamStroke stroke) {
+  const ViewPlace* view = hovered_view(context);
+  const auto before = shown_seams(context);
+  if (!view || !before || !why_not_cut(context).empty()) return;
+  const Document& document = context.document();
   auto running = std::make_shared<SeamView::Running>();
   running->volume = document.volume;
   running->soft = soft_labels(*document.tissues);
   running->seams = *before ? std::make_shared<Seams>(**before) : std::make_shared<Seams>(document.volume->grid.size);
   running->stroke = stroke;
   running->view = *view;
-  running->pixel = editor.input.pointer;
-  editor.seams->running = running;
-  stroke_to(editor, editor.input.pointer);
-  editor.drag = Drag{MouseButton::Left, [](Editor& e, const glm::vec2&) { stroke_to(e, e.input.pointer); }, end_stroke,
-                     drop_stroke};
+  running->pixel = context.ui->input.pointer;
+  context.seams->running = running;
+  stroke_to(context, context.ui->input.pointer);
+  context.interaction->drag =
+      Drag{MouseButton::Left, [](Context& c, const glm::vec2&) { stroke_to(c, c.ui->input.pointer); }, end_stroke,
+           drop_stroke};
 }
 
 }  // namespace limber::editor

@@ -7,8 +7,10 @@
 
 namespace limber::editor {
 
-std::string why_not_cut(const Editor& editor);  // returns why the seam brush cannot be used; "" when it can
+struct Context;
+
+std::string why_not_cut(const Context& context);  // returns why the seam brush cannot be used; "" when it can
 // Begins a stroke of the seam brush at the pointer. The stroke ends when the button is released.
-void begin_seam_stroke(Editor& editor, SeamStroke stroke);
+void begin_seam_stroke(Context& context, SeamStroke stroke);
 
 }  // namespace limber::editor

@@ -6,10 +6,17 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/platform_window.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/labels/label_brush.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/painted_region.h"
 #include "editor/skin/painting.h"
+#include "editor/ui/ui.h"
 #include "render/scene/weight_colormap.h"
 
 namespace limber::editor {
@@ -42,9 +49,9 @@ std::shared_ptr<const LabelVolume> without_regions(const LabelVolume& volume, co
 }
 
 // Returns a colour for each bone of `weights`, in the order of weights.bones().
-const std::shared_ptr<const std::vector<glm::vec3>>& swatches(Editor& editor, const SkinWeights& weights) {
-  auto& known = editor.skin->swatches;
-  const auto& armature = editor.document().armature;
+const std::shared_ptr<const std::vector<glm::vec3>>& swatches(Context& context, const SkinWeights& weights) {
+  auto& known = context.skin->swatches;
+  const auto& armature = context.document().armature;
   if (known.colours && known.armature == armature && known.bones == weights.bones()) return known.colours;
   const std::vector<glm::vec3> of_rig = render::bone_swatches(*armature);
   std::vector<glm::vec3> colours;
@@ -56,30 +63,31 @@ const std::shared_ptr<const std::vector<glm::vec3>>& swatches(Editor& editor, co
   return known.colours;
 }
 
-void show_regions(Editor& editor, const std::shared_ptr<const SkinWeights>& weights) {
-  SkinDisplay& skin = *editor.skin;
-  render::Scene& scene = editor.views->scene;
+void show_regions(Context& context, const std::shared_ptr<const SkinWeights>& weights) {
+  SkinDisplay& skin = *context.skin;
+  render::Scene& scene = context.views->scene;
   auto& region = skin.region;
   if (skin.hidden.empty()) return void(region = {});
   const auto volume = scene.volume;
   // `weights` are the document's weights, not those of a running stroke. So the tissue under the brush stays visible
   // until the stroke ends, even if the stroke gives it to a bone whose region is hidden.
   const bool stale = region.from != volume || region.hidden != skin.hidden || region.weights != weights;
-  if (stale && !(skin.region_task && editor.tasks.contains(*skin.region_task))) {
-    const auto make = [volume, weights, hidden = skin.hidden, tissue = tissue_voxels(*editor.views, editor.document()),
+  if (stale && !(skin.region_task && context.background->tasks.contains(*skin.region_task))) {
+    const auto make = [volume, weights, hidden = skin.hidden,
+                       tissue = tissue_voxels(*context.views, context.document()),
                        old = region.from == volume ? region.volume : nullptr] {
       auto made = without_regions(*volume, *tissue, *weights, hidden);
       // If the old volume has the same voxels as the new one, return the old one: this avoids an upload to the GPU.
       return old && old->voxels == made->voxels ? old : made;
     };
-    const auto keep = [volume, weights, hidden = skin.hidden](Editor& e, std::shared_ptr<const LabelVolume> made) {
-      if (!e.skin->hidden.empty()) e.skin->region = {volume, std::move(made), weights, hidden};
-      e.touch();
+    const auto keep = [volume, weights, hidden = skin.hidden](Context& c, std::shared_ptr<const LabelVolume> made) {
+      if (!c.skin->hidden.empty()) c.skin->region = {volume, std::move(made), weights, hidden};
+      c.ui->touch();
     };
-    if (weights->size() <= skin.painting->edited_at_once) keep(editor, make());
+    if (weights->size() <= skin.painting->edited_at_once) keep(context, make());
     else
-      skin.region_task = start_task(editor, "", [make, keep](Progress&) -> Finish {
-        return [keep, made = make()](Editor& e) { keep(e, made); };
+      skin.region_task = start_task(context, "", [make, keep](Progress&) -> Finish {
+        return [keep, made = make()](Context& c) { keep(c, made); };
       });
   }
   if (region.from == volume) scene.volume = region.volume;
@@ -145,9 +153,9 @@ std::optional<double> WeightShares::of(int bone) const {
          (static_cast<double>(counted_.weights->size()) * kFullWeight);
 }
 
-std::shared_ptr<const SkinWeights> seen_weights(const Editor& editor) {
-  const Document& document = editor.document();
-  const auto& weights = editor.views->preview_weights ? editor.views->preview_weights : document.weights;
+std::shared_ptr<const SkinWeights> seen_weights(const Context& context) {
+  const Document& document = context.document();
+  const auto& weights = context.views->preview_weights ? context.views->preview_weights : document.weights;
   return document.volume && document.armature ? weights : nullptr;
 }
 
@@ -156,22 +164,22 @@ int weights_bone(const SkinWeights& weights, const std::string& name) {
   return found == weights.bones().end() ? -1 : static_cast<int>(found - weights.bones().begin());
 }
 
-Colour swatch_of(Editor& editor, int bone) {
-  if (skin_bone(editor) == bone) return editor.look.theme.select;
-  const auto weights = seen_weights(editor);
+Colour swatch_of(Context& context, int bone) {
+  if (skin_bone(context) == bone) return context.ui->look.theme.select;
+  const auto weights = seen_weights(context);
   const int place =
-      weights ? weights_bone(*weights, editor.document().armature->bones[static_cast<std::size_t>(bone)].name) : -1;
-  if (place < 0) return editor.look.theme.text3;
-  const glm::vec3 colour = (*swatches(editor, *weights))[static_cast<std::size_t>(place)];
+      weights ? weights_bone(*weights, context.document().armature->bones[static_cast<std::size_t>(bone)].name) : -1;
+  if (place < 0) return context.ui->look.theme.text3;
+  const glm::vec3 colour = (*swatches(context, *weights))[static_cast<std::size_t>(place)];
   return rgb(colour.r, colour.g, colour.b);
 }
 
-void show_weights(Editor& editor) {
-  render::Scene& scene = editor.views->scene;
-  follow_label_edits(*editor.views, *editor.skin->painting->labels, editor.document().volume);
+void show_weights(Context& context) {
+  render::Scene& scene = context.views->scene;
+  follow_label_edits(*context.views, *context.skin->painting->labels, context.document().volume);
   scene.weights.reset();
-  if (editor.workspace != Workspace::Skin) return;
-  const auto bone = skin_bone(editor);
+  if (context.workspace() != Workspace::Skin) return;
+  const auto bone = skin_bone(context);
   if (scene.armature) {
     scene.bone_shape = render::BoneShape::Stick;
     scene.bones_in_front = true;
@@ -179,29 +187,29 @@ void show_weights(Editor& editor) {
       scene.bones[static_cast<std::size_t>(*bone)].active = scene.bones[static_cast<std::size_t>(*bone)].selected =
           true;
   }
-  if (editor.skin->painting->labels->on) return show_label_stroke(*editor.views, *editor.skin->painting->labels);
-  const auto weights = seen_weights(editor);
-  editor.skin->shares.update(weights, [&host = editor.host] { host.wake(); });
-  if (editor.skin->shares.busy()) editor.touch();
-  if (!weights || !bone || scene.volume != editor.document().volume) return;
-  if (tissue_voxels(*editor.views, editor.document())->size() != weights->size()) return;
-  if (editor.document().weights) show_regions(editor, editor.document().weights);
-  if (!editor.skin->display) return;
+  if (context.skin->painting->labels->on) return show_label_stroke(*context.views, *context.skin->painting->labels);
+  const auto weights = seen_weights(context);
+  context.skin->shares.update(weights, [&host = *context.host] { host.wake(); });
+  if (context.skin->shares.busy()) context.ui->touch();
+  if (!weights || !bone || scene.volume != context.document().volume) return;
+  if (tissue_voxels(*context.views, context.document())->size() != weights->size()) return;
+  if (context.document().weights) show_regions(context, context.document().weights);
+  if (!context.skin->display) return;
   scene.outlined.reset();  // selected tissues get no outline, so that it does not hide the colours of the weights
   scene.weights = render::ShownWeights{
       .weights = weights,
-      .tissue = tissue_voxels(*editor.views, editor.document()),
-      .display = *editor.skin->display,
-      .bone = weights_bone(*weights, editor.document().armature->bones[static_cast<std::size_t>(*bone)].name),
-      .swatches = swatches(editor, *weights),
-      .region = painted_region(editor),
-      .contours = editor.skin->contours};
+      .tissue = tissue_voxels(*context.views, context.document()),
+      .display = *context.skin->display,
+      .bone = weights_bone(*weights, context.document().armature->bones[static_cast<std::size_t>(*bone)].name),
+      .swatches = swatches(context, *weights),
+      .region = painted_region(context),
+      .contours = context.skin->contours};
 }
 
-bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume) {
-  if (editor.skin->painting->labels->paints(volume)) return true;
-  return volume && (volume == editor.document().volume ||
-                    (volume == editor.skin->region.volume && editor.skin->region.from == editor.document().volume));
+bool is_of_document(const Context& context, const std::shared_ptr<const LabelVolume>& volume) {
+  if (context.skin->painting->labels->paints(volume)) return true;
+  return volume && (volume == context.document().volume ||
+                    (volume == context.skin->region.volume && context.skin->region.from == context.document().volume));
 }
 
 double depth_of(const LabelVolume& volume, const glm::ivec3& voxel) {
@@ -237,46 +245,46 @@ bool is_locked(const Document& document, const std::string& bone) {
   return document.locks && document.locks->bones.contains(bone);
 }
 
-void set_locks(Editor& editor, const std::string& label, std::set<std::string> bones) {
+void set_locks(Context& context, const std::string& label, std::set<std::string> bones) {
   const std::set<std::string> before =
-      editor.document().locks ? editor.document().locks->bones : std::set<std::string>{};
+      context.document().locks ? context.document().locks->bones : std::set<std::string>{};
   if (bones == before) return;
-  Document next = editor.document();
+  Document next = context.document();
   next.locks = std::make_shared<const WeightLocks>(WeightLocks{std::move(bones)});
-  commit(editor, label, std::move(next));
+  commit(context, label, std::move(next));
 }
 
-void toggle_lock(Editor& editor, int bone) {
-  const std::string name = editor.document().armature->bones[static_cast<std::size_t>(bone)].name;
-  std::set<std::string> bones = editor.document().locks ? editor.document().locks->bones : std::set<std::string>{};
+void toggle_lock(Context& context, int bone) {
+  const std::string name = context.document().armature->bones[static_cast<std::size_t>(bone)].name;
+  std::set<std::string> bones = context.document().locks ? context.document().locks->bones : std::set<std::string>{};
   const bool locked = bones.erase(name) > 0;
   if (!locked) bones.insert(name);
-  set_locks(editor, (locked ? "Unlock " : "Lock ") + name, std::move(bones));
+  set_locks(context, (locked ? "Unlock " : "Lock ") + name, std::move(bones));
 }
 
-void lock_all_but(Editor& editor, int bone) {
-  const Armature& armature = *editor.document().armature;
+void lock_all_but(Context& context, int bone) {
+  const Armature& armature = *context.document().armature;
   const std::string name = armature.bones[static_cast<std::size_t>(bone)].name;
   std::set<std::string> others;
   for (const Bone& other : armature.bones)
     if (other.name != name) others.insert(other.name);
-  const bool so_already = editor.document().locks && editor.document().locks->bones == others;
-  set_locks(editor, so_already ? "Unlock all bones" : "Lock all but " + name,
+  const bool so_already = context.document().locks && context.document().locks->bones == others;
+  set_locks(context, so_already ? "Unlock all bones" : "Lock all but " + name,
             so_already ? std::set<std::string>{} : others);
 }
 
-void hide_region(Editor& editor, const std::string& bone, bool hidden) {
-  if (hidden) editor.skin->hidden.insert(bone);
-  else editor.skin->hidden.erase(bone);
-  editor.touch();
+void hide_region(Context& context, const std::string& bone, bool hidden) {
+  if (hidden) context.skin->hidden.insert(bone);
+  else context.skin->hidden.erase(bone);
+  context.ui->touch();
 }
 
-void isolate_regions(Editor& editor, const std::set<std::string>& bones) {
+void isolate_regions(Context& context, const std::set<std::string>& bones) {
   std::set<std::string> others;
-  for (const Bone& bone : editor.document().armature->bones)
+  for (const Bone& bone : context.document().armature->bones)
     if (!bones.contains(bone.name)) others.insert(bone.name);
-  editor.skin->hidden = editor.skin->hidden == others ? std::set<std::string>{} : others;
-  editor.touch();
+  context.skin->hidden = context.skin->hidden == others ? std::set<std::string>{} : others;
+  context.ui->touch();
 }
 
 const char* name_of(const std::optional<render::WeightDisplay>& display) {

@@ -10,10 +10,14 @@
 #include <string>
 #include <vector>
 
+#include "core/project/document.h"
 #include "core/skin/skin_weights.h"
-#include "editor/shown/test_pose.h"
+#include "editor/ui/theme.h"
+#include "render/scene/scene.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // Computes the share of each bone in the sum of all weights of the body. The first update sums the weights of all
 // voxels, in a thread of its own if the body is large. Later updates sum only the chunks that have changed since.
@@ -71,34 +75,34 @@ struct SkinDisplay {
 };
 
 // Returns the weights of the running stroke, or else the document's weights; null without a volume and a rig.
-std::shared_ptr<const SkinWeights> seen_weights(const Editor& editor);
+std::shared_ptr<const SkinWeights> seen_weights(const Context& context);
 // Returns the bone's index in the weights; -1: no bone has that name.
 int weights_bone(const SkinWeights& weights, const std::string& name);
 // Returns the bone's colour in lists; the active bone is orange.
-Colour swatch_of(Editor& editor, int bone);
+Colour swatch_of(Context& context, int bone);
 
 // Prepares this frame's scene for the Skin workspace: sets the weights, the volume without hidden regions, and the
 // bones as sticks with the active bone marked.
-void show_weights(Editor& editor);
+void show_weights(Context& context);
 
 // Returns true if `volume` is the document's volume, a copy of it without the hidden regions, or the volume that a
 // stroke of the label brush paints.
-bool is_of_document(const Editor& editor, const std::shared_ptr<const LabelVolume>& volume);
+bool is_of_document(const Context& context, const std::shared_ptr<const LabelVolume>& volume);
 
 // Returns the distance from the centre of a tissue voxel to the nearest face of an air voxel, mm.
 double depth_of(const LabelVolume& volume, const glm::ivec3& voxel);
 
 bool is_locked(const Document& document, const std::string& bone);
 // Sets the locked bones as one edit; if nothing changes, makes no edit.
-void set_locks(Editor& editor, const std::string& label, std::set<std::string> bones);
-void toggle_lock(Editor& editor, int bone);
+void set_locks(Context& context, const std::string& label, std::set<std::string> bones);
+void toggle_lock(Context& context, int bone);
 // Locks all bones except this one; if exactly these bones are already locked, unlocks all.
-void lock_all_but(Editor& editor, int bone);
+void lock_all_but(Context& context, int bone);
 
 // Hides or shows a bone's region, which is the tissue where the bone has the largest weight.
-void hide_region(Editor& editor, const std::string& bone, bool hidden);
+void hide_region(Context& context, const std::string& bone, bool hidden);
 // Shows only the regions of these bones; a second call shows all regions again.
-void isolate_regions(Editor& editor, const std::set<std::string>& bones);
+void isolate_regions(Context& context, const std::set<std::string>& bones);
 
 const char* name_of(const std::optional<render::WeightDisplay>& display);
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/skin/weight_edits.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
 #include "editor/seams/seam_view.h"
+#include "editor/ui/messages.h"
 
 #include <algorithm>
 #include <optional>
@@ -59,86 +62,86 @@ Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress&
 
 // Commits the result of the operation, or tells the user why there is nothing to commit. Returns true if the result was
 // committed.
-bool keep(Editor& editor, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
+bool keep(Context& context, const WeightsToEdit& what, const WeightOperation& operation, Done result) {
   EditedWeights& outcome = result.edited;
   const WeightEdit& edit = outcome.edit;
-  const Document& now = editor.document();
+  const Document& now = context.document();
   const bool others = now.layers != what.layer.layers || now.weights != what.layer.came_out;
   if (others || now.volume != what.document.volume || now.armature != what.document.armature) {
-    editor.messages.warn(operation.label,
-                         "The weights were changed meanwhile, so nothing was applied: run the command again");
+    context.messages->warn(operation.label,
+                           "The weights were changed meanwhile, so nothing was applied: run the command again");
     return false;
   }
   const std::string lock = edit.blocked > 0 && edit.blocked_by >= 0 ? lock_message(*now.armature, edit.blocked_by) : "";
-  editor.skin->painting->unmatched = std::move(outcome.unmatched);
+  context.skin->painting->unmatched = std::move(outcome.unmatched);
   if (edit.changed == 0) {
     if (!lock.empty())
-      editor.messages.toast_error(lock, "No other unlocked bone can give or take weight here", "skin.unlock_all");
-    else if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
-    else editor.messages.info(operation.label, "No weight needed to change");
+      context.messages->toast_error(lock, "No other unlocked bone can give or take weight here", "skin.unlock_all");
+    else if (!outcome.warning.empty()) context.messages->warn(operation.label, outcome.warning);
+    else context.messages->info(operation.label, "No weight needed to change");
     return false;
   }
-  commit_weights(editor, operation.label, what.layer, *result.made);
+  commit_weights(context, operation.label, what.layer, *result.made);
   const bool was_off = what.settings.normalize == Normalize::WhenComposed;
   const std::string changed = grouped(edit.changed) + (edit.changed == 1 ? " voxel" : " voxels") +
                               (was_off ? ", normalized: switching Normalize off affects only brush strokes" : "");
-  if (!outcome.warning.empty()) editor.messages.warn(operation.label, outcome.warning);
+  if (!outcome.warning.empty()) context.messages->warn(operation.label, outcome.warning);
   else if (!lock.empty())
-    editor.messages.warn(operation.label, changed + "; " + grouped(edit.blocked) + " unchanged: " + lock);
-  else editor.messages.ok(operation.label, changed);
+    context.messages->warn(operation.label, changed + "; " + grouped(edit.blocked) + " unchanged: " + lock);
+  else context.messages->ok(operation.label, changed);
   return true;
 }
 
-void perform(Editor& editor, const Fields& fields, const MakeWeightOperation& make) {
-  Painting& painting = *editor.skin->painting;
-  if (painting.edit_job) editor.jobs.cancel(*painting.edit_job);
+void perform(Context& context, const Fields& fields, const MakeWeightOperation& make) {
+  Painting& painting = *context.skin->painting;
+  if (painting.edit_job) context.jobs->cancel(*painting.edit_job);
   painting.edit_job.reset();
-  const WeightOperation operation = make(editor, fields);
-  const WeightsToEdit what = weights_to_edit(editor);
+  const WeightOperation operation = make(context, fields);
+  const WeightsToEdit what = weights_to_edit(context);
   if (what.tissue->size() <= painting.edited_at_once && !operation.reads_file) {
-    keep(editor, what, operation, done(what, operation, no_progress()));
+    keep(context, what, operation, done(what, operation, no_progress()));
     return;
   }
-  const Selection selection = editor.selection;
-  painting.edit_job = start_task(editor, operation.label, [=](Progress& progress) -> Finish {
+  const Selection selection = context.selection;
+  painting.edit_job = start_task(context, operation.label, [=](Progress& progress) -> Finish {
     auto outcome = std::make_shared<Done>(done(what, operation, progress));
-    return [=](Editor& e) {
-      e.skin->painting->edit_job.reset();
-      if (!keep(e, what, operation, std::move(*outcome)) || fields.empty()) return;
-      *e.last_operation = {.label = operation.label,
+    return [=](Context& c) {
+      c.skin->painting->edit_job.reset();
+      if (!keep(c, what, operation, std::move(*outcome)) || fields.empty()) return;
+      *c.last_operation = {.label = operation.label,
                            .fields = fields,
                            .shown = fields,
                            .act = weight_act(make),
-                           .revision = e.history.revision(),
+                           .revision = c.history->revision(),
                            .selection = selection,
-                           .part = e.transform_settings->part,
-                           .unfolded = e.last_operation->unfolded};
+                           .part = c.transform_settings->part,
+                           .unfolded = c.last_operation->unfolded};
     };
   });
 }
 
 }  // namespace
 
-WeightsToEdit weights_to_edit(Editor& editor) {
-  WeightsToEdit what{editor.document(), parted_tissue(editor), stroke_settings(editor, BrushKind::Set),
-                     layer_to_edit(editor)};
+WeightsToEdit weights_to_edit(Context& context) {
+  WeightsToEdit what{context.document(), parted_tissue(context), stroke_settings(context, BrushKind::Set),
+                     layer_to_edit(context)};
   what.document.weights = what.layer.weights;
   return what;
 }
 
 ActWith weight_act(const MakeWeightOperation& make) {
-  return [make](Editor& editor, const Fields& fields) { perform(editor, fields, make); };
+  return [make](Context& context, const Fields& fields) { perform(context, fields, make); };
 }
 
-void edit_weights(Editor& editor, const Fields& fields, const MakeWeightOperation& make) {
-  act_and_allow_redo(editor, fields, weight_act(make));
+void edit_weights(Context& context, const Fields& fields, const MakeWeightOperation& make) {
+  act_and_allow_redo(context, fields, weight_act(make));
 }
 
-std::vector<int> painted_bones(const Editor& editor) { return stroke_settings(editor, BrushKind::Set).bones; }
+std::vector<int> painted_bones(const Context& context) { return stroke_settings(context, BrushKind::Set).bones; }
 
-std::string painted_name(const Editor& editor) {
-  const std::vector<int> bones = painted_bones(editor);
-  return bones.size() == 1 ? editor.document().weights->bones()[static_cast<std::size_t>(bones[0])]
+std::string painted_name(const Context& context) {
+  const std::vector<int> bones = painted_bones(context);
+  return bones.size() == 1 ? context.document().weights->bones()[static_cast<std::size_t>(bones[0])]
                            : std::to_string(bones.size()) + " bones";
 }
 

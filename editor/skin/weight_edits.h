@@ -17,6 +17,8 @@
 
 namespace limber::editor {
 
+struct Context;
+
 // All inputs of a weight edit, copied so that it can run in a job.
 struct WeightsToEdit {
   Document document;  // copy of the document; if there are layers, its weights are those of the active layer
@@ -27,7 +29,7 @@ struct WeightsToEdit {
   WeightedBody body() const { return {*document.volume, *tissue, *document.tissues, *document.armature}; }
 };
 
-WeightsToEdit weights_to_edit(Editor& editor);
+WeightsToEdit weights_to_edit(Context& context);
 
 struct EditedWeights {
   WeightEdit edit;
@@ -50,19 +52,19 @@ struct WeightOperation {
 };
 // Function that makes a weight operation from the values of its form's fields. Throws Error for values that the
 // operation cannot use.
-using MakeWeightOperation = std::function<WeightOperation(const Editor&, const std::vector<FormField>&)>;
+using MakeWeightOperation = std::function<WeightOperation(const Context&, const std::vector<FormField>&)>;
 
 // Makes the operation from `fields` and performs it, in a job if the body is large. The user can adjust the fields
 // afterwards. Cancels the job of an earlier weight edit that is still running.
-void edit_weights(Editor& editor, const std::vector<FormField>& fields, const MakeWeightOperation& make);
+void edit_weights(Context& context, const std::vector<FormField>& fields, const MakeWeightOperation& make);
 // Returns the action of a form: performs the operation with the form's fields. Unlike edit_weights(), the action does
 // not let the user adjust the fields afterwards, because the form does this itself.
 ActWith weight_act(const MakeWeightOperation& make);
 
 // Returns a text for the bones that brushes paint now: the name of a single bone ("Forearm"), else their number
 // ("3 bones").
-std::string painted_name(const Editor& editor);
+std::string painted_name(const Context& context);
 // Returns the bones that brushes paint now, as indices into the bones of the document's weights.
-std::vector<int> painted_bones(const Editor& editor);
+std::vector<int> painted_bones(const Context& context);
 
 }  // namespace limber::editor

@@ -8,8 +8,16 @@
 #include "core/base/error.h"
 #include "core/project/project_io.h"
 #include "core/rig/mirror.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/open_project.h"
 #include "editor/context/operator.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
+#include "editor/dialogs/form_dialog.h"
 #include "editor/file_browser/file_browser.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/brush_tools.h"
 #include "editor/skin/weight_display.h"
@@ -25,19 +33,19 @@ namespace {
 
 using Fields = std::vector<FormField>;
 
-std::string needs_paint(const Editor& editor) {
-  if (editor.workspace != Workspace::Skin) return "Switch to the Skin workspace first";
-  return why_not_paint(editor);
+std::string needs_paint(const Context& context) {
+  if (context.workspace() != Workspace::Skin) return "Switch to the Skin workspace first";
+  return why_not_paint(context);
 }
 
-std::string needs_reach(const Editor& editor) {
-  const std::string why = needs_paint(editor);
-  return why.empty() ? why_brush_reaches_nothing(editor) : why;
+std::string needs_reach(const Context& context) {
+  const std::string why = needs_paint(context);
+  return why.empty() ? why_brush_reaches_nothing(context) : why;
 }
 
-std::string needs_tissue_below(const Editor& editor) {
-  if (const std::string why = needs_paint(editor); !why.empty()) return why;
-  return editor.views->hover.inside ? "" : "Put the pointer on the body";
+std::string needs_tissue_below(const Context& context) {
+  if (const std::string why = needs_paint(context); !why.empty()) return why;
+  return context.views->hover.inside ? "" : "Put the pointer on the body";
 }
 
 WeightOperation flooding(const std::string& label, Flood kind, double value, double amount = 1) {
@@ -67,46 +75,46 @@ std::optional<int> flood_of(BrushKind kind) {
   }
 }
 
-std::string needs_flood(const Editor& editor) {
-  const std::string why = needs_reach(editor);
-  if (!why.empty() || flood_of(editor.skin->painting->kind)) return why;
-  return std::string(name_of(editor.skin->painting->kind)) +
+std::string needs_flood(const Context& context) {
+  const std::string why = needs_reach(context);
+  if (!why.empty() || flood_of(context.skin->painting->kind)) return why;
+  return std::string(name_of(context.skin->painting->kind)) +
          " cannot flood: select the add, subtract, set, multiply or smooth brush";
 }
 
 // Applies the brush to all tissue that it may paint. Every voxel changes as if it were at the centre of a dab, which is
 // a single touch of the brush.
-void flood(Editor& editor) {
-  const Painting& painting = *editor.skin->painting;
+void flood(Context& context) {
+  const Painting& painting = *context.skin->painting;
   const int kind = *flood_of(painting.kind);
   const bool by_strength = kind < 2;
   edit_weights(
-      editor,
+      context,
       {choice_of("Brush", "How the value changes the weight of the selected bones.",
                  {"Add", "Subtract", "Set", "Multiply", "Smooth"}, kind),
        number_of("Value", "The weight to add, subtract or set, or the factor to multiply by. Smooth does not use it.",
                  by_strength ? painting.strength : painting.value, 0, 1, "%.2f"),
        number_of("Amount", "How much of the change is applied. 0 = none, 1 = all.",
                  by_strength || kind == kSmoothFlood ? 1 : painting.strength, 0, 1, "%.2f")},
-      [](const Editor& e, const Fields& fields) {
+      [](const Context& c, const Fields& fields) {
         const double value = fields[1].value, amount = fields[2].value;
         if (fields[0].chosen == kSmoothFlood) return smoothing("Smooth all", 1, amount);
-        return flooding("Flood " + painted_name(e), static_cast<Flood>(fields[0].chosen), value, amount);
+        return flooding("Flood " + painted_name(c), static_cast<Flood>(fields[0].chosen), value, amount);
       });
 }
 
 // ---- fill connected tissue, assign a tissue
 
-void fill_part(Editor& editor) {
-  const glm::ivec3 voxel = editor.views->hover.voxel;
-  edit_weights(editor,
+void fill_part(Context& context) {
+  const glm::ivec3 voxel = context.views->hover.voxel;
+  edit_weights(context,
                {choice_of("Fill within",
                           "Tissue: fill the connected part of the tissue under the pointer. All: also fill other "
                           "tissues that are connected to it.",
                           {"Tissue", "All"}),
                 number_of("Value", "The weight that the selected bones get in the filled part.", 1, 0, 1, "%.2f")},
-               [voxel](const Editor& e, const Fields& fields) {
-                 WeightOperation operation = flooding("Fill part with " + painted_name(e), Flood::Set, fields[1].value);
+               [voxel](const Context& c, const Fields& fields) {
+                 WeightOperation operation = flooding("Fill part with " + painted_name(c), Flood::Set, fields[1].value);
                  operation.reach = EditReach::AllTissues;
                  operation.edits_bone_tissue = true;
                  operation.where = [voxel, part = fields[0].chosen == 0 ? Part::Label
@@ -118,26 +126,26 @@ void fill_part(Editor& editor) {
 }
 
 // Returns the selected tissues. If no tissue is selected, returns the tissue under the pointer.
-std::set<Label> named_tissues(const Editor& editor) {
-  if (!editor.selection.tissues.empty()) return editor.selection.tissues;
-  return editor.views->hover.inside ? std::set<Label>{editor.views->hover.label} : std::set<Label>{};
+std::set<Label> named_tissues(const Context& context) {
+  if (!context.selection->tissues.empty()) return context.selection->tissues;
+  return context.views->hover.inside ? std::set<Label>{context.views->hover.label} : std::set<Label>{};
 }
 
-std::string needs_named_tissue(const Editor& editor) {
-  if (const std::string why = needs_paint(editor); !why.empty()) return why;
-  return named_tissues(editor).empty() ? "Select a tissue, or point at one" : "";
+std::string needs_named_tissue(const Context& context) {
+  if (const std::string why = needs_paint(context); !why.empty()) return why;
+  return named_tissues(context).empty() ? "Select a tissue, or point at one" : "";
 }
 
-void assign_tissue(Editor& editor) {
-  const std::set<Label> labels = named_tissues(editor);
-  const Tissue* tissue = editor.document().tissues->find(*labels.begin());
+void assign_tissue(Context& context) {
+  const std::set<Label> labels = named_tissues(context);
+  const Tissue* tissue = context.document().tissues->find(*labels.begin());
   const std::string name = labels.size() > 1 ? std::to_string(labels.size()) + " tissues"
                            : tissue          ? shown_name(*tissue)
                                              : "Label " + std::to_string(*labels.begin());
   edit_weights(
-      editor, {number_of("Value", "The weight that the selected bones get in all of the tissue.", 1, 0, 1, "%.2f")},
-      [labels, name](const Editor& e, const Fields& fields) {
-        WeightOperation operation = flooding("Assign " + name + " to " + painted_name(e), Flood::Set, fields[0].value);
+      context, {number_of("Value", "The weight that the selected bones get in all of the tissue.", 1, 0, 1, "%.2f")},
+      [labels, name](const Context& c, const Fields& fields) {
+        WeightOperation operation = flooding("Assign " + name + " to " + painted_name(c), Flood::Set, fields[0].value);
         operation.reach = EditReach::AllTissues;
         operation.edits_bone_tissue = true;
         operation.where = [labels](const WeightsToEdit& what) {
@@ -167,21 +175,21 @@ std::string without_partner(const Armature& armature) {
                           " no bone on the other side";
 }
 
-void mirror(Editor& editor) {
-  const Armature& armature = *editor.document().armature;
+void mirror(Context& context) {
+  const Armature& armature = *context.document().armature;
   const MirrorPlane plane = mirror_plane(armature);
   // The form proposes to copy from the side of the active bone. The world's x axis points to the body's left.
-  const Bone& active = armature.bones[static_cast<std::size_t>(*skin_bone(editor))];
+  const Bone& active = armature.bones[static_cast<std::size_t>(*skin_bone(context))];
   const double left = plane.normal.x < 0 ? -1 : 1,
                side = left * glm::dot((active.head + active.tail) / 2.0 - plane.point, plane.normal);
   edit_weights(
-      editor,
+      context,
       {choice_of("From side", "The side whose weights are copied to the other side.", {"Left", "Right"},
                  side >= 0 ? 0 : 1),
        number_of("Distance",
                  "A voxel gets the weights of the tissue nearest to its mirrored position, within this distance.", 10,
                  0.5, 100, "%.1f", "mm")},
-      [left](const Editor&, const Fields& fields) {
+      [left](const Context&, const Fields& fields) {
         WeightOperation operation{
             .label = fields[0].chosen == 0 ? "Mirror weights to the right" : "Mirror weights to the left",
             .edits_bone_tissue = true};
@@ -205,13 +213,13 @@ void mirror(Editor& editor) {
 
 // ---- edits of all bones at once
 
-void smooth_all(Editor& editor) {
+void smooth_all(Context& context) {
   edit_weights(
-      editor,
+      context,
       {number_of("Steps", "Number of steps. Each step moves weights towards those of the neighbouring voxels.", 3, 1,
                  100, "%.0f"),
        number_of("Amount", "How far each step moves the weights. 1 = fully to the neighbours' mean.", 1, 0, 1, "%.2f")},
-      [](const Editor&, const Fields& fields) {
+      [](const Context&, const Fields& fields) {
         return smoothing("Smooth all", static_cast<int>(std::lround(fields[0].value)), fields[1].value);
       });
 }
@@ -229,11 +237,11 @@ WeightOperation voxel_edit(
           }};
 }
 
-void limit(Editor& editor) {
-  edit_weights(editor,
+void limit(Context& context) {
+  edit_weights(context,
                {number_of("Bones", "Largest number of bones that a voxel follows. Smaller weights are removed.", 2, 1,
                           4, "%.0f")},
-               [](const Editor&, const Fields& fields) {
+               [](const Context&, const Fields& fields) {
                  const int most = static_cast<int>(std::lround(fields[0].value));
                  return voxel_edit("Limit influences to " + std::to_string(most),
                                    [most](const WeightedBody& body, const SkinWeights& weights,
@@ -241,11 +249,11 @@ void limit(Editor& editor) {
                });
 }
 
-void prune(Editor& editor) {
-  edit_weights(editor,
+void prune(Context& context) {
+  edit_weights(context,
                {number_of("Limit", "Remove weights below this limit. The voxel's other bones get the removed weight.",
                           0.02, 0, 0.5, "%.3f")},
-               [](const Editor&, const Fields& fields) {
+               [](const Context&, const Fields& fields) {
                  return voxel_edit(
                      "Clean small weights",
                      [least = fields[0].value](const WeightedBody& body, const SkinWeights& weights,
@@ -253,12 +261,12 @@ void prune(Editor& editor) {
                });
 }
 
-void quantize(Editor& editor) {
+void quantize(Context& context) {
   edit_weights(
-      editor,
+      context,
       {number_of("Steps", "Number of equal steps between the weights 0 and 1. Weights are rounded to the nearest step.",
                  10, 1, 1000, "%.0f")},
-      [](const Editor&, const Fields& fields) {
+      [](const Context&, const Fields& fields) {
         const int steps = static_cast<int>(std::lround(fields[0].value));
         return voxel_edit("Quantize to " + std::to_string(steps) + " steps",
                           [steps](const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
@@ -267,31 +275,31 @@ void quantize(Editor& editor) {
       });
 }
 
-void set_levels(Editor& editor) {
+void set_levels(Context& context) {
   edit_weights(
-      editor,
+      context,
       {number_of("Low weight", "Weights up to this value become 0.", 0, 0, 0.99, "%.2f"),
        number_of("High weight", "Weights from this value on become 1.", 1, 0.01, 1, "%.2f"),
        number_of("Gamma", "Above 1 raises the weights between 0 and 1, below 1 lowers them.", 1.5, 0.1, 10, "%.2f")},
-      [](const Editor& e, const Fields& fields) {
+      [](const Context& c, const Fields& fields) {
         WeightRules::Levels levels;
         levels.in_low = fields[0].value;
         levels.in_high = std::max(fields[1].value, fields[0].value + 0.01);
         levels.gamma = fields[2].value;
-        const std::vector<int> bones = painted_bones(e);
+        const std::vector<int> bones = painted_bones(c);
         return WeightOperation{
-            .label = "Levels of " + e.document().weights->bones()[static_cast<std::size_t>(bones[0])],
+            .label = "Levels of " + c.document().weights->bones()[static_cast<std::size_t>(bones[0])],
             .work = [levels](const WeightsToEdit& what, const EditScope& scope) -> EditedWeights {
               return {with_levels(what.body(), *what.document.weights, what.settings.bones[0], levels, scope), ""};
             }};
       });
 }
 
-void ask_copy(Editor& editor) {
-  const std::vector<std::string> names = editor.document().weights->bones();
-  const std::vector<int> bones = painted_bones(editor);
+void ask_copy(Context& context) {
+  const std::vector<std::string> names = context.document().weights->bones();
+  const std::vector<int> bones = painted_bones(context);
   const int from = bones[0], to = bones.size() > 1 ? bones[1] : from == 0 ? 1 : 0;
-  const MakeWeightOperation make = [names](const Editor&, const Fields& fields) {
+  const MakeWeightOperation make = [names](const Context&, const Fields& fields) {
     const int source = fields[0].chosen, target = fields[1].chosen;
     if (source == target)
       throw Error("a bone cannot be copied to itself", names[static_cast<std::size_t>(source)],
@@ -306,7 +314,7 @@ void ask_copy(Editor& editor) {
                              return {copied(what.body(), *what.document.weights, source, target, kind, scope), ""};
                            }};
   };
-  const auto outcome = [names](const Editor&, const Fields& fields) {
+  const auto outcome = [names](const Context&, const Fields& fields) {
     const std::string &source = names[static_cast<std::size_t>(fields[0].chosen)],
                       &target = names[static_cast<std::size_t>(fields[1].chosen)];
     if (source == target) throw Error("a bone cannot be copied to itself", source, "select two different bones");
@@ -316,15 +324,15 @@ void ask_copy(Editor& editor) {
                                    source + " and " + target + " exchange their weights."};
     return results[fields[2].chosen];
   };
-  editor.open_dialog(make_form({"Copy weights",
-                                "Give the weights of one bone to another.",
-                                "Copy",
-                                {choice_of("Bone", "The bone whose weights are copied.", names, from),
-                                 choice_of("To bone", "The bone that gets the copied weights.", names, to),
-                                 choice_of("Mode", "How the copied weights combine with the existing ones.",
-                                           {"Replace", "Add", "Move", "Swap"}, 2)},
-                                outcome,
-                                weight_act(make)}));
+  context.dialogs->open(make_form({"Copy weights",
+                                   "Give the weights of one bone to another.",
+                                   "Copy",
+                                   {choice_of("Bone", "The bone whose weights are copied.", names, from),
+                                    choice_of("To bone", "The bone that gets the copied weights.", names, to),
+                                    choice_of("Mode", "How the copied weights combine with the existing ones.",
+                                              {"Replace", "Add", "Move", "Swap"}, 2)},
+                                   outcome,
+                                   weight_act(make)}));
 }
 
 // ---- transfer from another project
@@ -347,27 +355,27 @@ EditedWeights transfer(const Path& path, const WeightsToEdit& what, const EditSc
   return {static_cast<WeightEdit&>(edit), words};
 }
 
-void ask_transfer(Editor& editor) {
-  browse(editor, {.purpose = "transfer",
-                  .title = "Transfer weights from a project",
-                  .action = "Transfer",
-                  .filters = {{"Projects", {".limber"}}},
-                  .folder = editor.project_path.parent_path(),
-                  .chosen = [](Editor& e, const Path& path) {
-                    edit_weights(e, {}, [path](const Editor&, const Fields&) {
-                      return WeightOperation{.label = "Transfer weights from " + path.filename().string(),
-                                             .edits_bone_tissue = true,
-                                             .reads_file = true,
-                                             .work = [path](const WeightsToEdit& what, const EditScope& scope) {
-                                               return transfer(path, what, scope);
-                                             }};
-                    });
-                  }});
+void ask_transfer(Context& context) {
+  browse(context, {.purpose = "transfer",
+                   .title = "Transfer weights from a project",
+                   .action = "Transfer",
+                   .filters = {{"Projects", {".limber"}}},
+                   .folder = context.project->path.parent_path(),
+                   .chosen = [](Context& c, const Path& path) {
+                     edit_weights(c, {}, [path](const Context&, const Fields&) {
+                       return WeightOperation{.label = "Transfer weights from " + path.filename().string(),
+                                              .edits_bone_tissue = true,
+                                              .reads_file = true,
+                                              .work = [path](const WeightsToEdit& what, const EditScope& scope) {
+                                                return transfer(path, what, scope);
+                                              }};
+                     });
+                   }});
 }
 
-std::string needs_two_bones(const Editor& editor) {
-  if (const std::string why = needs_reach(editor); !why.empty()) return why;
-  return editor.document().weights->bones().size() > 1 ? "" : "The rig has only one bone";
+std::string needs_two_bones(const Context& context) {
+  if (const std::string why = needs_reach(context); !why.empty()) return why;
+  return context.document().weights->bones().size() > 1 ? "" : "The rig has only one bone";
 }
 
 }  // namespace
@@ -382,14 +390,14 @@ std::vector<Operator> weight_edit_operators() {
       {"skin.gradient", "Gradient", icon::kGradient, "Weights",
        "Draw a line along which the weight of the selected bones fades from full to none. Press R to fade it in all "
        "directions from the line's start.",
-       [](Editor& e) {
-         e.modal = begin_gradient(e);
-         e.modal_wrap = {};
+       [](Context& c) {
+         c.interaction->modal = begin_gradient(c);
+         c.interaction->modal_wrap = {};
        },
-       [](const Editor& e) {
-         return needs_reach(e).empty() && e.views->scene.pose
+       [](const Context& c) {
+         return needs_reach(c).empty() && c.views->scene.pose
                     ? std::string("Show the body at rest first: the line is drawn on the rest pose")
-                    : needs_reach(e);
+                    : needs_reach(c);
        }},
       {"skin.fill_part", "Fill part", icon::kBrushSet, "Weights",
        "Let the connected part of the tissue under the pointer follow the selected bone.", fill_part,

@@ -4,9 +4,12 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/project/job.h"
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -52,38 +55,38 @@ void set_weights(Document& document, std::shared_ptr<const SkinWeights> weights)
   set_layers(document, std::move(next), std::move(came_out));
 }
 
-std::optional<std::size_t> active_layer(const Editor& editor) {
-  const auto& layers = editor.document().layers;
-  const auto& chosen = editor.skin->painting->layer;
+std::optional<std::size_t> active_layer(const Context& context) {
+  const auto& layers = context.document().layers;
+  const auto& chosen = context.skin->painting->layer;
   if (!layers || !chosen) return std::nullopt;
   return std::min(*chosen, layers->layers.size() - 1);
 }
 
-void choose_layer(Editor& editor, std::optional<std::size_t> layer) {
-  editor.skin->painting->layer = layer;
-  if (!layer) editor.skin->painting->mask = false;
-  editor.touch();
+void choose_layer(Context& context, std::optional<std::size_t> layer) {
+  context.skin->painting->layer = layer;
+  if (!layer) context.skin->painting->mask = false;
+  context.ui->touch();
 }
 
-std::string why_not_paint_layer(const Editor& editor) {
-  const auto layer = active_layer(editor);
+std::string why_not_paint_layer(const Context& context) {
+  const auto layer = active_layer(context);
   if (!layer) return "";
-  const WeightLayer& active = *editor.document().layers->layers[*layer];
+  const WeightLayer& active = *context.document().layers->layers[*layer];
   if (!active.visible) return "The layer " + active.name + " is hidden: show it, or select another layer";
   if (active.opacity == 0)
     return "The layer " + active.name + " has an opacity of 0: raise the opacity, or select another layer";
   return "";
 }
 
-LayerToEdit layer_to_edit(Editor& editor) {
-  const Document& document = editor.document();
-  LayerToEdit edited{document.layers, active_layer(editor), document.weights, document.weights};
+LayerToEdit layer_to_edit(Context& context) {
+  const Document& document = context.document();
+  LayerToEdit edited{document.layers, active_layer(context), document.weights, document.weights};
   if (!edited.layers) return edited;
   if (!edited.layer) {
     edited.weights = edited.layers->base;
     return edited;
   }
-  auto& known = editor.skin->painting->canvas;
+  auto& known = context.skin->painting->canvas;
   if (known.of != edited.layers || known.layer != *edited.layer)
     known = {edited.layers, *edited.layer, shared(canvas(*edited.layers, *edited.layer))};
   edited.weights = known.weights;
@@ -109,15 +112,15 @@ Document with_edited(const Document& now, const LayerToEdit& edited, const Edite
   return next;
 }
 
-void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made) {
-  commit(editor, label, with_edited(editor.document(), edited, made));
+void commit_weights(Context& context, const std::string& label, const LayerToEdit& edited, const EditedLayers& made) {
+  commit(context, label, with_edited(context.document(), edited, made));
   // Cache the new weights of the edited layer, composed with all layers below it. The next stroke on the layer starts
   // from them.
-  if (edited.layer) editor.skin->painting->canvas = {editor.document().layers, *edited.layer, made.after};
+  if (edited.layer) context.skin->painting->canvas = {context.document().layers, *edited.layer, made.after};
 }
 
-void commit_layers(Editor& editor, const std::string& label, WeightLayers next) {
-  const Document& document = editor.document();
+void commit_layers(Context& context, const std::string& label, WeightLayers next) {
+  const Document& document = context.document();
   const WeightLayers before = document.layers ? *document.layers : WeightLayers{document.weights, {}};
   std::int64_t voxels = 0;
   for (const std::int64_t brick : changed_bricks(next, before)) voxels += std::ssize(next.base->chunk(brick));
@@ -125,9 +128,9 @@ void commit_layers(Editor& editor, const std::string& label, WeightLayers next) 
     Document changed = document;
     auto came_out = shared(recomposed(next, before, *document.weights));
     set_layers(changed, std::move(next), std::move(came_out));
-    return commit(editor, label, std::move(changed));
+    return commit(context, label, std::move(changed));
   }
-  editor.jobs.start(
+  context.jobs->start(
       label, [label, next, before, of = document.layers, came_out = document.weights](Progress& progress) -> Edit {
         progress.update("weights", 0);
         auto made = shared(recomposed(next, before, *came_out));
@@ -139,36 +142,36 @@ void commit_layers(Editor& editor, const std::string& label, WeightLayers next) 
           return changed;
         };
       });
-  editor.touch();
+  context.ui->touch();
 }
 
 namespace {
 
 template <class Change>
-void change_layer(Editor& editor, std::size_t layer, const std::string& label, const Change& change) {
-  WeightLayers next = *editor.document().layers;
+void change_layer(Context& context, std::size_t layer, const std::string& label, const Change& change) {
+  WeightLayers next = *context.document().layers;
   WeightLayer changed = *next.layers[layer];
   change(changed);
   next.layers[layer] = shared(std::move(changed));
-  commit_layers(editor, label, std::move(next));
+  commit_layers(context, label, std::move(next));
 }
 
 }  // namespace
 
-void show_layer(Editor& editor, std::size_t layer, bool visible) {
-  change_layer(editor, layer, (visible ? "Show " : "Hide ") + editor.document().layers->layers[layer]->name,
+void show_layer(Context& context, std::size_t layer, bool visible) {
+  change_layer(context, layer, (visible ? "Show " : "Hide ") + context.document().layers->layers[layer]->name,
                [&](WeightLayer& l) { l.visible = visible; });
 }
 
-void rename_layer(Editor& editor, std::size_t layer, const std::string& name) {
-  if (name.empty() || name == editor.document().layers->layers[layer]->name) return;
-  change_layer(editor, layer, "Rename " + editor.document().layers->layers[layer]->name,
+void rename_layer(Context& context, std::size_t layer, const std::string& name) {
+  if (name.empty() || name == context.document().layers->layers[layer]->name) return;
+  change_layer(context, layer, "Rename " + context.document().layers->layers[layer]->name,
                [&](WeightLayer& l) { l.name = name; });
 }
 
-void set_layer_opacity(Editor& editor, std::size_t layer, double opacity) {
-  if (opacity == editor.document().layers->layers[layer]->opacity) return;
-  change_layer(editor, layer, "Opacity of " + editor.document().layers->layers[layer]->name,
+void set_layer_opacity(Context& context, std::size_t layer, double opacity) {
+  if (opacity == context.document().layers->layers[layer]->opacity) return;
+  change_layer(context, layer, "Opacity of " + context.document().layers->layers[layer]->name,
                [&](WeightLayer& l) { l.opacity = opacity; });
 }
 

@@ -13,7 +13,7 @@
 
 namespace limber::editor {
 
-struct Editor;
+struct Context;
 
 // Replaces the document's weights. If the document has layers for the same body and bones, the new weights become the
 // base below these layers. Otherwise the layers are removed.
@@ -28,7 +28,7 @@ struct LayerToEdit {
   std::shared_ptr<const SkinWeights> came_out;  // composed weights of all layers: the document's weights
 };
 // Returns the weights that a stroke or an edit would change now. The document must have weights.
-LayerToEdit layer_to_edit(Editor& editor);
+LayerToEdit layer_to_edit(Context& context);
 // The result of an edit. after: the edited weights of the layer; layers: the document's layers with this edit; weights:
 // their composed weights. edited_layers() takes long for a large change, so a job calls it in its own thread.
 struct EditedLayers {
@@ -41,19 +41,19 @@ EditedLayers edited_layers(const LayerToEdit& edited, std::shared_ptr<const Skin
 // changed since layer_to_edit() returned `edited`.
 Document with_edited(const Document& now, const LayerToEdit& edited, const EditedLayers& made);
 // Commits the edited layers and weights as one edit.
-void commit_weights(Editor& editor, const std::string& label, const LayerToEdit& edited, const EditedLayers& made);
+void commit_weights(Context& context, const std::string& label, const LayerToEdit& edited, const EditedLayers& made);
 
 // Returns the index of the layer that strokes and edits change; none if they change the base, or without layers.
-std::optional<std::size_t> active_layer(const Editor& editor);
-void choose_layer(Editor& editor, std::optional<std::size_t> layer);
+std::optional<std::size_t> active_layer(const Context& context);
+void choose_layer(Context& context, std::optional<std::size_t> layer);
 // Returns why the active layer cannot be painted ("The layer Elbow is hidden"); "" when it can.
-std::string why_not_paint_layer(const Editor& editor);
+std::string why_not_paint_layer(const Context& context);
 
-void show_layer(Editor& editor, std::size_t layer, bool visible);
-void rename_layer(Editor& editor, std::size_t layer, const std::string& name);
-void set_layer_opacity(Editor& editor, std::size_t layer, double opacity);
+void show_layer(Context& context, std::size_t layer, bool visible);
+void rename_layer(Context& context, std::size_t layer, const std::string& name);
+void set_layer_opacity(Context& context, std::size_t layer, double opacity);
 
 // Commits the layers as one edit. If the list has no layer, the base becomes the document's weights.
-void commit_layers(Editor& editor, const std::string& label, WeightLayers next);
+void commit_layers(Context& context, const std::string& label, WeightLayers next);
 
 }  // namespace limber::editor

@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core/project/job.h"
 #include "core/skin/weight_problems.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct FoundProblems {
   std::shared_ptr<const SkinWeights> in;  // the weights in which the problems were found
@@ -21,20 +23,20 @@ struct FoundProblems {
 
 // Returns why the weights cannot be searched or repaired (they are not shown, or belong to another rig); "" if they
 // can.
-std::string why_not_these_weights(const Editor& editor);
+std::string why_not_these_weights(const Context& context);
 
 // Starts a job that searches the weights for problems, which the sidebar then lists. The weights must belong to the
 // rig.
-void start_finding_problems(Editor& editor);
-bool finds_problems(const Editor& editor);
+void start_finding_problems(Context& context);
+bool finds_problems(const Jobs& jobs);
 // Returns true if the weights or the rig have changed since the search for problems, other than by repairs from the
 // list.
-bool problems_stale(const Editor& editor);
+bool problems_stale(const Context& context);
 
 // Selects the problem in the list, makes its bone active, and moves the view and the crosshair to its position.
-void go_to_problem(Editor& editor, int problem);
+void go_to_problem(Context& context, int problem);
 // Repairs the problem in a job, as one edit. If locked bones prevent the repair, tells the user so.
-void repair_problem(Editor& editor, int problem);
+void repair_problem(Context& context, int problem);
 
 const char* name_of(WeightProblem::Kind kind);  // returns the heading of the problems of this kind, such as "Islands"
 

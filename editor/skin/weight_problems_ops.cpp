@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators that find weight problems, step through them and repair them.
+#include "editor/context/context.h"
 #include "editor/skin/weight_problems.h"
+#include "editor/ui/messages.h"
 
 #include "editor/context/operator.h"
 #include "editor/skin/painting.h"
@@ -11,14 +13,14 @@ namespace limber::editor {
 
 namespace {
 
-std::string needs_weights(const Editor& editor) {
-  if (std::string why = why_not_these_weights(editor); !why.empty()) return why;
-  return finds_problems(editor) ? "The search for problems is running" : "";
+std::string needs_weights(const Context& context) {
+  if (std::string why = why_not_these_weights(context); !why.empty()) return why;
+  return finds_problems(context.jobs) ? "The search for problems is running" : "";
 }
 
-std::string needs_problem(const Editor& editor) {
-  if (std::string why = needs_weights(editor); !why.empty()) return why;
-  const Painting& painting = *editor.skin->painting;
+std::string needs_problem(const Context& context) {
+  if (std::string why = needs_weights(context); !why.empty()) return why;
+  const Painting& painting = *context.skin->painting;
   if (!painting.problems || painting.problem < 0) return "Select a problem first";
   return painting.problems->repaired[static_cast<std::size_t>(painting.problem)] ? "This problem is already repaired"
                                                                                  : "";
@@ -26,31 +28,31 @@ std::string needs_problem(const Editor& editor) {
 
 // Shows a message that describes the problem in the views, because its row in the list may be scrolled out of view.
 // The message replaces the message about the previous problem.
-void tell_of_problem(Editor& editor) {
+void tell_of_problem(Context& context) {
   constexpr std::string_view kLine = "Problem ";
-  const Painting& painting = *editor.skin->painting;
+  const Painting& painting = *context.skin->painting;
   const auto at = static_cast<std::size_t>(painting.problem);
-  std::erase_if(editor.messages.toasts, [&](const Toast& toast) { return toast.line.starts_with(kLine); });
-  editor.messages.info(
+  std::erase_if(context.messages->toasts, [&](const Toast& toast) { return toast.line.starts_with(kLine); });
+  context.messages->info(
       std::string(kLine) + std::to_string(at + 1) + " of " + std::to_string(painting.problems->problems.size()),
       describe(painting.problems->problems[at], *painting.problems->armature));
 }
 
 // Goes to the next (by = 1) or previous (by = -1) problem that is not repaired. If there was no search for problems
 // yet, starts one.
-void step(Editor& editor, int by) {
-  const Painting& painting = *editor.skin->painting;
-  if (!painting.problems) return start_finding_problems(editor);
+void step(Context& context, int by) {
+  const Painting& painting = *context.skin->painting;
+  if (!painting.problems) return start_finding_problems(context);
   const int count = static_cast<int>(painting.problems->problems.size());
   int at = painting.problem < 0 && by < 0 ? 0 : painting.problem;
   for (int tried = 0; tried < count; ++tried) {
     at = (at + by + count) % count;
     if (painting.problems->repaired[static_cast<std::size_t>(at)]) continue;
-    go_to_problem(editor, at);
-    return tell_of_problem(editor);
+    go_to_problem(context, at);
+    return tell_of_problem(context);
   }
-  if (problems_stale(editor)) return start_finding_problems(editor);
-  editor.messages.info("Next problem", "All problems are repaired");
+  if (problems_stale(context)) return start_finding_problems(context);
+  context.messages->info("Next problem", "All problems are repaired");
 }
 
 }  // namespace
@@ -63,13 +65,13 @@ std::vector<Operator> weight_problem_operators() {
        start_finding_problems, needs_weights},
       {"skin.next_problem", "Next problem", icon::kWarning, "Weights",
        "Select the next problem of the weights and move the views to it. Searches for problems first if needed.",
-       [](Editor& e) { step(e, 1); }, needs_weights},
+       [](Context& c) { step(c, 1); }, needs_weights},
       {"skin.previous_problem", "Previous problem", "", "Weights",
-       "Select the previous problem of the weights and move the views to it.", [](Editor& e) { step(e, -1); },
+       "Select the previous problem of the weights and move the views to it.", [](Context& c) { step(c, -1); },
        needs_weights},
       {"skin.repair_problem", "Repair problem", icon::kTick, "Weights",
        "Repair the problem selected in the list. Other weights do not change.",
-       [](Editor& e) { repair_problem(e, e.skin->painting->problem); }, needs_problem},
+       [](Context& c) { repair_problem(c, c.skin->painting->problem); }, needs_problem},
   };
 }
 

@@ -58,6 +58,7 @@ class Messages {
   std::deque<Toast> toasts;
   std::vector<LogLine> log;
   std::vector<ErrorMessage> errors;  // error messages: the first one is shown, the others wait
+  bool details_open = false;         // true: the details of the shown error are unfolded
   std::string last_failure;          // text of the Error of the job that failed last
 
  private:

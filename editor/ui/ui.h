@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The state that widgets share: the look, this frame's input, the keyboard focus, the tool tip. Every widget's function
-// gets a Ui as its argument; Editor derives from Ui.
+// gets a Ui as its argument.
 #pragma once
 
 #include <algorithm>
@@ -43,6 +43,14 @@ struct Ui {
   // Requests a frame at `time` (seconds on the clock of `now`), even if no input arrives until then.
   void wake_at(double time) { wake_at_ = std::min(wake_at_, std::max(time, now)); }
 
+  void begin_frame(double time) {
+    now = time;
+    wake_at_ = 1e300;
+    if (frames_wanted_ > 0) --frames_wanted_;
+  }
+  // Returns the time until the next requested frame, s; 0 or less: now.
+  double time_to_next_frame() const { return frames_wanted_ > 0 ? 0 : wake_at_ - now; }
+
   Look look;
   WidgetRegistry widgets;
   InputState input;
@@ -73,7 +81,7 @@ struct Ui {
     bool asked = false;  // true: tooltip() was called in this frame
   } tip;
 
- protected:
+ private:
   int frames_wanted_ = 3;   // number of frames still to draw: ImGui needs up to 3 to show a change
   double wake_at_ = 1e300;  // earliest time for which wake_at() has requested a frame, s
 };

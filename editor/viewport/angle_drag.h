@@ -3,9 +3,12 @@
 // of a ring around the axis, or on the screen around the pixel of the pivot (the point to turn about).
 #pragma once
 
+#include "editor/context/view_projection.h"
 #include "editor/viewport/gizmo_draw.h"
 
 namespace limber::editor {
+
+struct Theme;
 
 class AngleDrag {
  public:

@@ -2,8 +2,12 @@
 // Draws the section "Display" of the Rig and Pose workspaces, in which the user sets how bones are drawn.
 #include <array>
 
+#include "editor/context/context.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_button.h"
 #include "editor/context/panels.h"
+#include "editor/context/views.h"
+#include "editor/context/workspace.h"
 #include "editor/ui/input_fields.h"
 #include "editor/ui/widgets.h"
 
@@ -16,22 +20,22 @@ constexpr std::array<const char*, 3> kShapes = {"view.bones_octahedron", "view.b
 
 }  // namespace
 
-void draw_display(Editor& editor, Column& column) {
-  if (!editor.document().armature || (editor.workspace != Workspace::Rig && editor.workspace != Workspace::Pose))
+void draw_display(Context& context, Column& column) {
+  if (!context.document().armature || (context.workspace() != Workspace::Rig && context.workspace() != Workspace::Pose))
     return;
   if (column.begin_section("Display", "", false)) {
     column.space(6);
     std::vector<std::string> shapes;
-    for (const char* id : kShapes) shapes.push_back(find_operator(editor, id)->label);
-    int shape = static_cast<int>(editor.views->bone_shape);
+    for (const char* id : kShapes) shapes.push_back(find_operator(context.operators, id)->label);
+    int shape = static_cast<int>(context.views->bone_shape);
     const Rect field = column.property("Bones");
     {
-      const PathScope scope(editor, "Bones");
-      if (choice_field(editor, field, shapes, shape)) run(editor, kShapes[shape]);
+      const PathScope scope(context.ui, "Bones");
+      if (choice_field(context.ui, field, shapes, shape)) run(context, kShapes[shape]);
     }
-    operator_box(editor, "view.bone_names", column.property(""), "Names");
-    operator_box(editor, "view.bone_axes", column.property(""), "Axes");
-    operator_box(editor, "view.bones_in_front", column.property(""), "In front");
+    operator_box(context, "view.bone_names", column.property(""), "Names");
+    operator_box(context, "view.bone_axes", column.property(""), "Axes");
+    operator_box(context, "view.bones_in_front", column.property(""), "In front");
     column.space(6);
   }
   column.end_section();

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/viewport/clipping_gizmo.h"
 
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/layout.h"
+#include "editor/context/views.h"
 #include "editor/ui/widgets.h"
 #include "editor/viewport/gizmo_draw.h"
 
@@ -12,18 +15,18 @@ namespace {
 constexpr double kThinnest = 1;  // opposite faces of the clip box keep at least this distance, voxels
 constexpr double kSnap = 10;     // step to which a dragged handle snaps while Ctrl is held, mm
 
-const Visibility& shown(const Editor& editor) {
-  const auto& preview = editor.views->preview_visibility;
-  return preview ? *preview : *editor.document().visibility;
+const Visibility& shown(const Context& context) {
+  const auto& preview = context.views->preview_visibility;
+  return preview ? *preview : *context.document().visibility;
 }
 
 class Painter {
  public:
-  Painter(Editor& editor, const Rect& rect) : editor_(editor), rect_(rect), size_(rect.size()) {}
+  Painter(Context& context, const Rect& rect) : context_(context), rect_(rect), size_(rect.size()) {}
 
   bool pixel_of(const glm::dvec3& world, glm::vec2& pixel) const {
     glm::dvec2 in_view;
-    if (!render::project(editor_.views->body.camera, world, size_, in_view)) return false;
+    if (!render::project(context_.views->body.camera, world, size_, in_view)) return false;
     pixel = rect_.low + glm::vec2(in_view);
     return true;
   }
@@ -31,7 +34,7 @@ class Painter {
   void line(const glm::dvec3& from, const glm::dvec3& to) const {
     glm::vec2 a, b;
     if (pixel_of(from, a) && pixel_of(to, b))
-      ImGui::GetWindowDrawList()->AddLine(im(a), im(b), with_alpha(0xFFFFFFFF, 0.6f), editor_.look.line());
+      ImGui::GetWindowDrawList()->AddLine(im(a), im(b), with_alpha(0xFFFFFFFF, 0.6f), context_.ui->look.line());
   }
 
   // Draws a handle, a square of 9 pixels at scale 1. Returns whether the pointer hovers over it or presses it.
@@ -40,55 +43,55 @@ class Painter {
     glm::vec2 at;
     if (!pixel_of(world, at)) return {};
     at = glm::round(at);
-    const Look& look = editor_.look;
+    const Look& look = context_.ui->look;
     const float half = std::round(look.px(9) / 2);
-    const Pressed pressed = press_area(editor_, name, Rect{at - half, at + half}.grown(look.px(3)));
+    const Pressed pressed = press_area(context_.ui, name, Rect{at - half, at + half}.grown(look.px(3)));
     fill(Rect{at - half, at + half}.grown(1), 0xA0000000);
     fill({at - half, at + half}, pressed.hovered || pressed.held ? 0xFFFFFFFF : colour);
-    if (pressed.hovered && !pressed.held) tooltip(editor_, {at - half, at + half}, name, description);
+    if (pressed.hovered && !pressed.held) tooltip(context_.ui, {at - half, at + half}, name, description);
     return pressed;
   }
 
   // Returns the distance that the dragged handle has moved since it was pressed, as a multiple of the vector
   // `direction`.
   double dragged(const glm::dvec3& world, const glm::dvec3& direction) const {
-    return along(editor_.views->body.camera, size_, world, direction,
-                 glm::dvec2(editor_.input.pointer - editor_.views->handle_from));
+    return along(context_.views->body.camera, size_, world, direction,
+                 glm::dvec2(context_.ui->input.pointer - context_.views->handle_from));
   }
 
  private:
-  Editor& editor_;
+  Context& context_;
   const Rect rect_;
   glm::ivec2 size_;
 };
 
-void begin_preview(Editor& editor) {
-  editor.views->preview_visibility = editor.document().visibility;
-  editor.views->handle_from = editor.input.pointer;
+void begin_preview(Context& context) {
+  context.views->preview_visibility = context.document().visibility;
+  context.views->handle_from = context.ui->input.pointer;
 }
 
 // Stores the previewed clip box and clip plane in the document, as an edit named `label`.
-void end_preview(Editor& editor, const std::string& label) {
-  const auto preview = editor.views->preview_visibility;
-  editor.views->preview_visibility.reset();
-  if (!preview || *preview == *editor.document().visibility) return;
-  Document next = editor.document();
+void end_preview(Context& context, const std::string& label) {
+  const auto preview = context.views->preview_visibility;
+  context.views->preview_visibility.reset();
+  if (!preview || *preview == *context.document().visibility) return;
+  Document next = context.document();
   next.visibility = preview;
-  commit(editor, label, std::move(next));
+  commit(context, label, std::move(next));
 }
 
-void commit_clip(Editor& editor, const std::string& label, Visibility visibility) {
-  editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
-  end_preview(editor, label);
+void commit_clip(Context& context, const std::string& label, Visibility visibility) {
+  context.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
+  end_preview(context, label);
 }
 
 double snapped(double millimetres) { return std::round(millimetres / kSnap) * kSnap; }
 
-void draw_box(Editor& editor, const Painter& painter) {
-  const auto volume = editor.document().volume;
+void draw_box(Context& context, const Painter& painter) {
+  const auto volume = context.document().volume;
   const Grid& grid = volume->grid;
   const AffineTransform world = world_from_voxel(grid);
-  const ClipBox box = shown(editor).clip_box;
+  const ClipBox box = shown(context).clip_box;
   for (int corner = 0; corner < 8; ++corner)
     for (int axis = 0; axis < 3; ++axis) {
       if (corner >> axis & 1) continue;
@@ -108,41 +111,41 @@ void draw_box(Editor& editor, const Painter& painter) {
       const glm::dvec3 normal(grid.direction[axis]), size = glm::abs(normal);
       const int world_axis = size.x > size.y && size.x > size.z ? 0 : size.y > size.z ? 1 : 2;
       const std::string name = std::string("Clip face ") + "xyz"[axis] + (high ? "+" : "-");
-      const Pressed pressed = painter.handle(name, face_centre(box), editor.look.theme.axis[world_axis],
+      const Pressed pressed = painter.handle(name, face_centre(box), context.ui->look.theme.axis[world_axis],
                                              "Drag to move this face of the clip box; hold Ctrl to snap to 10 mm. "
                                              "Double-click to move it back to the volume's border.");
       if (pressed.double_clicked) {
-        Visibility next = *editor.document().visibility;
+        Visibility next = *context.document().visibility;
         move_face(next.clip_box, grid, axis, high, high ? grid.size[axis] - 0.5 : -0.5);
-        commit_clip(editor, "Reset clip face", std::move(next));
+        commit_clip(context, "Reset clip face", std::move(next));
         continue;
       }
-      if (pressed.activated) begin_preview(editor);
-      if (pressed.held && editor.views->preview_visibility) {
-        Visibility next = *editor.document().visibility;
-        const ClipBox& start = editor.document().visibility->clip_box;
+      if (pressed.activated) begin_preview(context);
+      if (pressed.held && context.views->preview_visibility) {
+        Visibility next = *context.document().visibility;
+        const ClipBox& start = context.document().visibility->clip_box;
         double place =
             (high ? start.high : start.low)[axis] + std::round(painter.dragged(face_centre(start), world.linear[axis]));
-        if (editor.input.modifiers().ctrl) {
+        if (context.ui->input.modifiers().ctrl) {
           // Snaps the face to a multiple of 10 mm on the world axis that is nearest to the face's normal.
           const double step = world.linear[axis][world_axis],
                        first = face_centre(start)[world_axis] - step * (high ? start.high : start.low)[axis];
           place = (snapped(first + step * place) - first) / step;
         }
         move_face(next.clip_box, grid, axis, high, place);
-        editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
-        editor.touch();
+        context.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
+        context.ui->touch();
       }
-      if (ImGui::IsItemDeactivated()) end_preview(editor, "Move clip box");
+      if (ImGui::IsItemDeactivated()) end_preview(context, "Move clip box");
     }
 }
 
-void draw_plane(Editor& editor, const Painter& painter) {
-  const ClipPlane plane = shown(editor).clip_plane;
+void draw_plane(Context& context, const Painter& painter) {
+  const ClipPlane plane = shown(context).clip_plane;
   const glm::dvec3 normal = plane.normal;
   const glm::dvec3 other = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
   const glm::dvec3 right = glm::normalize(glm::cross(other, normal)), up = glm::cross(normal, right);
-  const double half = editor.views->body.camera.distance * 0.09;
+  const double half = context.views->body.camera.distance * 0.09;
   const glm::dvec3 corners[] = {plane.point + half * (right + up), plane.point + half * (up - right),
                                 plane.point - half * (right + up), plane.point + half * (right - up)};
   for (int i = 0; i < 4; ++i) painter.line(corners[i], corners[(i + 1) % 4]);
@@ -152,19 +155,19 @@ void draw_plane(Editor& editor, const Painter& painter) {
       "Drag to move the clip plane along its normal; hold Ctrl for steps of 10 mm. Double-click to move it to the "
       "cross-hair.");
   if (pressed.double_clicked) {
-    Visibility next = *editor.document().visibility;
-    next.clip_plane.point = editor.views->cross_hair;
-    return commit_clip(editor, "Reset clip plane", std::move(next));
+    Visibility next = *context.document().visibility;
+    next.clip_plane.point = context.views->cross_hair;
+    return commit_clip(context, "Reset clip plane", std::move(next));
   }
-  if (pressed.activated) begin_preview(editor);
-  if (pressed.held && editor.views->preview_visibility) {
-    Visibility next = *editor.document().visibility;
+  if (pressed.activated) begin_preview(context);
+  if (pressed.held && context.views->preview_visibility) {
+    Visibility next = *context.document().visibility;
     const double by = painter.dragged(next.clip_plane.point + half * normal, normal);
-    next.clip_plane.point += normal * (editor.input.modifiers().ctrl ? snapped(by) : by);
-    editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
-    editor.touch();
+    next.clip_plane.point += normal * (context.ui->input.modifiers().ctrl ? snapped(by) : by);
+    context.views->preview_visibility = std::make_shared<const Visibility>(std::move(next));
+    context.ui->touch();
   }
-  if (ImGui::IsItemDeactivated()) end_preview(editor, "Move clip plane");
+  if (ImGui::IsItemDeactivated()) end_preview(context, "Move clip plane");
 }
 
 }  // namespace
@@ -189,12 +192,12 @@ double along(const render::Camera& camera, const glm::ivec2& size, const glm::dv
   return squared < 1e-6 ? 0 : glm::dot(pixels, seen) / squared;
 }
 
-void draw_clip_handles(Editor& editor, const Rect& rect) {
-  const auto visibility = editor.document().visibility;  // copied, since releasing a handle changes the document
-  if (!editor.document().volume || !visibility) return;
-  const Painter painter(editor, rect);
-  if (visibility->clip_box.enabled) draw_box(editor, painter);
-  if (visibility->clip_plane.enabled) draw_plane(editor, painter);
+void draw_clip_handles(Context& context, const Rect& rect) {
+  const auto visibility = context.document().visibility;  // copied, since releasing a handle changes the document
+  if (!context.document().volume || !visibility) return;
+  const Painter painter(context, rect);
+  if (visibility->clip_box.enabled) draw_box(context, painter);
+  if (visibility->clip_plane.enabled) draw_plane(context, painter);
 }
 
 }  // namespace limber::editor

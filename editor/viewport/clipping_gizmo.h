@@ -3,13 +3,17 @@
 // axis. During a drag only a preview changes. The document changes once, when the handle is released.
 #pragma once
 
-#include "editor/context/editor.h"
+#include "core/project/document.h"
+#include "render/scene/camera.h"
 
 namespace limber::editor {
 
+struct Context;
+struct Rect;
+
 // Draws the clip box, the clip plane and their handles into the current ImGui window, over the 3D view that fills
 // `rect`.
-void draw_clip_handles(Editor& editor, const Rect& rect);
+void draw_clip_handles(Context& context, const Rect& rect);
 
 // Moves a face of the clip box to the voxel coordinate `voxel`. The face stays inside the grid and at least one voxel
 // away from the opposite face.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators for the clip box and the clip plane. Switching them on and off is an edit, which can be undone.
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
+#include "editor/context/views.h"
 #include "editor/ui/icons.h"
 
 namespace limber::editor {
@@ -10,52 +13,52 @@ namespace {
 
 Visibility visibility_of(const Document& document) { return document.visibility ? *document.visibility : Visibility{}; }
 
-bool box_on(const Editor& editor) {
-  return editor.document().visibility && editor.document().visibility->clip_box.enabled;
+bool box_on(const Context& context) {
+  return context.document().visibility && context.document().visibility->clip_box.enabled;
 }
-bool plane_on(const Editor& editor) {
-  return editor.document().visibility && editor.document().visibility->clip_plane.enabled;
+bool plane_on(const Context& context) {
+  return context.document().visibility && context.document().visibility->clip_plane.enabled;
 }
 
-void commit_visibility(Editor& editor, const std::string& label, Visibility visibility) {
-  Document next = editor.document();
+void commit_visibility(Context& context, const std::string& label, Visibility visibility) {
+  Document next = context.document();
   next.visibility = std::make_shared<const Visibility>(std::move(visibility));
-  commit(editor, label, std::move(next));
+  commit(context, label, std::move(next));
 }
 
-void toggle_box(Editor& editor) {
-  Visibility visibility = visibility_of(editor.document());
+void toggle_box(Context& context) {
+  Visibility visibility = visibility_of(context.document());
   ClipBox& box = visibility.clip_box;
   box.enabled = !box.enabled;
   // When the box is switched on for the first time, it cuts away the body's front half to show the inside.
   if (box.low == box.high) {
-    const glm::dvec3 size(editor.document().volume->grid.size);
+    const glm::dvec3 size(context.document().volume->grid.size);
     box.low = glm::dvec3(-0.5);
     box.high = size - 0.5;
-    const AffineTransform voxel = voxel_from_world(editor.document().volume->grid);
+    const AffineTransform voxel = voxel_from_world(context.document().volume->grid);
     const glm::dvec3 front = voxel.linear * glm::dvec3(0, -1, 0), weight = glm::abs(front);
     const int axis = weight.x > weight.y && weight.x > weight.z ? 0 : weight.y > weight.z ? 1 : 2;
     (front[axis] > 0 ? box.high : box.low)[axis] = std::round(size[axis] / 2) - 0.5;
   }
-  commit_visibility(editor, box.enabled ? "Clip box on" : "Clip box off", visibility);
+  commit_visibility(context, box.enabled ? "Clip box on" : "Clip box off", visibility);
 }
 
-void toggle_plane(Editor& editor) {
-  Visibility visibility = visibility_of(editor.document());
+void toggle_plane(Context& context) {
+  Visibility visibility = visibility_of(context.document());
   ClipPlane& plane = visibility.clip_plane;
   plane.enabled = !plane.enabled;
   if (plane.enabled) {
-    plane.point = editor.views->cross_hair;
-    plane.normal = glm::normalize(render::eye_of(editor.views->body.camera) - editor.views->body.camera.centre);
+    plane.point = context.views->cross_hair;
+    plane.normal = glm::normalize(render::eye_of(context.views->body.camera) - context.views->body.camera.centre);
   }
-  commit_visibility(editor, plane.enabled ? "Clip plane on" : "Clip plane off", visibility);
+  commit_visibility(context, plane.enabled ? "Clip plane on" : "Clip plane off", visibility);
 }
 
-void reset_clips(Editor& editor) {
-  Visibility visibility = visibility_of(editor.document());
+void reset_clips(Context& context) {
+  Visibility visibility = visibility_of(context.document());
   visibility.clip_box = {};
   visibility.clip_plane = {};
-  commit_visibility(editor, "Reset clipping", visibility);
+  commit_visibility(context, "Reset clipping", visibility);
 }
 
 }  // namespace
@@ -69,7 +72,7 @@ std::vector<Operator> clip_operators() {
        plane_on},
       {"view.reset_clipping", "Reset clipping", "", "View",
        "Remove the clip box and the clip plane, to show the whole volume.", reset_clips,
-       [](const Editor& e) { return box_on(e) || plane_on(e) ? std::string() : std::string("Nothing is clipped"); }},
+       [](const Context& c) { return box_on(c) || plane_on(c) ? std::string() : std::string("Nothing is clipped"); }},
   };
 }
 

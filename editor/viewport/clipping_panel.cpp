@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/field_edit.h"
 #include "editor/context/panels.h"
+#include "editor/context/views.h"
 #include "editor/ui/input_fields.h"
 #include "editor/viewport/clipping_gizmo.h"
 
@@ -15,29 +18,29 @@ namespace {
 
 // Draws a number field. While the user drags the number, only a preview changes. The document changes once, when the
 // drag ends.
-void draw_number(Editor& editor, const Rect& rect, const std::string& name, double value, double low, double high,
+void draw_number(Context& context, const Rect& rect, const std::string& name, double value, double low, double high,
                  const char* edit, const std::function<void(Visibility&, double)>& set) {
-  auto& edited = editor.edited_number;
+  auto& edited = context.field_edit->number;
   if (edited.name == name) value = edited.value;
   bool committed = false;
   const auto with = [&](double number) {
-    Visibility next = *editor.document().visibility;
+    Visibility next = *context.document().visibility;
     set(next, number);
     return next;
   };
-  if (number_field(editor, name, rect, value, low, high, "%.1f", "mm", false, committed)) {
+  if (number_field(context.ui, name, rect, value, low, high, "%.1f", "mm", false, committed)) {
     edited = {name, value};
-    editor.views->preview_visibility = std::make_shared<const Visibility>(with(value));
-    editor.touch();
+    context.views->preview_visibility = std::make_shared<const Visibility>(with(value));
+    context.ui->touch();
   }
   if (!committed || edited.name != name) return;
-  editor.views->preview_visibility.reset();
+  context.views->preview_visibility.reset();
   const Visibility next = with(edited.value);
   edited = {};
-  Document document = editor.document();
+  Document document = context.document();
   if (next == *document.visibility) return;
   document.visibility = std::make_shared<const Visibility>(next);
-  commit(editor, edit, std::move(document));
+  commit(context, edit, std::move(document));
 }
 
 // Returns the grid's axis that is nearest to a world axis, so that the panel's rows mean left-right, front-back and
@@ -49,8 +52,8 @@ int grid_axis_near(const Grid& grid, int world_axis) {
   return nearest;
 }
 
-void draw_box(Editor& editor, Column& column, const Grid& grid, const ClipBox& box) {
-  const Look& look = editor.look;
+void draw_box(Context& context, Column& column, const Grid& grid, const ClipBox& box) {
+  const Look& look = context.ui->look;
   const AffineTransform world = world_from_voxel(grid);
   for (int w = 0; w < 3; ++w) {
     const int axis = grid_axis_near(grid, w);
@@ -66,7 +69,7 @@ void draw_box(Editor& editor, Column& column, const Grid& grid, const ClipBox& b
     const float middle = std::round(rect.centre().x);
     const auto field = [&](const char* end, const Rect& at, double voxel, bool is_high) {
       fill({at.low, {at.low.x + look.px(3), at.high.y}}, look.theme.axis[w]);
-      draw_number(editor, {{at.low.x + look.px(4), at.low.y}, at.high}, std::string(1, "XYZ"[w]) + " " + end,
+      draw_number(context, {{at.low.x + look.px(4), at.low.y}, at.high}, std::string(1, "XYZ"[w]) + " " + end,
                   place(voxel), least, most, "Move clip box", [=](Visibility& visibility, double mm) {
                     move_face(visibility.clip_box, grid, axis, is_high, (mm - first) / step);
                   });
@@ -76,27 +79,27 @@ void draw_box(Editor& editor, Column& column, const Grid& grid, const ClipBox& b
   }
 }
 
-void draw_plane(Editor& editor, Column& column, const Grid& grid, const ClipPlane& plane) {
+void draw_plane(Context& context, Column& column, const Grid& grid, const ClipPlane& plane) {
   const AffineTransform world = world_from_voxel(grid);
   const double reach = glm::length(world.linear * glm::dvec3(grid.size)) / 2;
   const glm::dvec3 middle = world * ((glm::dvec3(grid.size) - 1.0) * 0.5);
   const double depth = glm::dot(plane.point - middle, plane.normal);
-  draw_number(editor, column.property("Plane"), "Plane", depth, -reach, reach, "Move clip plane",
+  draw_number(context, column.property("Plane"), "Plane", depth, -reach, reach, "Move clip plane",
               [=](Visibility& visibility, double mm) { visibility.clip_plane.point += plane.normal * (mm - depth); });
 }
 
 }  // namespace
 
-void draw_clipping(Editor& editor, Column& column) {
+void draw_clipping(Context& context, Column& column) {
   const auto visibility =
-      editor.views->preview_visibility ? editor.views->preview_visibility : editor.document().visibility;
-  const auto volume = editor.document().volume;
+      context.views->preview_visibility ? context.views->preview_visibility : context.document().visibility;
+  const auto volume = context.document().volume;
   if (!volume || !visibility || !(visibility->clip_box.enabled || visibility->clip_plane.enabled)) return;
   if (column.begin_section("Clipping")) {
     column.space(6);
-    if (visibility->clip_box.enabled) draw_box(editor, column, volume->grid, visibility->clip_box);
+    if (visibility->clip_box.enabled) draw_box(context, column, volume->grid, visibility->clip_box);
     if (visibility->clip_plane.enabled)
-      draw_plane(editor, column, volume->grid, editor.document().visibility->clip_plane);
+      draw_plane(context, column, volume->grid, context.document().visibility->clip_plane);
     column.space(6);
   }
   column.end_section();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/context/view_projection.h"
 #include "editor/ui/draw.h"
 
 namespace limber::editor {
@@ -47,7 +48,7 @@ void GizmoPainter::polyline(const std::vector<glm::dvec2>& pixels, Colour colour
   if (pixels.size() < 2) return;
   std::vector<ImVec2> points;
   for (const glm::dvec2& pixel : pixels) points.push_back(im(pixel));
-  const float scale = editor_.look.scale, alpha = static_cast<float>(colour >> 24) / 255;
+  const float scale = context_.ui->look.scale, alpha = static_cast<float>(colour >> 24) / 255;
   canvas().AddPolyline(points.data(), static_cast<int>(points.size()), with_alpha(kUnder, 0.35f * alpha), 0,
                        (width + kUnderStroke) * scale);
   canvas().AddPolyline(points.data(), static_cast<int>(points.size()), colour, 0, width * scale);
@@ -99,26 +100,26 @@ void GizmoPainter::line(const glm::dvec3& from, const glm::dvec3& to, Colour col
   const auto a = view_.pixel_of(from), b = view_.pixel_of(to);
   if (!a || !b) return;
   if (!dashed) return polyline({*a, *b}, colour, width);
-  const double scale = editor_.look.scale, length = glm::distance(*a, *b), dash = 4 * scale, gap = 3 * scale;
+  const double scale = context_.ui->look.scale, length = glm::distance(*a, *b), dash = 4 * scale, gap = 3 * scale;
   if (length > 1e5) return;
   for (double t = 0; t < length; t += dash + gap)
     canvas().AddLine(im(glm::mix(*a, *b, t / length)), im(glm::mix(*a, *b, std::min(1.0, (t + dash) / length))), colour,
-                     width * editor_.look.scale);
+                     width * context_.ui->look.scale);
 }
 
 void GizmoPainter::dot(const glm::dvec3& at, Colour colour, Colour edge, float radius) const {
   const auto pixel = view_.pixel_of(at);
   if (!pixel) return;
-  canvas().AddCircleFilled(im(*pixel), radius * editor_.look.scale, colour, 32);
-  canvas().AddCircle(im(*pixel), radius * editor_.look.scale, edge, 32, 1.6f * editor_.look.scale);
+  canvas().AddCircleFilled(im(*pixel), radius * context_.ui->look.scale, colour, 32);
+  canvas().AddCircle(im(*pixel), radius * context_.ui->look.scale, edge, 32, 1.6f * context_.ui->look.scale);
 }
 
 void GizmoPainter::circle(const glm::dvec3& at, Colour colour, float radius, float width) const {
   const auto pixel = view_.pixel_of(at);
   if (!pixel) return;
-  canvas().AddCircle(im(*pixel), radius * editor_.look.scale, with_alpha(kUnder, 0.35f), 48,
-                     (width + kUnderStroke) * editor_.look.scale);
-  canvas().AddCircle(im(*pixel), radius * editor_.look.scale, colour, 48, width * editor_.look.scale);
+  canvas().AddCircle(im(*pixel), radius * context_.ui->look.scale, with_alpha(kUnder, 0.35f), 48,
+                     (width + kUnderStroke) * context_.ui->look.scale);
+  canvas().AddCircle(im(*pixel), radius * context_.ui->look.scale, colour, 48, width * context_.ui->look.scale);
 }
 
 void GizmoPainter::square(const glm::dvec3& middle, const glm::dvec3& a, const glm::dvec3& b, Colour colour) const {
@@ -130,22 +131,22 @@ void GizmoPainter::square(const glm::dvec3& middle, const glm::dvec3& a, const g
 void GizmoPainter::diamond(const glm::dvec3& at, Colour colour, float size) const {
   const auto pixel = view_.pixel_of(at);
   if (!pixel) return;
-  const double half = size / 2 * editor_.look.scale;
+  const double half = size / 2 * context_.ui->look.scale;
   const glm::dvec2 p = *pixel;
   canvas().AddQuadFilled(im(p + glm::dvec2(0, -half)), im(p + glm::dvec2(half, 0)), im(p + glm::dvec2(0, half)),
                          im(p + glm::dvec2(-half, 0)), colour);
   canvas().AddQuad(im(p + glm::dvec2(0, -half)), im(p + glm::dvec2(half, 0)), im(p + glm::dvec2(0, half)),
-                   im(p + glm::dvec2(-half, 0)), 0xFF1A1614, 1.1f * editor_.look.scale);
+                   im(p + glm::dvec2(-half, 0)), 0xFF1A1614, 1.1f * context_.ui->look.scale);
 }
 
 void GizmoPainter::arrow(const glm::dvec3& from, const glm::dvec3& direction, Colour colour, float begin, float end,
                          float width, bool box) const {
-  const double unit = view_.millimetres_per_pixel(from) * editor_.look.scale;
+  const double unit = view_.millimetres_per_pixel(from) * context_.ui->look.scale;
   line(from + direction * (begin * unit), from + direction * (end * unit), colour, width);
   const auto foot = view_.pixel_of(from + direction * (end * unit)),
              tip = view_.pixel_of(from + direction * ((end + 12) * unit));
   if (!foot || !tip) return;
-  const double scale = editor_.look.scale;
+  const double scale = context_.ui->look.scale;
   if (box) return canvas().AddRectFilled(im(*foot - 4.0 * scale), im(*foot + 4.0 * scale), colour);
   const glm::dvec2 along = *tip - *foot;
   if (glm::length(along) < 0.5) return canvas().AddCircleFilled(im(*foot), static_cast<float>(5 * scale), colour, 24);
@@ -168,25 +169,26 @@ Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& poin
 void GizmoPainter::word(const glm::dvec3& at, const std::string& text, Colour colour) const {
   const auto pixel = view_.pixel_of(at);
   if (!pixel) return;
-  const glm::vec2 half = glm::vec2(text_size(editor_.look.fonts.small, text).x / 2 + editor_.look.px(3),
-                                   editor_.look.px(8)),
+  const glm::vec2 half = glm::vec2(text_size(context_.ui->look.fonts.small, text).x / 2 + context_.ui->look.px(3),
+                                   context_.ui->look.px(8)),
                   middle = glm::round(glm::vec2(*pixel));
-  fill({middle - half, middle + half}, with_alpha(editor_.look.theme.view_plate, 0.7f), editor_.look.px(3));
-  put_text(editor_, editor_.look.fonts.small, colour, Rect{middle - half, middle + half}, text, Align::Centre);
+  fill({middle - half, middle + half}, with_alpha(context_.ui->look.theme.view_plate, 0.7f), context_.ui->look.px(3));
+  put_text(context_.ui, context_.ui->look.fonts.small, colour, Rect{middle - half, middle + half}, text, Align::Centre);
 }
 
 void GizmoPainter::read_out(const glm::dvec3& at, const std::string& number, const std::string& axis,
                             const std::string& below, Colour below_colour) const {
   const auto centre = view_.pixel_of(at);
   if (!centre) return;
-  const Look& look = editor_.look;
+  const Look& look = context_.ui->look;
   const Rect place = place_of_read_out(look, view_.place.rect, glm::vec2(*centre));
   const glm::vec2 low = place.low;
   fill(place, with_alpha(look.theme.view_plate, 0.85f), look.px(5));
   const float right =
-      put_text(editor_, look.fonts.mono, kGizmoActive, low + glm::vec2(look.px(10), look.px(5)), number);
-  put_text(editor_, look.fonts.small, look.theme.view_text2, glm::vec2(right + look.px(10), low.y + look.px(6)), axis);
-  put_text(editor_, look.fonts.small, below_colour,
+      put_text(context_.ui, look.fonts.mono, kGizmoActive, low + glm::vec2(look.px(10), look.px(5)), number);
+  put_text(context_.ui, look.fonts.small, look.theme.view_text2, glm::vec2(right + look.px(10), low.y + look.px(6)),
+           axis);
+  put_text(context_.ui, look.fonts.small, below_colour,
            Rect{{low.x + look.px(10), low.y + look.px(23)}, place.high - glm::vec2(look.px(8), look.px(4))}, below);
 }
 

@@ -4,14 +4,19 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "editor/context/editor.h"
-#include "editor/context/view_projection.h"
+#include "editor/ui/rect.h"
+#include "editor/ui/theme.h"
 
 namespace limber::editor {
+
+struct Context;
+struct Look;
+struct ViewProjection;
 
 // A circle in the world. Angles on it are in radians, from the direction `from`, right-handed about `axis`.
 struct Ring {
@@ -38,7 +43,7 @@ Rect place_of_read_out(const Look& look, const Rect& view, const glm::vec2& poin
 
 class GizmoPainter {
  public:
-  GizmoPainter(Editor& editor, const ViewProjection& view) : editor_(editor), view_(view) {}
+  GizmoPainter(Context& context, const ViewProjection& view) : context_(context), view_(view) {}
 
   enum class Part { Whole, Front };
   void ring(const Ring& ring, Colour colour, float width, Part part) const;
@@ -61,7 +66,7 @@ class GizmoPainter {
  private:
   void polyline(const std::vector<glm::dvec2>& pixels, Colour colour, float width) const;
 
-  Editor& editor_;
+  Context& context_;
   const ViewProjection& view_;
 };
 

@@ -3,12 +3,20 @@
 #include <cmath>
 #include <numbers>
 
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/preferences.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
 #include "editor/shown/frame_all.h"
 #include "editor/shown/shown_result.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/walk_navigation.h"
 
 namespace limber::editor {
@@ -20,118 +28,120 @@ constexpr double kZoomPerPixel = 0.006;                    // a drag by n pixels
 constexpr double kKeyOrbit = 15 * std::numbers::pi / 180;  // angle by which a key turns the view, radians
 constexpr double kOrbitPixels = 180 / std::numbers::pi / 0.4;  // pixels of a drag that turn the view by 1 radian
 
-glm::ivec2 view_size(const Editor& editor) {
-  const Rect* place = editor.layout.place_of(ViewId::Body);
+glm::ivec2 view_size(const Screen& screen) {
+  const Rect* place = screen.layout.place_of(ViewId::Body);
   return place ? glm::ivec2(place->size()) : glm::ivec2(1);
 }
 
-PointerWrap wrap_in_view(const Editor& editor) {
-  const Rect* place = editor.layout.place_of(ViewId::Body);
-  return place ? PointerWrap(*place, editor.look.px(2)) : PointerWrap();
+PointerWrap wrap_in_view(const Context& context) {
+  const Rect* place = context.screen->layout.place_of(ViewId::Body);
+  return place ? PointerWrap(*place, context.ui->look.px(2)) : PointerWrap();
 }
 
 // Begins a drag that changes the 3D view's camera. Escape restores the camera.
-void start_drag(Editor& editor, MouseButton button, std::function<void(Editor&, const glm::vec2&)> moved) {
-  BodyView& body = editor.views->body;
+void start_drag(Context& context, MouseButton button, std::function<void(Context&, const glm::vec2&)> moved) {
+  BodyView& body = context.views->body;
   body.move.reset();
-  const auto back = [camera = body.camera, name = body.name](Editor& e) {
-    e.views->body.camera = camera;
-    e.views->body.name = name;
+  const auto back = [camera = body.camera, name = body.name](Context& c) {
+    c.views->body.camera = camera;
+    c.views->body.name = name;
   };
-  editor.drag = Drag{button, std::move(moved), {}, back, wrap_in_view(editor)};
+  context.interaction->drag = Drag{button, std::move(moved), {}, back, wrap_in_view(context)};
 }
 
 // Returns the mouse button that began the drag: the middle button, or the left button together with Alt.
-MouseButton pressed_button(const Editor& editor) {
-  return editor.input.down(MouseButton::Middle) ? MouseButton::Middle : MouseButton::Left;
+MouseButton pressed_button(const Ui& ui) {
+  return ui.input.down(MouseButton::Middle) ? MouseButton::Middle : MouseButton::Left;
 }
 
-void orbit(Editor& editor) {
-  start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
-    e.views->body.camera = render::orbited(e.views->body.camera, glm::dvec2(by) / static_cast<double>(e.look.scale));
-    e.views->body.name.clear();
+void orbit(Context& context) {
+  start_drag(context, pressed_button(context.ui), [](Context& c, const glm::vec2& by) {
+    c.views->body.camera =
+        render::orbited(c.views->body.camera, glm::dvec2(by) / static_cast<double>(c.ui->look.scale));
+    c.views->body.name.clear();
   });
 }
 
-void pan(Editor& editor) {
-  start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
-    e.views->body.camera = render::panned(e.views->body.camera, glm::dvec2(by), view_size(e));
+void pan(Context& context) {
+  start_drag(context, pressed_button(context.ui), [](Context& c, const glm::vec2& by) {
+    c.views->body.camera = render::panned(c.views->body.camera, glm::dvec2(by), view_size(c.screen));
   });
 }
 
-void zoom(Editor& editor) {
-  start_drag(editor, pressed_button(editor), [](Editor& e, const glm::vec2& by) {
-    e.views->body.camera = render::zoomed(e.views->body.camera, std::exp(kZoomPerPixel * by.y / e.look.scale));
+void zoom(Context& context) {
+  start_drag(context, pressed_button(context.ui), [](Context& c, const glm::vec2& by) {
+    c.views->body.camera = render::zoomed(c.views->body.camera, std::exp(kZoomPerPixel * by.y / c.ui->look.scale));
   });
 }
 
 // Zooms the 3D view so that the point under the pointer stays under the pointer.
-void zoom_about_pointer(Editor& editor, double factor) {
-  BodyView& body = editor.views->body;
+void zoom_about_pointer(Context& context, double factor) {
+  BodyView& body = context.views->body;
   body.move.reset();
-  const Rect* place = editor.layout.place_of(ViewId::Body);
-  const glm::vec2 pointer = editor.input.pointer;
+  const Rect* place = context.screen->layout.place_of(ViewId::Body);
+  const glm::vec2 pointer = context.ui->input.pointer;
   body.camera = place && place->contains(pointer)
                     ? render::zoomed(body.camera, factor, pointer - place->low, glm::ivec2(place->size()))
                     : render::zoomed(body.camera, factor);
 }
 
 // Shifts the view under the pointer by steps of the wheel or of a touch pad.
-void pan_step(Editor& editor, const glm::vec2& steps) {
+void pan_step(Context& context, const glm::vec2& steps) {
   constexpr float kStep = 40;
-  const glm::vec2 pixels = steps * editor.look.px(kStep);
-  const ViewPlace* place = hovered_view(editor);
+  const glm::vec2 pixels = steps * context.ui->look.px(kStep);
+  const ViewPlace* place = hovered_view(context);
   if (place && place->id != ViewId::Body) {
-    shift(slice_of(*editor.views, place->id), glm::dvec2(pixels));
+    shift(slice_of(*context.views, place->id), glm::dvec2(pixels));
     return;
   }
-  editor.views->body.move.reset();
-  editor.views->body.camera = render::panned(editor.views->body.camera, glm::dvec2(pixels), view_size(editor));
+  context.views->body.move.reset();
+  context.views->body.camera =
+      render::panned(context.views->body.camera, glm::dvec2(pixels), view_size(context.screen));
 }
 
-void walk(Editor& editor) {
-  editor.modal = begin_walk(editor);
-  editor.modal_wrap = wrap_in_view(editor);
+void walk(Context& context) {
+  context.interaction->modal = begin_walk(context);
+  context.interaction->modal_wrap = wrap_in_view(context);
 }
 
-void go_to(Editor& editor, const render::Camera& camera) {
-  BodyView& body = editor.views->body;
-  if (editor.preferences.reduce_motion) body.camera = camera;
-  else body.move = CameraMove{body.camera, camera, editor.now};
+void go_to(Context& context, const render::Camera& camera) {
+  BodyView& body = context.views->body;
+  if (context.preferences->reduce_motion) body.camera = camera;
+  else body.move = CameraMove{body.camera, camera, context.ui->now};
 }
 
-const render::Camera& goal(const Editor& editor) {
-  const BodyView& body = editor.views->body;
+const render::Camera& goal(const Context& context) {
+  const BodyView& body = context.views->body;
   return body.move ? body.move->to : body.camera;
 }
 
 Operator standard_view(const char* id, const char* label, render::StandardView side, const char* description) {
-  return {id, label, icon::kCamera, "View", description, [label, side](Editor& e) {
-            go_to(e, render::looking_from(side, goal(e)));
-            e.views->body.name = label;
+  return {id, label, icon::kCamera, "View", description, [label, side](Context& c) {
+            go_to(c, render::looking_from(side, goal(c)));
+            c.views->body.name = label;
           }};
 }
 
 Operator orbit_step(const char* id, const char* label, glm::dvec2 direction) {
-  return {id, label, "", "View", "Turn the 3D view by 15 degrees.", [direction](Editor& e) {
+  return {id, label, "", "View", "Turn the 3D view by 15 degrees.", [direction](Context& c) {
             // The angle is converted to pixels, because orbited() expects the pixels of a pointer drag.
-            go_to(e, render::orbited(goal(e), direction * kKeyOrbit * kOrbitPixels));
-            e.views->body.name.clear();
+            go_to(c, render::orbited(goal(c), direction * kKeyOrbit * kOrbitPixels));
+            c.views->body.name.clear();
           }};
 }
 
-std::optional<Box> box_of_selection(Editor& editor) {
+std::optional<Box> box_of_selection(Context& context) {
   std::optional<Box> all;
   const auto add = [&](const glm::dvec3& low, const glm::dvec3& high) {
     all = all ? Box{glm::min(all->low, low), glm::max(all->high, high)} : Box{low, high};
   };
-  const Document shown = shown_document(editor);
-  for (const Label tissue : editor.selection.tissues) {
-    const Box box = tissue_box(*editor.views, shown, tissue);
+  const Document shown = shown_document(context);
+  for (const Label tissue : context.selection->tissues) {
+    const Box box = tissue_box(*context.views, shown, tissue);
     add(box.low, box.high);
   }
-  if (const auto& armature = editor.document().armature)
-    for (const int b : editor.selection.bones) {
+  if (const auto& armature = context.document().armature)
+    for (const int b : context.selection->bones) {
       if (b >= std::ssize(armature->bones)) continue;
       const Bone& bone = armature->bones[b];
       const double thickness = glm::distance(bone.head, bone.tail) * 0.1;
@@ -140,41 +150,42 @@ std::optional<Box> box_of_selection(Editor& editor) {
   return all;
 }
 
-std::string needs_aim(const Editor& editor) {
-  if (!editor.document().volume) return "Open a volume first";
-  const bool aim = !editor.selection.tissues.empty() || !editor.selection.bones.empty() || editor.views->hover.inside;
+std::string needs_aim(const Context& context) {
+  if (!context.document().volume) return "Open a volume first";
+  const bool aim =
+      !context.selection->tissues.empty() || !context.selection->bones.empty() || context.views->hover.inside;
   return aim ? "" : "Select a tissue, or point at one";
 }
 
 // Zooms the 3D view to the selection. If nothing is selected, centres the view on the point under the pointer.
-void frame_selected(Editor& editor) {
-  const auto chosen = box_of_selection(editor);
-  if (!chosen) return run(editor, "view.centre_on_pick");
+void frame_selected(Context& context) {
+  const auto chosen = box_of_selection(context);
+  if (!chosen) return run(context, "view.centre_on_pick");
   const Box box = *chosen;
-  const glm::vec2 size(view_size(editor));
-  go_to(editor, render::framing(goal(editor), box.low, box.high, size.x / std::max(1.0f, size.y)));
+  const glm::vec2 size(view_size(context.screen));
+  go_to(context, render::framing(goal(context), box.low, box.high, size.x / std::max(1.0f, size.y)));
 }
 
-void toggle_projection(Editor& editor) {
-  auto& projection = editor.views->body.camera.projection;
-  editor.views->body.move.reset();
+void toggle_projection(Context& context) {
+  auto& projection = context.views->body.camera.projection;
+  context.views->body.move.reset();
   projection = projection == render::Projection::Perspective ? render::Projection::Orthographic
                                                              : render::Projection::Perspective;
 }
 
-void opposite(Editor& editor) {
-  render::Camera camera = goal(editor);
+void opposite(Context& context) {
+  render::Camera camera = goal(context);
   camera.world_from_view = glm::angleAxis(std::numbers::pi, glm::dvec3(0, 0, 1)) * camera.world_from_view;
-  go_to(editor, camera);
-  editor.views->body.name.clear();
+  go_to(context, camera);
+  context.views->body.name.clear();
 }
 
-void centre_on_pick(Editor& editor) {
-  const Hover& hover = editor.views->hover;
+void centre_on_pick(Context& context) {
+  const Hover& hover = context.views->hover;
   if (!hover.inside) return;
-  render::Camera camera = goal(editor);
+  render::Camera camera = goal(context);
   camera.centre = hover.point;
-  go_to(editor, camera);
+  go_to(context, camera);
 }
 
 }  // namespace
@@ -186,21 +197,21 @@ std::vector<Operator> navigation_operators() {
       {"view.pan", "Pan view", "", "View", "Drag to move the 3D view sideways, up or down.", pan},
       {"view.zoom", "Zoom view", "", "View", "Drag up to zoom in, down to zoom out.", zoom},
       {"view.zoom_step", "Zoom by wheel", "", "View", "Zoom in or out by one step.",
-       [](Editor& e) {
-         e.views->body.move.reset();
-         zoom_about_pointer(e, std::pow(kWheelStep, -e.input.wheel));
+       [](Context& c) {
+         c.views->body.move.reset();
+         zoom_about_pointer(c, std::pow(kWheelStep, -c.ui->input.wheel));
        }},
       {"view.zoom_in", "Zoom in", "", "View", "Move the view closer by one step.",
-       [](Editor& e) { zoom_about_pointer(e, 1 / kWheelStep); }},
+       [](Context& c) { zoom_about_pointer(c, 1 / kWheelStep); }},
       {"view.zoom_out", "Zoom out", "", "View", "Move the view back by one step.",
-       [](Editor& e) { zoom_about_pointer(e, kWheelStep); }},
+       [](Context& c) { zoom_about_pointer(c, kWheelStep); }},
       {"view.pan_step", "Pan by wheel", "", "View", "Move the view up or down.",
-       [](Editor& e) {
-         pan_step(e, {0, e.input.wheel});
+       [](Context& c) {
+         pan_step(c, {0, c.ui->input.wheel});
        }},
       {"view.pan_sideways_step", "Pan sideways by wheel", "", "View", "Move the view to the left or right.",
-       [](Editor& e) {
-         pan_step(e, {e.input.wheel_sideways != 0 ? e.input.wheel_sideways : e.input.wheel, 0});
+       [](Context& c) {
+         pan_step(c, {c.ui->input.wheel_sideways != 0 ? c.ui->input.wheel_sideways : c.ui->input.wheel, 0});
        }},
       {"view.walk", "Walk", "", "View", "Walk through the 3D view with W A S D; look around with the mouse.", walk,
        needs_volume},
@@ -215,7 +226,7 @@ std::vector<Operator> navigation_operators() {
       standard_view("view.bottom", "Bottom", StandardView::Bottom, "Look at the body from below."),
       {"view.ortho", "Perspective", icon::kCamera, "View",
        "Switch the 3D view between perspective and parallel projection.", toggle_projection, nullptr,
-       [](const Editor& e) { return e.views->body.camera.projection == render::Projection::Perspective; }},
+       [](const Context& c) { return c.views->body.camera.projection == render::Projection::Perspective; }},
       orbit_step("view.orbit_down", "Turn down", {0, -1}),
       orbit_step("view.orbit_up", "Turn up", {0, 1}),
       orbit_step("view.orbit_left", "Turn left", {1, 0}),
@@ -224,7 +235,7 @@ std::vector<Operator> navigation_operators() {
       {"view.frame_selected", "Frame selected", icon::kExpand, "View",
        "Zoom the view to the selection, or centre it on the point under the pointer.", frame_selected, needs_aim},
       {"view.frame_all", "Frame all", icon::kExpand, "View", "Zoom the views to everything that is visible.",
-       [](Editor& e) { frame_all(e, true); }},
+       [](Context& c) { frame_all(c, true); }},
   };
 }
 

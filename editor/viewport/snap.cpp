@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "editor/context/view_projection.h"
+
 namespace limber::editor {
 
 namespace {

@@ -6,9 +6,10 @@
 #include <optional>
 
 #include "core/project/document.h"
-#include "editor/context/view_projection.h"
 
 namespace limber::editor {
+
+struct ViewProjection;
 
 // Returns the middle of the bone tissue under a pixel; no value if there is none. In the 3D view, it is the middle of
 // the first bone on the line of sight; in a slice view, the middle of the bone's cross-section.

@@ -5,8 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
 #include "editor/context/pointer_context.h"
+#include "editor/context/screen.h"
 #include "editor/dialogs/redo_last_operator.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -23,11 +28,11 @@ int axis_of_key(Key key) { return key == Key::X ? 0 : key == Key::Y ? 1 : key ==
 
 }  // namespace
 
-ViewPlace place_of_tool(const Editor& editor) {
-  if (const ViewPlace* hovered = hovered_view(editor)) return *hovered;
-  if (const Rect* body = editor.layout.place_of(ViewId::Body)) return {ViewId::Body, *body};
-  return editor.layout.view_places.empty() ? ViewPlace{ViewId::Body, {{0, 0}, {1, 1}}}
-                                           : editor.layout.view_places.front();
+ViewPlace place_of_tool(const Context& context) {
+  if (const ViewPlace* hovered = hovered_view(context)) return *hovered;
+  if (const Rect* body = context.screen->layout.place_of(ViewId::Body)) return {ViewId::Body, *body};
+  return context.screen->layout.view_places.empty() ? ViewPlace{ViewId::Body, {{0, 0}, {1, 1}}}
+                                                    : context.screen->layout.view_places.front();
 }
 
 std::string text_of_number(const char* format, double value) {
@@ -36,25 +41,25 @@ std::string text_of_number(const char* format, double value) {
   return text;
 }
 
-TransformTool::TransformTool(Editor& editor, const Grip& grip)
-    : view_(editor, place_of_tool(editor)),
+TransformTool::TransformTool(Context& context, const Grip& grip)
+    : view_(context, place_of_tool(context)),
       lock_(grip.lock),
       held_(grip.held),
-      pointer_(editor.input.pointer),
+      pointer_(context.ui->input.pointer),
       start_(pointer_) {}
 
-bool TransformTool::moved(Editor& editor, const glm::vec2& pixels) {
+bool TransformTool::moved(Context& context, const glm::vec2& pixels) {
   const glm::dvec2 from = pointer_;
-  pointer_ += glm::dvec2(pixels) * (editor.input.down(Key::Shift) ? kPrecise : 1.0);
+  pointer_ += glm::dvec2(pixels) * (context.ui->input.down(Key::Shift) ? kPrecise : 1.0);
   travelled_ = std::max(travelled_, glm::distance(pointer_, start_));
-  follow(editor, from, pointer_);
-  show(editor);
+  follow(context, from, pointer_);
+  show(context);
   return true;
 }
 
 // Locks the tool to the axis that is nearest to the direction in which the pointer has moved.
-void TransformTool::lock_to_way(Editor& editor) {
-  const Space space = editor.transform_settings->space;
+void TransformTool::lock_to_way(Context& context) {
+  const Space space = context.transform_settings->space;
   const glm::dmat3 all = axes(space);
   const glm::dvec2 way = pointer_ - start_;
   double best = 0;
@@ -65,57 +70,57 @@ void TransformTool::lock_to_way(Editor& editor) {
       lock_ = {axis, space};
     }
   }
-  locked(editor);
-  show(editor);
+  locked(context);
+  show(context);
 }
 
-bool TransformTool::button(Editor& editor, const ButtonChanged& event) {
+bool TransformTool::button(Context& context, const ButtonChanged& event) {
   if (event.down && event.button == MouseButton::Middle) {
-    lock_to_way(editor);
+    lock_to_way(context);
     return true;
   }
   if (held_) {
-    if (event.down && event.button == MouseButton::Right) return drop(editor);
+    if (event.down && event.button == MouseButton::Right) return drop(context);
     if (event.button != *held_ || event.down) return true;
-    if (travelled_ >= kClickPixels * editor.look.scale || number_.typed()) return confirm(editor);
-    drop(editor);
-    run(editor, editor.input.down(Key::Shift) ? "select.extend" : "select.pick");
+    if (travelled_ >= kClickPixels * context.ui->look.scale || number_.typed()) return confirm(context);
+    drop(context);
+    run(context, context.ui->input.down(Key::Shift) ? "select.extend" : "select.pick");
     return false;
   }
   if (!event.down) return true;
-  return event.button == MouseButton::Left ? confirm(editor) : drop(editor);
+  return event.button == MouseButton::Left ? confirm(context) : drop(context);
 }
 
-bool TransformTool::key(Editor& editor, const KeyChanged& event) {
+bool TransformTool::key(Context& context, const KeyChanged& event) {
   if (!event.down) {
-    if (event.key == Key::Ctrl || event.key == Key::Shift) show(editor);
+    if (event.key == Key::Ctrl || event.key == Key::Shift) show(context);
     return true;
   }
-  if (event.key == Key::Escape) return drop(editor);
-  if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(editor);
+  if (event.key == Key::Escape) return drop(context);
+  if (event.key == Key::Return || event.key == Key::NumEnter || event.key == Key::Space) return confirm(context);
   if (const int axis = axis_of_key(event.key); axis >= 0) {
     // The first press of X, Y or Z locks the axis of the selected space. The second press locks the axis of another
     // space: local space if global space is selected, else global space. The third press removes the lock.
-    const bool plane = editor.input.down(Key::Shift);
-    const Space first = editor.transform_settings->space,
+    const bool plane = context.ui->input.down(Key::Shift);
+    const Space first = context.transform_settings->space,
                 second = first == Space::Global ? Space::Local : Space::Global;
     if (lock_.axis != axis || lock_.plane != plane) lock_ = {axis, first, plane};
     else if (lock_.space == first) lock_.space = second;
     else lock_ = {};
-    locked(editor);
-  } else if (!number_.key(event.key) && !own_key(editor, event.key)) {
+    locked(context);
+  } else if (!number_.key(event.key) && !own_key(context, event.key)) {
     return true;
   }
-  show(editor);
+  show(context);
   return true;
 }
 
-bool TransformTool::confirm(Editor& editor) {
-  const auto again = [self = shared_from_this()](Editor& e, const std::vector<FormField>& fields) {
+bool TransformTool::confirm(Context& context) {
+  const auto again = [self = shared_from_this()](Context& c, const std::vector<FormField>& fields) {
     self->set(fields);
-    self->keep(e);
+    self->keep(c);
   };
-  act_and_allow_redo(editor, parameters(), again, [this](Editor& e) { keep(e); });
+  act_and_allow_redo(context, parameters(), again, [this](Context& c) { keep(c); });
   return false;
 }
 
@@ -149,14 +154,14 @@ void TransformTool::set_axis(const std::vector<FormField>& fields, std::size_t f
   lock_.space = static_cast<Space>(fields[first + 1].chosen);
 }
 
-bool TransformTool::drop(Editor& editor) {
-  cancel(editor);
+bool TransformTool::drop(Context& context) {
+  cancel(context);
   return false;
 }
 
-double TransformTool::snapped(const Editor& editor, double value, double step, double fine) const {
-  const double grid = editor.input.down(Key::Shift) ? fine : step;
-  if (grid <= 0 || editor.input.down(Key::Ctrl) == editor.transform_settings->snapping) return value;
+double TransformTool::snapped(const Context& context, double value, double step, double fine) const {
+  const double grid = context.ui->input.down(Key::Shift) ? fine : step;
+  if (grid <= 0 || context.ui->input.down(Key::Ctrl) == context.transform_settings->snapping) return value;
   return std::round(value / grid) * grid;
 }
 
@@ -178,7 +183,7 @@ std::vector<KeyHint> TransformTool::shared_hints() const {
           {{"Esc"}, "Cancel"}};
 }
 
-glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, double step, double fine) const {
+glm::dvec3 TransformTool::dragged(const Context& context, const glm::dvec3& from, double step, double fine) const {
   if (way_) return from + *way_;
   const glm::dvec3 axis = lock_axis();
   const bool free = axis == glm::dvec3(0), line = !free && !lock_.plane;
@@ -191,19 +196,19 @@ glm::dvec3 TransformTool::dragged(const Editor& editor, const glm::dvec3& from, 
   const glm::dvec2 begin = held_ && !free ? start_ : *seen, end = begin + (pointer_ - start_);
   if (line) {
     const auto first = view_.along_line(begin, from, axis), last = view_.along_line(end, from, axis);
-    return first && last ? from + snapped(editor, *last - *first, step, fine) * axis : from;
+    return first && last ? from + snapped(context, *last - *first, step, fine) * axis : from;
   }
   const glm::dvec3 normal = free ? view_.towards_eye : axis;
   const auto first = view_.in_plane(begin, from, normal), last = view_.in_plane(end, from, normal);
   if (!first || !last) return from;
   const glm::dvec3 by = *last - *first;
   const double length = glm::length(by);
-  return length > 0 ? from + by * (snapped(editor, length, step, fine) / length) : from;
+  return length > 0 ? from + by * (snapped(context, length, step, fine) / length) : from;
 }
 
-void begin_tool(Editor& editor, std::unique_ptr<TransformTool> tool) {
-  editor.modal_wrap = PointerWrap(tool->view().place.rect, editor.look.px(2));
-  editor.modal = std::move(tool);
+void begin_tool(Context& context, std::unique_ptr<TransformTool> tool) {
+  context.interaction->modal_wrap = PointerWrap(tool->view().place.rect, context.ui->look.px(2));
+  context.interaction->modal = std::move(tool);
 }
 
 }  // namespace limber::editor

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "editor/context/editor.h"
+#include "editor/context/context.h"
+#include "editor/context/views.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -21,53 +23,53 @@ constexpr double kLookPerPixel = 0.35;
 
 class Walk final : public Modal {
  public:
-  explicit Walk(Editor& editor)
-      : before_(editor.views->body.camera),
+  explicit Walk(Context& context)
+      : before_(context.views->body.camera),
         speed_(std::clamp(kSpeed * before_.distance, kSlowest, kFastest)) {
-    editor.views->body.move.reset();
+    context.views->body.move.reset();
     // Walking needs perspective, because moving forward changes nothing in a parallel projection.
-    editor.views->body.camera.projection = render::Projection::Perspective;
-    editor.views->body.name.clear();
+    context.views->body.camera.projection = render::Projection::Perspective;
+    context.views->body.name.clear();
   }
 
-  bool moved(Editor& editor, const glm::vec2& pixels) override {
-    render::Camera& camera = editor.views->body.camera;
-    camera = render::looked_round(camera, glm::dvec2(pixels) * (kLookPerPixel / editor.look.scale));
+  bool moved(Context& context, const glm::vec2& pixels) override {
+    render::Camera& camera = context.views->body.camera;
+    camera = render::looked_round(camera, glm::dvec2(pixels) * (kLookPerPixel / context.ui->look.scale));
     return true;
   }
 
-  bool wheel(Editor&, float steps) override {
+  bool wheel(Context&, float steps) override {
     speed_ = std::clamp(speed_ * std::pow(kFasterPerStep, steps), kSlowest, kFastest);
     return true;
   }
 
-  bool button(Editor& editor, const ButtonChanged& event) override {
+  bool button(Context& context, const ButtonChanged& event) override {
     if (!event.down || event.button == MouseButton::Middle) return true;
-    if (event.button == MouseButton::Right) cancel(editor);
+    if (event.button == MouseButton::Right) cancel(context);
     return false;
   }
 
-  bool key(Editor& editor, const KeyChanged& event) override {
+  bool key(Context& context, const KeyChanged& event) override {
     if (const Way* way = way_of(event.key)) {
       // Stores the key's direction, so that a key that is pressed and released within one frame moves the eye too.
       if (event.down && !event.repeated) pressed_ += way->direction;
-      going_ = direction(editor) != glm::dvec3(0);
+      going_ = direction(context) != glm::dvec3(0);
       return true;
     }
     if (!event.down) return true;
-    if (event.key == Key::Escape) cancel(editor);
+    if (event.key == Key::Escape) cancel(context);
     return event.key != Key::Escape && event.key != Key::Return && event.key != Key::NumEnter &&
            event.key != Key::Space;
   }
 
-  bool frame(Editor& editor, double seconds) override {
-    glm::dvec3 way = direction(editor);
+  bool frame(Context& context, double seconds) override {
+    glm::dvec3 way = direction(context);
     going_ = way != glm::dvec3(0);
     if (!going_) way = pressed_;
     pressed_ = {};
     if (way == glm::dvec3(0)) return true;
-    const double pace = editor.input.down(Key::Shift) ? kHurry : editor.input.down(Key::Alt) ? kCreep : 1;
-    render::Camera& camera = editor.views->body.camera;
+    const double pace = context.ui->input.down(Key::Shift) ? kHurry : context.ui->input.down(Key::Alt) ? kCreep : 1;
+    render::Camera& camera = context.views->body.camera;
     camera.centre +=
         (camera.world_from_view * glm::dvec3(way.x, 0, way.z) + glm::dvec3(0, 0, way.y)) * (speed_ * pace * seconds);
     return true;
@@ -75,9 +77,9 @@ class Walk final : public Modal {
 
   bool hides_pointer() const override { return true; }
   bool moving() const override { return going_ || pressed_ != glm::dvec3(0); }
-  void cancel(Editor& editor) override { editor.views->body.camera = before_; }
+  void cancel(Context& context) override { context.views->body.camera = before_; }
 
-  std::vector<KeyHint> hints(const Editor&) const override {
+  std::vector<KeyHint> hints(const Context&) const override {
     return {{{"W", "A", "S", "D"}, "Move"}, {{"E", "Q"}, "Up, down"}, {{"Wheel"}, "Speed"},
             {{"Shift"}, "Faster"},          {{"Enter"}, "Confirm"},   {{"Esc"}, "Cancel"}};
   }
@@ -105,10 +107,11 @@ class Walk final : public Modal {
     return nullptr;
   }
 
-  static glm::dvec3 direction(const Editor& editor) {
+  static glm::dvec3 direction(const Context& context) {
     glm::dvec3 sum(0);
     for (int key = 0; key < static_cast<int>(Key::Count); ++key)
-      if (const Way* way = way_of(static_cast<Key>(key)); way && editor.input.down(way->key)) sum += way->direction;
+      if (const Way* way = way_of(static_cast<Key>(key)); way && context.ui->input.down(way->key))
+        sum += way->direction;
     return sum;
   }
 
@@ -120,6 +123,6 @@ class Walk final : public Modal {
 
 }  // namespace
 
-std::unique_ptr<Modal> begin_walk(Editor& editor) { return std::make_unique<Walk>(editor); }
+std::unique_ptr<Modal> begin_walk(Context& context) { return std::make_unique<Walk>(context); }
 
 }  // namespace limber::editor

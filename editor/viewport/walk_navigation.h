@@ -10,6 +10,8 @@
 
 namespace limber::editor {
 
-std::unique_ptr<Modal> begin_walk(Editor& editor);
+struct Context;
+
+std::unique_ptr<Modal> begin_walk(Context& context);
 
 }  // namespace limber::editor

@@ -8,9 +8,13 @@
 
 #include <glm/gtc/constants.hpp>
 
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
 #include "editor/dialogs/dialog.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/input_fields.h"
+#include "editor/ui/texture_cache.h"
 #include "render/view.h"
 
 namespace limber::editor {
@@ -33,22 +37,22 @@ class GreyImageDialog final : public Dialog {
     if (low != shown_.image->voxels.end()) least_ = *low, most_ = *high;
   }
 
-  void draw(Editor& editor) override {
-    const Look& look = editor.look;
-    const Rect rect = begin_dialog(editor, shown_.name + " is a grey image", kWidth, kHeight);
+  void draw(Context& context) override {
+    const Look& look = context.ui->look;
+    const Rect rect = begin_dialog(context, shown_.name + " is a grey image", kWidth, kHeight);
     const std::string words = "A grey image, not labels: " + shown_.doubt +
                               ". Shown as an image, it lies below the tissues and moves with the pose; rigs, weights "
                               "and poses need the label volume that was segmented from it.";
-    const float text = put_wrapped(editor, look.fonts.regular, look.theme.text, rect.low, rect.width(), words);
+    const float text = put_wrapped(context.ui, look.fonts.regular, look.theme.text, rect.low, rect.width(), words);
     const float foot = rect.high.y - look.px(28), top = rect.low.y + text + look.px(10);
     const float gap = look.px(kGap);
     const glm::vec2 pane{std::floor((rect.width() - gap) / 2), std::floor((foot - look.px(12) - top - gap) / 2)};
     for (int p = 0; p < 4; ++p) {
       const glm::vec2 low = glm::round(glm::vec2(rect.low.x, top) + glm::vec2(p % 2, p / 2) * (pane + gap));
-      draw_pane(editor, p, {low, low + pane});
+      draw_pane(context, p, {low, low + pane});
     }
-    draw_foot(editor, {{rect.low.x, foot}, rect.high});
-    end_dialog(editor);
+    draw_foot(context, {{rect.low.x, foot}, rect.high});
+    end_dialog(context);
   }
 
  private:
@@ -87,17 +91,17 @@ class GreyImageDialog final : public Dialog {
            a.millimetres_per_pixel == b.millimetres_per_pixel;
   }
 
-  unsigned texture_of(Editor& editor, int p, const GreyFrame& frame) {
+  unsigned texture_of(Context& context, int p, const GreyFrame& frame) {
     Pane& pane = panes_[static_cast<std::size_t>(p)];
     const std::string name = "grey image " + std::to_string(p);
     const bool moved = !pane.made || !same(pane.frame, frame);
     const GreyVolume& image = *shown_.image;
     if (moved) pane.values = p == kProjection ? grey_projection(image, frame) : grey_slice(image, frame);
-    if (moved || pane.window != window_) editor.pictures.forget(name);
+    if (moved || pane.window != window_) context.pictures->forget(name);
     pane.frame = frame;
     pane.window = window_;
     pane.made = true;
-    return editor.pictures.texture(name, [&] {
+    return context.pictures->texture(name, [&] {
       render::Image picture{frame.size, {}};
       picture.rgba.reserve(4 * pane.values.size());
       for (const float value : pane.values) {
@@ -108,55 +112,55 @@ class GreyImageDialog final : public Dialog {
     });
   }
 
-  void draw_pane(Editor& editor, int p, const Rect& rect) {
-    const Look& look = editor.look;
-    const Pressed pressed = press_area(editor, kNames[p], rect);
+  void draw_pane(Context& context, int p, const Rect& rect) {
+    const Look& look = context.ui->look;
+    const Pressed pressed = press_area(context.ui, kNames[p], rect);
     const GreyFrame before = frame_of_pane(p, rect.size());
-    move(editor, p, rect, before, pressed);
+    move(context, p, rect, before, pressed);
     const GreyFrame frame = frame_of_pane(p, rect.size());
     fill(rect, 0xFF000000);
-    if (const unsigned texture = texture_of(editor, p, frame))
+    if (const unsigned texture = texture_of(context, p, frame))
       ImGui::GetWindowDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
                                            im(rect.low), im(rect.high));
-    if (p != kProjection) draw_cross(editor, rect, frame);
+    if (p != kProjection) draw_cross(context, rect, frame);
     outline(rect, look.theme.line2, 0, look.line());
-    put_text(editor, look.fonts.small, 0xFFFFFFFF, rect.low + look.px(6), kNames[p]);
+    put_text(context.ui, look.fonts.small, 0xFFFFFFFF, rect.low + look.px(6), kNames[p]);
   }
 
   // Handles the pointer over a pane. In a slice, a press moves the cross-hair and the wheel steps through the slices.
   // In the projection, a drag turns the view of the image.
-  void move(Editor& editor, int p, const Rect& rect, const GreyFrame& frame, const Pressed& pressed) {
+  void move(Context& context, int p, const Rect& rect, const GreyFrame& frame, const Pressed& pressed) {
     const ImGuiIO& io = ImGui::GetIO();
     if (p == kProjection) {
       if (!pressed.held || io.MouseDelta.x == 0) return;
       turn_ += double(io.MouseDelta.x) / double(rect.width()) * glm::pi<double>();
-      return editor.touch();
+      return context.ui->touch();
     }
     const glm::dvec3 normal = glm::cross(frame.right, frame.down);
     if (pressed.held) {
       const glm::dvec2 at = glm::dvec2(from_im(io.MousePos) - rect.centre()) * frame.millimetres_per_pixel;
-      put_cross(editor, frame.middle + frame.right * at.x + frame.down * at.y);
+      put_cross(context, frame.middle + frame.right * at.x + frame.down * at.y);
     } else if (pressed.hovered && io.MouseWheel != 0) {
       const glm::dvec3 across = glm::abs(voxel_from_world(shown_.image->grid).linear * normal);
-      put_cross(editor, cross_ + normal * (double(io.MouseWheel) / std::max({across.x, across.y, across.z})));
+      put_cross(context, cross_ + normal * (double(io.MouseWheel) / std::max({across.x, across.y, across.z})));
     }
   }
 
   // Moves the cross-hair to a world point, or to the nearest point of the volume if the point lies outside.
-  void put_cross(Editor& editor, const glm::dvec3& world) {
+  void put_cross(Context& context, const glm::dvec3& world) {
     const Grid& grid = shown_.image->grid;
     const glm::dvec3 voxel = voxel_from_world(grid) * world;
     const glm::dvec3 next = world_from_voxel(grid) * glm::clamp(voxel, glm::dvec3(0), glm::dvec3(grid.size - 1));
     if (glm::distance(next, cross_) < 1e-9) return;
     cross_ = next;
-    editor.touch();
+    context.ui->touch();
   }
 
-  void draw_cross(Editor& editor, const Rect& rect, const GreyFrame& frame) {
+  void draw_cross(Context& context, const Rect& rect, const GreyFrame& frame) {
     const glm::dvec3 off = (cross_ - frame.middle) / frame.millimetres_per_pixel;
     const glm::vec2 at = rect.centre() + glm::vec2(glm::dot(off, frame.right), glm::dot(off, frame.down));
     ImDrawList& canvas = *ImGui::GetWindowDrawList();
-    const Colour colour = with_alpha(editor.look.theme.accent, 0.6f);
+    const Colour colour = with_alpha(context.ui->look.theme.accent, 0.6f);
     canvas.AddLine(im({rect.low.x, at.y}), im({rect.high.x, at.y}), colour);
     canvas.AddLine(im({at.x, rect.low.y}), im({at.x, rect.high.y}), colour);
   }
@@ -171,15 +175,15 @@ class GreyImageDialog final : public Dialog {
     return text;
   }
 
-  void draw_foot(Editor& editor, const Rect& rect) {
-    const Look& look = editor.look;
+  void draw_foot(Context& context, const Rect& rect) {
+    const Look& look = context.ui->look;
     bool committed = false;
     float x = rect.low.x;
     const auto number = [&](const char* name, double& value, double low, double high) {
       const Rect label{{x, rect.low.y}, {x + look.px(46), rect.high.y}};
-      put_text(editor, look.fonts.regular, look.theme.text2, label, name);
+      put_text(context.ui, look.fonts.regular, look.theme.text2, label, name);
       const Rect field{{x + look.px(48), rect.low.y + look.px(3)}, {x + look.px(138), rect.high.y - look.px(3)}};
-      if (number_field(editor, name, field, value, low, high, "%.4g", "", false, committed)) editor.touch();
+      if (number_field(context.ui, name, field, value, low, high, "%.4g", "", false, committed)) context.ui->touch();
       x = field.high.x + look.px(14);
     };
     const double range = std::max(most_ - least_, 1e-3);
@@ -189,19 +193,20 @@ class GreyImageDialog final : public Dialog {
         labels{"", shown_.answer, ButtonStyle::Plain};
     float right = rect.high.x;
     const auto press = [&](const std::string& name, const ButtonLook& face) {
-      const float width = std::max(width_of_button(editor, face) + look.px(8), look.px(80));
+      const float width = std::max(width_of_button(context.ui, face) + look.px(8), look.px(80));
       const Rect place{{right - width, rect.low.y}, {right, rect.high.y}};
       right = place.low.x - look.px(8);
-      return button(editor, name, place, face);
+      return button(context.ui, name, place, face);
     };
     const bool shows = press("Show as image", show), closes = press("Close image", close),
                takes = press(shown_.answer, labels);
-    put_text(editor, look.fonts.mono, look.theme.text2, Rect{{x, rect.low.y}, {right, rect.high.y}}, value_at_cross());
+    put_text(context.ui, look.fonts.mono, look.theme.text2, Rect{{x, rect.low.y}, {right, rect.high.y}},
+             value_at_cross());
     if (!shows && !closes && !takes) return;
     const auto act = takes ? shown_.as_labels : shows ? shown_.as_image : nullptr;
-    editor.close_dialog();
-    editor.touch();
-    if (act) attempt(editor, shown_.name, act);
+    context.dialogs->close();
+    context.ui->touch();
+    if (act) attempt(context, shown_.name, act);
   }
 
   static constexpr render::SliceAxis kAxes[] = {render::SliceAxis::Axial, render::SliceAxis::Coronal,
@@ -216,9 +221,9 @@ class GreyImageDialog final : public Dialog {
 
 }  // namespace
 
-void show_grey_image(Editor& editor, ShownImage shown) {
-  editor.open_dialog(std::make_unique<GreyImageDialog>(std::move(shown)));
-  editor.touch();
+void show_grey_image(Context& context, ShownImage shown) {
+  context.dialogs->open(std::make_unique<GreyImageDialog>(std::move(shown)));
+  context.ui->touch();
 }
 
 }  // namespace limber::editor

@@ -9,17 +9,18 @@
 #include <string>
 
 #include "core/volume_io/grey_image.h"
-#include "editor/context/editor.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct ShownImage {
   std::shared_ptr<const GreyVolume> image;
   std::string name;    // the file's name
   std::string doubt;   // why the file is not clearly a label volume: "it has 300 values, and ..."
   std::string answer;  // label of the button that opens the file as labels
-  std::function<void(Editor&)> as_labels, as_image;
+  std::function<void(Context&)> as_labels, as_image;
 };
-void show_grey_image(Editor& editor, ShownImage shown);
+void show_grey_image(Context& context, ShownImage shown);
 
 }  // namespace limber::editor

@@ -3,8 +3,15 @@
 
 #include "core/base/error.h"
 #include "core/prepare/ct_labels.h"
+#include "editor/context/arriving_body.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/selection.h"
 #include "editor/dialogs/form_dialog.h"
 #include "editor/shown/frame_all.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/shown_image.h"
 #include "editor/volume/volume_edits.h"
 
@@ -25,79 +32,79 @@ CtThresholds thresholds_of(const Fields& fields) {
 }
 
 // Returns the shown image. Throws Error if it has been closed since the form was opened.
-const GreyLevels& image_of(const Editor& editor) {
-  if (!editor.views->image) throw Error("the image was closed", "Labels from image", "open it again");
-  return *editor.views->image->image;
+const GreyLevels& image_of(const Context& context) {
+  if (!context.views->image) throw Error("the image was closed", "Labels from image", "open it again");
+  return *context.views->image->image;
 }
 
-std::string size_and_loss(const Editor& editor) {
-  return size_text(image_of(editor).grid.size) + " voxels." +
-         (editor.document().tissues && !editor.document().tissues->tissues.empty()
+std::string size_and_loss(const Context& context) {
+  return size_text(image_of(context).grid.size) + " voxels." +
+         (context.document().tissues && !context.document().tissues->tissues.empty()
               ? " The labels, rig and weights of the open body are replaced; undo brings them back."
               : "");
 }
 
-std::string outcome(const Editor& editor, const Fields& fields) {
+std::string outcome(const Context& context, const Fields& fields) {
   const CtThresholds t = thresholds_of(fields);
   if (!(t.body < t.fat && t.fat < t.soft && t.soft < t.bone))
     throw Error("the thresholds must be in ascending order", "body, fat, soft tissue, bone",
                 "enter them in ascending order");
-  return size_and_loss(editor);
+  return size_and_loss(context);
 }
 
-std::string outcome_of_body(const Editor& editor, const Fields& fields) {
-  const GreyLevels& image = image_of(editor);
+std::string outcome_of_body(const Context& context, const Fields& fields) {
+  const GreyLevels& image = image_of(context);
   if (fields[0].value <= image.least)
     throw Error("every voxel would be body", "Body threshold", "enter a value above the image's smallest value");
-  return size_and_loss(editor);
+  return size_and_loss(context);
 }
 
 using MakeLabels = std::function<CtLabels(const GreyLevels&, Progress&)>;
 
-void start_labels(Editor& editor, const std::string& label, const std::string& advice, MakeLabels make) {
-  image_of(editor);
-  const auto image = editor.views->image->image;
-  const auto before = editor.document().volume;
+void start_labels(Context& context, const std::string& label, const std::string& advice, MakeLabels make) {
+  image_of(context);
+  const auto image = context.views->image->image;
+  const auto before = context.document().volume;
   const int id =
-      editor.jobs.start(label,
-                        [image, before, label, make = std::move(make),
-                         make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
-                          CtLabels labels = make(*image, progress);
-                          const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
-                          const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
-                          make_ready({.volume = volume, .tissues = tissues}, progress);
-                          return [volume, tissues, before, label](const Document& now) {
-                            if (now.volume != before)
-                              throw Error("another volume was opened meanwhile", label, "start it again");
-                            Document next;
-                            next.volume = volume;
-                            next.tissues = tissues;
-                            next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
-                            next.clips = now.clips;
-                            next.clip = now.clip;
-                            next.frame = now.frame;
-                            return next;
-                          };
-                        });
-  editor.step_of_job[id] = StepOfWork::Prepare;
-  editor.after_job[id] = [label, advice](Editor& e, const JobStatus& job) {
+      context.jobs->start(label,
+                          [image, before, label, make = std::move(make),
+                           make_ready = body_maker(*context.views)](Progress& progress) -> Edit {
+                            CtLabels labels = make(*image, progress);
+                            const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
+                            const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
+                            make_ready({.volume = volume, .tissues = tissues}, progress);
+                            return [volume, tissues, before, label](const Document& now) {
+                              if (now.volume != before)
+                                throw Error("another volume was opened meanwhile", label, "start it again");
+                              Document next;
+                              next.volume = volume;
+                              next.tissues = tissues;
+                              next.volume_type = std::make_shared<const FileType>(FileType{"NRRD", "uint8", true});
+                              next.clips = now.clips;
+                              next.clip = now.clip;
+                              next.frame = now.frame;
+                              return next;
+                            };
+                          });
+  context.background->step_of_job[id] = StepOfWork::Prepare;
+  context.background->after_job[id] = [label, advice](Context& c, const JobStatus& job) {
     if (job.state != JobState::Done) return;
-    e.selection = {};
-    e.views->display = render::Display::Solid;
-    frame_all(e, false);
-    e.messages.ok(label, std::to_string(e.document().tissues->tissues.size()) + " tissues. " + advice);
+    *c.selection = {};
+    c.views->display = render::Display::Solid;
+    frame_all(c, false);
+    c.messages->ok(label, std::to_string(c.document().tissues->tissues.size()) + " tissues. " + advice);
   };
-  editor.touch();
+  context.ui->touch();
 }
 
 }  // namespace
 
-void ask_for_labels(Editor& editor) {
+void ask_for_labels(Context& context) {
   const CtThresholds usual;
   const auto field = [](const char* name, const char* description, double value) {
     return number_of(name, description, value, -1024, 3071, "%.0f", "HU");
   };
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Labels from CT",
        "Separates tissues by thresholds (Hounsfield units). Leaves out the table and blankets. Bones that touch become "
        "one label.",
@@ -110,17 +117,17 @@ void ask_for_labels(Editor& editor) {
         number_of("Skin", "Thickness of the skin. The skin is at least one voxel thick.", usual.skin_mm, 0, 10, "%.1f",
                   "mm")},
        outcome,
-       [](Editor& e, const Fields& fields) {
-         start_labels(e, "Labels from CT", "Look through the slices: contrast agent and metal count as bone.",
+       [](Context& c, const Fields& fields) {
+         start_labels(c, "Labels from CT", "Look through the slices: contrast agent and metal count as bone.",
                       [thresholds = thresholds_of(fields)](const GreyLevels& image, Progress& progress) {
                         return labels_of_ct(image, thresholds, progress);
                       });
        }}));
 }
 
-void ask_for_body(Editor& editor) {
-  const GreyLevels& image = image_of(editor);
-  editor.open_dialog(make_form(
+void ask_for_body(Context& context) {
+  const GreyLevels& image = image_of(context);
+  context.dialogs->open(make_form(
       {"Labels from MR",
        "Makes labels of body and skin from an image such as an MR, by a threshold. Paint bones afterwards.",
        "Make labels",
@@ -130,16 +137,16 @@ void ask_for_body(Editor& editor) {
                   body_threshold(image), image.least, image.most(), "%.4g"),
         number_of("Skin", "Thickness of the skin. The skin is at least one voxel thick.", 2, 0, 10, "%.1f", "mm")},
        outcome_of_body,
-       [](Editor& e, const Fields& fields) {
-         start_labels(e, "Labels from MR", "Paint bones with the label brush before a rig is made.",
+       [](Context& c, const Fields& fields) {
+         start_labels(c, "Labels from MR", "Paint bones with the label brush before a rig is made.",
                       [threshold = fields[0].value, skin = fields[1].value](const GreyLevels& of, Progress& progress) {
                         return labels_of_body(of, threshold, skin, progress);
                       });
        }}));
 }
 
-const char* labels_operator(const Editor& editor) {
-  return editor.views->image && looks_like_ct(*editor.views->image->image) ? "image.labels" : "image.body";
+const char* labels_operator(const Views& views) {
+  return views.image && looks_like_ct(*views.image->image) ? "image.labels" : "image.body";
 }
 
 }  // namespace limber::editor

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/context/context.h"
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
 #include "editor/context/operator_polls.h"
 #include "editor/context/pointer_context.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/image_labels.h"
 #include "editor/volume/shown_image.h"
 
@@ -17,8 +21,8 @@ namespace {
 // width; the width is multiplied by e^(twice this number).
 constexpr double kPerPixel = 1.0 / 300;
 
-std::string needs_image(const Editor& editor) {
-  return editor.views && editor.views->image ? "" : "Open an image first: File > Import > Image";
+std::string needs_image(const Context& context) {
+  return context.views && context.views->image ? "" : "Open an image first: File > Import > Image";
 }
 
 // Returns the step to which a drag rounds the window of an image with this range of values: a power of ten, at most 1,
@@ -27,32 +31,32 @@ double window_step(double range) { return std::pow(10.0, std::min(0.0, std::floo
 
 // Changes the window of grey values during a drag of the pointer, as in radiology programs: dragging right widens the
 // window, dragging up makes the picture darker.
-void drag_window(Editor& editor) {
-  const ViewPlace* place = hovered_view(editor);
-  if (!place || !editor.views->image) return;
-  const render::ShownGrey before = *editor.views->image;
-  const MouseButton button = editor.input.down(MouseButton::Right)    ? MouseButton::Right
-                             : editor.input.down(MouseButton::Middle) ? MouseButton::Middle
-                                                                      : MouseButton::Left;
+void drag_window(Context& context) {
+  const ViewPlace* place = hovered_view(context);
+  if (!place || !context.views->image) return;
+  const render::ShownGrey before = *context.views->image;
+  const MouseButton button = context.ui->input.down(MouseButton::Right)    ? MouseButton::Right
+                             : context.ui->input.down(MouseButton::Middle) ? MouseButton::Middle
+                                                                           : MouseButton::Left;
   // The drag adds up small movements in `level` and `width`. The image gets both rounded to `step`.
-  editor.drag = Drag{button,
-                     [level = before.level, width = before.width](Editor& e, const glm::vec2& pixels) mutable {
-                       if (!e.views->image) return;
-                       render::ShownGrey& image = *e.views->image;
-                       const GreyLevels& levels = *image.image;
-                       const double range = std::max(levels.most() - levels.least, 1e-6), step = window_step(range);
-                       const glm::dvec2 by = glm::dvec2(pixels) / double(e.look.scale) * kPerPixel;
-                       level = std::clamp(level - by.y * std::max(width, range / 100), levels.least - range,
-                                          levels.most() + range);
-                       width = std::clamp(width * std::exp(2 * by.x), range / 5000, 2 * range);
-                       image.level = std::round(level / step) * step;
-                       image.width = std::max(std::round(width / step), 1.0) * step;
-                     },
-                     {},
-                     [before](Editor& e) {
-                       if (e.views->image && e.views->image->image == before.image) e.views->image = before;
-                     },
-                     PointerWrap(place->rect, editor.look.px(2))};
+  context.interaction->drag = Drag{
+      button,
+      [level = before.level, width = before.width](Context& c, const glm::vec2& pixels) mutable {
+        if (!c.views->image) return;
+        render::ShownGrey& image = *c.views->image;
+        const GreyLevels& levels = *image.image;
+        const double range = std::max(levels.most() - levels.least, 1e-6), step = window_step(range);
+        const glm::dvec2 by = glm::dvec2(pixels) / double(c.ui->look.scale) * kPerPixel;
+        level = std::clamp(level - by.y * std::max(width, range / 100), levels.least - range, levels.most() + range);
+        width = std::clamp(width * std::exp(2 * by.x), range / 5000, 2 * range);
+        image.level = std::round(level / step) * step;
+        image.width = std::max(std::round(width / step), 1.0) * step;
+      },
+      {},
+      [before](Context& c) {
+        if (c.views->image && c.views->image->image == before.image) c.views->image = before;
+      },
+      PointerWrap(place->rect, context.ui->look.px(2))};
 }
 
 Operator window_operator(const ImageWindow& window) {
@@ -61,20 +65,20 @@ Operator window_operator(const ImageWindow& window) {
           "",
           "View",
           "Show the image with the usual window (level and width, in Hounsfield units) for this tissue.",
-          [window](Editor& e) {
-            e.views->image->level = window.level;
-            e.views->image->width = window.width;
+          [window](Context& c) {
+            c.views->image->level = window.level;
+            c.views->image->width = window.width;
           },
           needs_image,
-          [window](const Editor& e) {
-            return e.views->image && e.views->image->level == window.level && e.views->image->width == window.width;
+          [window](const Context& c) {
+            return c.views->image && c.views->image->level == window.level && c.views->image->width == window.width;
           }};
 }
 
-void show_all_values(Editor& editor) {
-  const auto [level, width] = usual_window(*editor.views->image->image);
-  editor.views->image->level = level;
-  editor.views->image->width = width;
+void show_all_values(Context& context) {
+  const auto [level, width] = usual_window(*context.views->image->image);
+  context.views->image->level = level;
+  context.views->image->width = width;
 }
 
 Operator rendering_operator(const char* id, const char* label, const char* description,
@@ -84,12 +88,12 @@ Operator rendering_operator(const char* id, const char* label, const char* descr
           "",
           "View",
           description,
-          [rendering](Editor& e) {
-            e.views->image->rendering = rendering;
-            e.views->display = render::Display::Image;
+          [rendering](Context& c) {
+            c.views->image->rendering = rendering;
+            c.views->display = render::Display::Image;
           },
           needs_image,
-          [rendering](const Editor& e) { return e.views->image && e.views->image->rendering == rendering; }};
+          [rendering](const Context& c) { return c.views->image && c.views->image->rendering == rendering; }};
 }
 
 }  // namespace
@@ -103,8 +107,8 @@ std::vector<Operator> image_operators() {
       {"image.window_all", "All values", "", "View", "Show the image from its darkest to its brightest values.",
        show_all_values, needs_image},
       {"view.image_display", "Image", "", "View", "Show the grey image in 3D instead of the tissues.",
-       [](Editor& e) { e.views->display = render::Display::Image; }, needs_image,
-       [](const Editor& e) { return e.views->display == render::Display::Image; }},
+       [](Context& c) { c.views->display = render::Display::Image; }, needs_image,
+       [](const Context& c) { return c.views->display == render::Display::Image; }},
       rendering_operator("image.render_bone", "Bone in 3D", "Show everything as dense as bone (CT).",
                          render::GreyRendering::Bone),
       rendering_operator("image.render_muscle", "Muscle in 3D", "Show muscle, translucent, with the bones in it (CT).",

@@ -8,6 +8,9 @@
 #include "core/base/error.h"
 #include "core/tissue/tissue_table.h"
 #include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -47,8 +50,8 @@ std::shared_ptr<const GreyLevels> levels_of(const GreyVolume& image) {
   return std::make_shared<const GreyLevels>(grey_levels(image.grid, image.voxels));
 }
 
-void show_image(Editor& editor, std::shared_ptr<const GreyLevels> image, const Path& path) {
-  require_same_place(editor.document(), *image, path);
+void show_image(Context& context, std::shared_ptr<const GreyLevels> image, const Path& path) {
+  require_same_place(context.document(), *image, path);
   render::ShownGrey shown;
   if (!looks_like_ct(*image)) {
     const auto [level, width] = usual_window(*image);
@@ -57,9 +60,9 @@ void show_image(Editor& editor, std::shared_ptr<const GreyLevels> image, const P
     shown.rendering = render::GreyRendering::Window;
   }
   shown.image = std::move(image);
-  editor.views->image = std::move(shown);
-  editor.views->image_path = path;
-  editor.touch();
+  context.views->image = std::move(shown);
+  context.views->image_path = path;
+  context.ui->touch();
 }
 
 Document document_for_image(const GreyLevels& image) {
@@ -73,28 +76,29 @@ Document document_for_image(const GreyLevels& image) {
   return document;
 }
 
-void close_image(Editor& editor) {
-  editor.views->image.reset();
-  editor.views->image_path.clear();
-  editor.touch();
+void close_image(Context& context) {
+  context.views->image.reset();
+  context.views->image_path.clear();
+  context.ui->touch();
 }
 
-void reopen_image(Editor& editor, const Path& path, const std::optional<render::ShownGrey>& shown) {
-  editor.views->image_path = path;  // set already now, so that a project saved before the image is read names the image
+void reopen_image(Context& context, const Path& path, const std::optional<render::ShownGrey>& shown) {
+  context.views->image_path =
+      path;  // set already now, so that a project saved before the image is read names the image
   start_task(
-      editor, "Open image " + path.filename().string(),
+      context, "Open image " + path.filename().string(),
       [path, shown](Progress& progress) -> Finish {
         auto image = levels_of(read_grey_volume(path, progress));
-        return [image, path, shown](Editor& e) {
-          if (e.views->image || e.views->image_path != path) return;  // another image or project was opened meanwhile
-          show_image(e, image, path);
+        return [image, path, shown](Context& c) {
+          if (c.views->image || c.views->image_path != path) return;  // another image or project was opened meanwhile
+          show_image(c, image, path);
           if (!shown) return;
-          e.views->image = shown;
-          e.views->image->image = image;
+          c.views->image = shown;
+          c.views->image->image = image;
         };
       },
-      [path](Editor& e, const std::string& error) {
-        e.messages.warn("The image of this project is not shown: " + path.filename().string(), error);
+      [path](Context& c, const std::string& error) {
+        c.messages->warn("The image of this project is not shown: " + path.filename().string(), error);
       });
 }
 
@@ -115,9 +119,9 @@ std::optional<double> image_value_at(const GreyLevels& image, const glm::dvec3& 
   return image.value_at(voxel);
 }
 
-std::optional<double> image_value_at_pointer(const Editor& editor) {
-  const Hover& hover = editor.views->hover;
-  const render::Scene& scene = editor.views->scene;
+std::optional<double> image_value_at_pointer(const Views& views) {
+  const Hover& hover = views.hover;
+  const render::Scene& scene = views.scene;
   if (!scene.grey || !hover.view || !(hover.inside || (*hover.view != ViewId::Body && !scene.pose)))
     return std::nullopt;
   const bool at_rest = hover.inside && scene.pose;
@@ -125,9 +129,9 @@ std::optional<double> image_value_at_pointer(const Editor& editor) {
                         at_rest ? world_from_voxel(scene.volume->grid) * glm::dvec3(hover.voxel) : hover.point);
 }
 
-std::string text_of_image_value(const Editor& editor, double value) {
+std::string text_of_image_value(const Views& views, double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.4g%s", value, looks_like_ct(*editor.views->image->image) ? " HU" : "");
+  std::snprintf(text, sizeof text, "%.4g%s", value, looks_like_ct(*views.image->image) ? " HU" : "");
   return text;
 }
 

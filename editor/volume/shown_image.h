@@ -10,9 +10,11 @@
 
 #include "core/volume/grey_levels.h"
 #include "core/volume_io/volume_io.h"
-#include "editor/context/editor.h"
+#include "editor/context/views.h"
 
 namespace limber::editor {
+
+struct Context;
 
 // A window of grey values, as radiologists use for CT, in Hounsfield units.
 struct ImageWindow {
@@ -29,15 +31,15 @@ std::shared_ptr<const GreyLevels> levels_of(const GreyVolume& image);
 
 // Shows the image with the open body, with the default window of its values, and stores its path. Throws Error if the
 // open volume and the image do not overlap in the world, because no view would show both.
-void show_image(Editor& editor, std::shared_ptr<const GreyLevels> image, const Path& path);
+void show_image(Context& context, std::shared_ptr<const GreyLevels> image, const Path& path);
 // Returns a document for an image without labels: a volume on the image's grid in which all voxels are air. The user
 // can then make labels from the image or paint them.
 Document document_for_image(const GreyLevels& image);
-void close_image(Editor& editor);
+void close_image(Context& context);
 
 // Reads the image with which a project was saved, and shows it with the saved settings (`shown`; empty: none were
 // saved). If the file is missing, shows a message; the project keeps the file's path.
-void reopen_image(Editor& editor, const Path& path, const std::optional<render::ShownGrey>& shown);
+void reopen_image(Context& context, const Path& path, const std::optional<render::ShownGrey>& shown);
 
 // Stores the posed image of a result, and deletes the posed images of results that no longer exist.
 void keep_posed_image(Views& views, PosedImage image);
@@ -48,8 +50,8 @@ const PosedImage* posed_image_of(const Views& views, const std::shared_ptr<const
 std::optional<double> image_value_at(const GreyLevels& image, const glm::dvec3& world);
 // Returns the value of the grey image under the pointer; empty if there is none. While a result is shown with its posed
 // image, this is the posed image's value. Otherwise it is the value of the image at the point's position at rest.
-std::optional<double> image_value_at_pointer(const Editor& editor);
+std::optional<double> image_value_at_pointer(const Views& views);
 // Returns a value of the shown image as a text: with its unit if the image looks like a CT.
-std::string text_of_image_value(const Editor& editor, double value);
+std::string text_of_image_value(const Views& views, double value);
 
 }  // namespace limber::editor

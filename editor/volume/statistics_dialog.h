@@ -5,12 +5,13 @@
 
 #include <memory>
 
-#include "editor/context/editor.h"
-
 namespace limber::editor {
+
+class Dialog;
+struct Context;
 
 // Starts the job that counts, and returns the dialog that shows its result. The document must have a volume and
 // tissues.
-std::unique_ptr<Dialog> open_statistics(Editor& editor);
+std::unique_ptr<Dialog> open_statistics(Context& context);
 
 }  // namespace limber::editor

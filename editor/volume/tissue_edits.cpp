@@ -3,27 +3,31 @@
 
 #include <algorithm>
 
+#include "editor/context/context.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
 namespace {
 
-std::string name_of(const Editor& editor, const std::set<Label>& tissues) {
+std::string name_of(const Context& context, const std::set<Label>& tissues) {
   if (tissues.size() != 1) return std::to_string(tissues.size()) + " tissues";
-  const Tissue* tissue = editor.document().tissues ? editor.document().tissues->find(*tissues.begin()) : nullptr;
+  const Tissue* tissue = context.document().tissues ? context.document().tissues->find(*tissues.begin()) : nullptr;
   return tissue ? shown_name(*tissue) : "label " + std::to_string(*tissues.begin());
 }
 
-void commit_looks(Editor& editor, const std::string& label,
+void commit_looks(Context& context, const std::string& label,
                   const std::function<void(std::map<Label, TissueLook>&)>& change) {
-  Visibility visibility = editor.document().visibility ? *editor.document().visibility : Visibility{};
+  Visibility visibility = context.document().visibility ? *context.document().visibility : Visibility{};
   const Visibility before = visibility;
   change(visibility.looks);
   if (visibility == before) return;
-  Document next = editor.document();
+  Document next = context.document();
   next.visibility = std::make_shared<const Visibility>(std::move(visibility));
-  commit(editor, label, std::move(next));
+  commit(context, label, std::move(next));
 }
 
 }  // namespace
@@ -45,61 +49,61 @@ TissueLook look_of(const Document& document, Label label) {
   return found == document.visibility->looks.end() ? TissueLook{} : found->second;
 }
 
-void set_look(Editor& editor, const std::string& label, Label tissue, const TissueLook& look) {
-  editor.views->preview_visibility.reset();
-  commit_looks(editor, label, [&](auto& looks) { looks[tissue] = look; });
+void set_look(Context& context, const std::string& label, Label tissue, const TissueLook& look) {
+  context.views->preview_visibility.reset();
+  commit_looks(context, label, [&](auto& looks) { looks[tissue] = look; });
 }
 
-void preview_look(Editor& editor, Label tissue, const TissueLook& look) {
-  Visibility visibility = editor.document().visibility ? *editor.document().visibility : Visibility{};
+void preview_look(Context& context, Label tissue, const TissueLook& look) {
+  Visibility visibility = context.document().visibility ? *context.document().visibility : Visibility{};
   visibility.looks[tissue] = look;
-  editor.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
-  editor.touch();
+  context.views->preview_visibility = std::make_shared<const Visibility>(std::move(visibility));
+  context.ui->touch();
 }
 
-void preview_tissue(Editor& editor, const Tissue& tissue) {
-  TissueTable table = *editor.document().tissues;
+void preview_tissue(Context& context, const Tissue& tissue) {
+  TissueTable table = *context.document().tissues;
   if (Tissue* place = table.find(tissue.label)) *place = tissue;
-  editor.views->preview_tissues = std::make_shared<const TissueTable>(std::move(table));
-  editor.touch();
+  context.views->preview_tissues = std::make_shared<const TissueTable>(std::move(table));
+  context.ui->touch();
 }
 
-void show_tissues(Editor& editor, const std::set<Label>& tissues, bool visible) {
-  commit_looks(editor, (visible ? "Show " : "Hide ") + name_of(editor, tissues), [&](auto& looks) {
+void show_tissues(Context& context, const std::set<Label>& tissues, bool visible) {
+  commit_looks(context, (visible ? "Show " : "Hide ") + name_of(context, tissues), [&](auto& looks) {
     for (const Label label : tissues) looks[label].visible = visible;
   });
 }
 
-void solo_tissues(Editor& editor, const std::set<Label>& tissues) {
+void solo_tissues(Context& context, const std::set<Label>& tissues) {
   bool alone = true;
-  for (const Tissue& tissue : editor.document().tissues->tissues)
-    if (look_of(editor.document(), tissue.label).visible != tissues.contains(tissue.label)) alone = false;
-  if (alone) return reveal_tissues(editor);
-  commit_looks(editor, "Show only " + name_of(editor, tissues), [&](auto& looks) {
-    for (const Tissue& tissue : editor.document().tissues->tissues)
+  for (const Tissue& tissue : context.document().tissues->tissues)
+    if (look_of(context.document(), tissue.label).visible != tissues.contains(tissue.label)) alone = false;
+  if (alone) return reveal_tissues(context);
+  commit_looks(context, "Show only " + name_of(context, tissues), [&](auto& looks) {
+    for (const Tissue& tissue : context.document().tissues->tissues)
       looks[tissue.label].visible = tissues.contains(tissue.label);
   });
 }
 
-void reveal_tissues(Editor& editor) {
-  commit_looks(editor, "Reveal all", [](auto& looks) {
+void reveal_tissues(Context& context) {
+  commit_looks(context, "Reveal all", [](auto& looks) {
     for (auto& [label, look] : looks) look.visible = true;
   });
 }
 
-void set_tissue(Editor& editor, const std::string& what, const Tissue& tissue) {
-  editor.views->preview_tissues.reset();
-  TissueTable table = *editor.document().tissues;
+void set_tissue(Context& context, const std::string& what, const Tissue& tissue) {
+  context.views->preview_tissues.reset();
+  TissueTable table = *context.document().tissues;
   Tissue* place = table.find(tissue.label);
   if (!place) return;
   *place = tissue;
-  Document next = editor.document();
+  Document next = context.document();
   next.tissues = std::make_shared<const TissueTable>(std::move(table));
-  commit(editor, what, std::move(next));
+  commit(context, what, std::move(next));
 }
 
-void set_kind(Editor& editor, Label label, TissueKind kind) {
-  Tissue tissue = *editor.document().tissues->find(label);
+void set_kind(Context& context, Label label, TissueKind kind) {
+  Tissue tissue = *context.document().tissues->find(label);
   if (tissue.kind == kind) return;
   Tissue before = tissue, after = tissue;
   after.kind = kind;
@@ -109,19 +113,19 @@ void set_kind(Editor& editor, Label label, TissueKind kind) {
   tissue.priority = after.priority;
   for (double Tissue::*number : {&Tissue::density, &Tissue::young_modulus, &Tissue::poisson_ratio})
     if (tissue.*number == before.*number) tissue.*number = after.*number;
-  set_tissue(editor, "Kind of " + shown_name(tissue), tissue);
+  set_tissue(context, "Kind of " + shown_name(tissue), tissue);
 }
 
-void rename_tissue(Editor& editor, Label label, const std::string& name) {
-  Tissue tissue = *editor.document().tissues->find(label);
+void rename_tissue(Context& context, Label label, const std::string& name) {
+  Tissue tissue = *context.document().tissues->find(label);
   if (name.empty() || name == tissue.name) return;
   const std::string before = shown_name(tissue);
   tissue.name = name;
-  set_tissue(editor, "Rename " + before, tissue);
+  set_tissue(context, "Rename " + before, tissue);
 }
 
-void select_tissue(Editor& editor, Label label, bool extended) {
-  Selection& selection = editor.selection;
+void select_tissue(Context& context, Label label, bool extended) {
+  Selection& selection = context.selection;
   if (!extended) {
     selection.tissues = {label};
     selection.tissue = label;

@@ -6,6 +6,12 @@
 #include "core/base/error.h"
 #include "core/prepare/prepare.h"
 #include "core/project/seams_codec.h"
+#include "editor/context/arriving_body.h"
+#include "editor/context/background_task.h"
+#include "editor/context/context.h"
+#include "editor/context/views.h"
+#include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 namespace limber::editor {
 
@@ -81,16 +87,16 @@ Document with_volume(const Document& now, std::shared_ptr<const LabelVolume> vol
   return next;
 }
 
-void start_preparation(Editor& editor, Preparation preparation) {
-  const auto before = editor.document().volume;
-  const auto tissues = editor.document().tissues;
+void start_preparation(Context& context, Preparation preparation) {
+  const auto before = context.document().volume;
+  const auto tissues = context.document().tissues;
   const std::string label = preparation.label;
   auto note = std::make_shared<std::string>();
   auto is_loss = std::make_shared<bool>(false);  // true: the message in `note` says that something was removed
-  const int id = editor.jobs.start(
+  const int id = context.jobs->start(
       label,
-      [before, tissues, note, is_loss, preparation, visibility = editor.document().visibility,
-       make_ready = body_maker(*editor.views)](Progress& progress) -> Edit {
+      [before, tissues, note, is_loss, preparation, visibility = context.document().visibility,
+       make_ready = body_maker(*context.views)](Progress& progress) -> Edit {
         progress.update("volume", 0);
         auto after = std::make_shared<const LabelVolume>(preparation.change(*before, progress));
         if (after->grid == before->grid && after->voxels == before->voxels) {
@@ -109,12 +115,12 @@ void start_preparation(Editor& editor, Preparation preparation) {
           return next;
         };
       });
-  editor.step_of_job[id] = StepOfWork::Prepare;
-  editor.after_job[id] = [label, note, is_loss](Editor& e, const JobStatus& job) {
+  context.background->step_of_job[id] = StepOfWork::Prepare;
+  context.background->after_job[id] = [label, note, is_loss](Context& c, const JobStatus& job) {
     if (job.state != JobState::Done) return;
-    *is_loss ? e.messages.warn(label, *note) : e.messages.ok(label, *note);
+    *is_loss ? c.messages->warn(label, *note) : c.messages->ok(label, *note);
   };
-  editor.touch();
+  context.ui->touch();
 }
 
 }  // namespace limber::editor

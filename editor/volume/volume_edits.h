@@ -7,9 +7,11 @@
 #include <functional>
 #include <string>
 
-#include "editor/context/editor.h"
+#include "core/project/document.h"
 
 namespace limber::editor {
+
+struct Context;
 
 struct Preparation {
   std::string label;  // the name of the job and of the edit: "Resize voxels to 2 mm"
@@ -17,7 +19,7 @@ struct Preparation {
   bool mirrors = false;
 };
 // Starts a job that prepares the volume. The document must have a volume.
-void start_preparation(Editor& editor, Preparation preparation);
+void start_preparation(Context& context, Preparation preparation);
 
 // Returns the document with another volume in place of its own. Weights, rig and seams are removed if they do not fit
 // the new volume. `note` receives a message that says what was removed, or "".

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Operators that prepare the volume, such as Crop to tissue. Operators with settings open a form first. Each operator
 // runs as a job and makes one edit.
+#include "editor/context/context.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
+#include "editor/context/selection.h"
 #include "editor/volume/volume_edits.h"
 
 #include <cmath>
@@ -27,25 +31,25 @@ std::string trimmed(double value) {
   return text;
 }
 
-void ask_regrid(Editor& editor) {
-  const Grid& grid = editor.document().volume->grid;
+void ask_regrid(Context& context) {
+  const Grid& grid = context.document().volume->grid;
   const double finest = std::min({grid.spacing.x, grid.spacing.y, grid.spacing.z});
-  const auto outcome = [](const Editor& e, const Fields& fields) {
-    const Grid& old = e.document().volume->grid;
+  const auto outcome = [](const Context& c, const Fields& fields) {
+    const Grid& old = c.document().volume->grid;
     const glm::dvec3 size = glm::ceil(glm::dvec3(old.size) * old.spacing / fields[0].value - 1e-6);
     const double voxels = size.x * size.y * size.z;
     if (voxels > kMostVoxels)
       throw Error("too many voxels", trimmed(voxels / 1e6) + " million", "enter a larger spacing");
     return "From " + size_text(old.size) + " to " + size_text(glm::ivec3(size)) + " voxels, " +
            grouped(static_cast<std::int64_t>(voxels * 2 / 1e6)) + " MB." +
-           (e.document().weights ? " The weights are lost; compute them again." : "");
+           (c.document().weights ? " The weights are lost; compute them again." : "");
   };
-  const auto act = [](Editor& e, const Fields& fields) {
+  const auto act = [](Context& c, const Fields& fields) {
     const double spacing = fields[0].value;
-    start_preparation(e, {"Resize voxels to " + trimmed(spacing) + " mm",
+    start_preparation(c, {"Resize voxels to " + trimmed(spacing) + " mm",
                           [spacing](const LabelVolume& v, Progress& p) { return regrid(v, glm::dvec3(spacing), p); }});
   };
-  editor.open_dialog(
+  context.dialogs->open(
       make_form({"Resize voxels",
                  "Resample the volume to cubic voxels of another size. Thin layers stay closed.",
                  "Resize voxels",
@@ -60,31 +64,31 @@ Operator flip_operator(const char* id, const char* label, int axis, const char* 
           icon::kMirror,
           "Prepare",
           description,
-          [axis, label = std::string(label)](Editor& e) {
-            start_preparation(e, {label, [axis](const LabelVolume& v, Progress&) { return flip(v, axis); }, true});
+          [axis, label = std::string(label)](Context& c) {
+            start_preparation(c, {label, [axis](const LabelVolume& v, Progress&) { return flip(v, axis); }, true});
           },
           needs_volume};
 }
 
-void ask_orient(Editor& editor) {
+void ask_orient(Context& context) {
   const auto code_of = [](const Fields& fields) {
     std::string code;
     for (const FormField& field : fields) code += field.choices[field.chosen][0];
     return code;
   };
   const std::vector<std::string> directions = {"Left", "Right", "Posterior", "Anterior", "Superior", "Inferior"};
-  const auto outcome = [code_of](const Editor&, const Fields& fields) {
+  const auto outcome = [code_of](const Context&, const Fields& fields) {
     if (fields[0].chosen / 2 == fields[1].chosen / 2 || fields[0].chosen / 2 == fields[2].chosen / 2 ||
         fields[1].chosen / 2 == fields[2].chosen / 2)
       throw Error("two voxel axes point along the same body axis", code_of(fields),
                   "use left or right, front or back, and up or down once each");
     return "Voxel axes " + code_of(fields) + ". The voxels are not resampled and stay where they are.";
   };
-  const auto act = [code_of](Editor& e, const Fields& fields) {
+  const auto act = [code_of](Context& c, const Fields& fields) {
     const std::string code = code_of(fields);
-    start_preparation(e, {"Orient to " + code, [code](const LabelVolume& v, Progress&) { return reorient(v, code); }});
+    start_preparation(c, {"Orient to " + code, [code](const LabelVolume& v, Progress&) { return reorient(v, code); }});
   };
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Orient",
        "Change the order and direction of the voxel axes. Select the side of the body that each axis points to.",
        "Orient",
@@ -95,32 +99,32 @@ void ask_orient(Editor& editor) {
        act}));
 }
 
-std::string needs_clip_box(const Editor& editor) {
-  if (!editor.document().volume) return "Open a volume first";
-  return editor.document().visibility && editor.document().visibility->clip_box.enabled
+std::string needs_clip_box(const Context& context) {
+  if (!context.document().volume) return "Open a volume first";
+  return context.document().visibility && context.document().visibility->clip_box.enabled
              ? ""
              : "Switch the clip box on first";
 }
 
-void crop_to_clip_box(Editor& editor) {
-  const ClipBox box = editor.document().visibility->clip_box;
+void crop_to_clip_box(Context& context) {
+  const ClipBox box = context.document().visibility->clip_box;
   const glm::ivec3 low(glm::ceil(box.low - 1e-9)), high(glm::floor(box.high + 1e-9));
-  start_preparation(editor,
+  start_preparation(context,
                     {"Crop to clip box", [low, high](const LabelVolume& v, Progress&) { return crop(v, low, high); }});
 }
 
-void ask_pad(Editor& editor) {
-  const auto outcome = [](const Editor& e, const Fields& fields) {
-    const glm::ivec3 size = e.document().volume->grid.size + 2 * static_cast<int>(std::lround(fields[0].value));
+void ask_pad(Context& context) {
+  const auto outcome = [](const Context& c, const Fields& fields) {
+    const glm::ivec3 size = c.document().volume->grid.size + 2 * static_cast<int>(std::lround(fields[0].value));
     return "To " + size_text(size) + " voxels." +
-           (e.document().weights ? " The weights are lost; compute them again." : "");
+           (c.document().weights ? " The weights are lost; compute them again." : "");
   };
-  const auto act = [](Editor& e, const Fields& fields) {
+  const auto act = [](Context& c, const Fields& fields) {
     const int voxels = static_cast<int>(std::lround(fields[0].value));
-    start_preparation(e, {"Pad by " + std::to_string(voxels) + " voxels",
+    start_preparation(c, {"Pad by " + std::to_string(voxels) + " voxels",
                           [voxels](const LabelVolume& v, Progress&) { return pad(v, voxels); }});
   };
-  editor.open_dialog(
+  context.dialogs->open(
       make_form({"Pad",
                  "Add air on every side, so that a posed limb has room.",
                  "Pad",
@@ -129,18 +133,18 @@ void ask_pad(Editor& editor) {
                  act}));
 }
 
-void ask_merge(Editor& editor) {
+void ask_merge(Context& context) {
   std::vector<std::string> names;
   std::vector<Label> labels;
   int chosen = 0;
-  for (const Tissue& tissue : editor.document().tissues->tissues) {
-    if (editor.selection.tissue == tissue.label) chosen = static_cast<int>(names.size());
+  for (const Tissue& tissue : context.document().tissues->tissues) {
+    if (context.selection->tissue == tissue.label) chosen = static_cast<int>(names.size());
     names.push_back(tissue.name + " (" + std::to_string(tissue.label) + ")");
     labels.push_back(tissue.label);
   }
   names.push_back("Air");
   labels.push_back(0);
-  const auto outcome = [](const Editor&, const Fields& fields) {
+  const auto outcome = [](const Context&, const Fields& fields) {
     if (fields[0].chosen == fields[1].chosen)
       throw Error("both tissues are the same", fields[0].choices[fields[0].chosen], "select another one");
     if (fields[0].chosen + 1 == std::ssize(fields[0].choices))
@@ -148,12 +152,12 @@ void ask_merge(Editor& editor) {
     return "Every voxel of " + fields[0].choices[fields[0].chosen] + " becomes " + fields[1].choices[fields[1].chosen] +
            ".";
   };
-  const auto act = [labels](Editor& e, const Fields& fields) {
+  const auto act = [labels](Context& c, const Fields& fields) {
     const Label from = labels[fields[0].chosen], into = labels[fields[1].chosen];
-    start_preparation(e, {"Merge " + fields[0].choices[fields[0].chosen],
+    start_preparation(c, {"Merge " + fields[0].choices[fields[0].chosen],
                           [from, into](const LabelVolume& v, Progress&) { return merge_labels(v, from, into); }});
   };
-  editor.open_dialog(
+  context.dialogs->open(
       make_form({"Merge tissues",
                  "Turn all voxels of one tissue into another tissue.",
                  "Merge",
@@ -163,13 +167,13 @@ void ask_merge(Editor& editor) {
                  act}));
 }
 
-void ask_specks(Editor& editor) {
-  const auto act = [](Editor& e, const Fields& fields) {
+void ask_specks(Context& context) {
+  const auto act = [](Context& c, const Fields& fields) {
     const auto voxels = static_cast<std::int64_t>(std::llround(fields[0].value));
-    start_preparation(e, {"Remove specks below " + std::to_string(voxels) + " voxels",
+    start_preparation(c, {"Remove specks below " + std::to_string(voxels) + " voxels",
                           [voxels](const LabelVolume& v, Progress&) { return drop_specks(v, voxels); }});
   };
-  editor.open_dialog(make_form(
+  context.dialogs->open(make_form(
       {"Remove specks",
        "Replace small pieces that are separate from the rest of their tissue by the label around them.",
        "Remove",
@@ -178,9 +182,9 @@ void ask_specks(Editor& editor) {
        act}));
 }
 
-std::string needs_tissues(const Editor& editor) {
-  if (!editor.document().volume || !editor.document().tissues) return "Open a volume first";
-  return editor.document().tissues->tissues.empty() ? "The volume has no tissue" : "";
+std::string needs_tissues(const Context& context) {
+  if (!context.document().volume || !context.document().tissues) return "Open a volume first";
+  return context.document().tissues->tissues.empty() ? "The volume has no tissue" : "";
 }
 
 }  // namespace
@@ -197,8 +201,8 @@ std::vector<Operator> prepare_operators() {
       flip_operator("prepare.flip_z", "Flip head and feet", 2,
                     "Mirror the body along its length: head and feet change places."),
       {"prepare.crop", "Crop to tissue", icon::kClip, "Prepare", "Remove the air around the tissue from the volume.",
-       [](Editor& e) {
-         start_preparation(e, {"Crop to tissue", [](const LabelVolume& v, Progress&) { return crop_to_tissue(v); }});
+       [](Context& c) {
+         start_preparation(c, {"Crop to tissue", [](const LabelVolume& v, Progress&) { return crop_to_tissue(v); }});
        },
        needs_volume},
       {"prepare.crop_to_clip_box", "Crop to clip box", icon::kClip, "Prepare",
@@ -211,7 +215,7 @@ std::vector<Operator> prepare_operators() {
        "Replace small stray pieces of a tissue by the label around them.", ask_specks, needs_volume},
       {"prepare.statistics", "Statistics", icon::kTable, "Prepare",
        "Show each tissue's number of voxels, volume and number of separate parts.",
-       [](Editor& e) { e.open_dialog(open_statistics(e)); }, needs_tissues},
+       [](Context& c) { c.dialogs->open(open_statistics(c)); }, needs_tissues},
   };
 }
 

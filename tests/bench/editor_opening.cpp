@@ -21,9 +21,12 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/project/job.h"
+#include "editor/app/editor.h"
 #include "editor/app/editor_session.h"
 #include "editor/app/headless_window.h"
-#include "editor/context/editor.h"
+#include "editor/context/user_folders.h"
+#include "editor/context/views.h"
 
 namespace {
 
@@ -41,7 +44,7 @@ double seconds(clockid_t clock) {
 }
 
 // Returns true if the last frame's picture holds the volume.
-bool shows_volume(const Editor& editor) { return editor.document().volume && editor.views->body.picture->scale() > 0; }
+bool shows_volume(const Context& editor) { return editor.document().volume && editor.views->body.picture->scale() > 0; }
 
 constexpr int kRuns = 5;
 constexpr std::array<const char*, 7> kNames = {"window_cpu_seconds",    "first_picture_cpu_seconds",
@@ -59,8 +62,8 @@ Figures open_once(const Path& volume) {
   editor.frame(0);
   const double window = seconds(CLOCK_PROCESS_CPUTIME_ID);
   while (!shows_volume(editor) || editor.rest() == 0) {
-    if (!editor.messages.errors.empty())
-      throw Error(editor.messages.errors.front().what, volume.string(), "choose another file");
+    if (!editor.messages->errors.empty())
+      throw Error(editor.messages->errors.front().what, volume.string(), "choose another file");
     if (seconds(CLOCK_MONOTONIC) - begin > kLongestWait)
       throw Error("no picture comes", volume.string(), "open it in the editor and look");
     const double before = seconds(CLOCK_THREAD_CPUTIME_ID);
@@ -72,7 +75,7 @@ Figures open_once(const Path& volume) {
     if (first_picture == 0) {
       longest = std::max(longest, own);
       if (shows_volume(editor)) first_picture = seconds(CLOCK_PROCESS_CPUTIME_ID) - window;
-      else progress += editor.jobs.busy();
+      else progress += editor.jobs->busy();
     }
     std::this_thread::sleep_for(
         std::chrono::duration<double>(editor.rest() == 0 ? kFrame : std::min(editor.rest(), kWhileJobsRun)));

@@ -21,10 +21,15 @@
 #include "core/base/error.h"
 #include "core/motion/clip.h"
 #include "core/phantom/phantom.h"
+#include "core/project/history.h"
+#include "editor/app/editor.h"
 #include "editor/app/headless_window.h"
 #include "editor/app/script_player.h"
 #include "editor/context/document_edits.h"
-#include "editor/context/editor.h"
+#include "editor/context/open_project.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/context/views.h"
 #include "editor/motion/timeline.h"
 #include "editor/motion/timeline_tool.h"
 #include "editor/shown/frame_all.h"
@@ -55,12 +60,12 @@ class ArmAtWork {
  public:
   ArmAtWork() : host_(open_offscreen({1600, 900})), editor_(*host_), player_(editor_, *host_) {
     player_.step();
-    editor_.history.reset(arm_with_clip(), "Open arm");
-    editor_.name = "arm";
+    editor_.history->reset(arm_with_clip(), "Open arm");
+    editor_.project->name = "arm";
     frame_all(editor_, false);
     player_.play("key Ctrl+3\nkey Num3\nwait-job\nwait-idle");
-    editor_.selection.bone = require_bone(*editor_.document().armature, "Forearm");
-    editor_.selection.bones = {*editor_.selection.bone};
+    editor_.selection->bone = require_bone(*editor_.document().armature, "Forearm");
+    editor_.selection->bones = {*editor_.selection->bone};
     begin_ = seconds(CLOCK_MONOTONIC);
     until_rest();
     milliseconds_.clear();
@@ -68,7 +73,7 @@ class ArmAtWork {
   }
 
   void drag() {
-    const glm::vec2 middle = editor_.layout.place_of(ViewId::Body)->centre();
+    const glm::vec2 middle = editor_.screen->layout.place_of(ViewId::Body)->centre();
     move(middle);
     push(KeyChanged{Key::R, true});
     push(KeyChanged{Key::R, false});

@@ -25,8 +25,14 @@
 #include "core/rig/pose.h"
 #include "editor/app/headless_window.h"
 #include "editor/app/script_player.h"
+#include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/frame_timing.h"
+#include "editor/context/open_project.h"
+#include "editor/context/operator.h"
+#include "editor/context/resampling_settings.h"
+#include "editor/context/screen.h"
+#include "editor/context/views.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/shown/frame_all.h"
@@ -57,16 +63,16 @@ class ArmSolved {
         editor_(*host_),
         player_(editor_, *host_) {
     player_.step();
-    editor_.worker_program = LIMBER_PROGRAM;
-    editor_.history.reset(bent_arm(), "Open arm");
-    editor_.name = "arm";
+    editor_.background->worker_program = LIMBER_PROGRAM;
+    editor_.history->reset(bent_arm(), "Open arm");
+    editor_.project->name = "arm";
     frame_all(editor_, false);
-    editor_.resampling.method = "dqs";
+    editor_.resampling->method = "dqs";
     if (length_ > 0) player_.play("key Ctrl+4\nkey Ctrl+Return\nwait-job\nwait-idle");
-    editor_.resampling.method = "fem";
-    editor_.resampling.quality = "fine";  // makes the solve last long enough
-    editor_.resampling.contact = true;
-    editor_.resampling.bones_apart = true;
+    editor_.resampling->method = "fem";
+    editor_.resampling->quality = "fine";  // makes the solve last long enough
+    editor_.resampling->contact = true;
+    editor_.resampling->bones_apart = true;
   }
 
   void run() {
@@ -106,7 +112,7 @@ class ArmSolved {
   void wait_for(const There& there) {
     for (const double begin = seconds(); !there();) {
       if (seconds() - begin > 300)
-        throw Error("the solve does not come to it", stage_of_solve(), editor_.messages.last_failure);
+        throw Error("the solve does not come to it", stage_of_solve(), editor_.messages->last_failure);
       frame();
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
@@ -126,16 +132,16 @@ class ArmSolved {
     if (editor_.fem->solves.empty())
       throw Error("the solve was over too soon", "to be cancelled", "give fewer seconds");
     const int job = editor_.fem->solves.begin()->first;
-    editor_.jobs.cancel(job);
-    while (editor_.jobs.status(job).active()) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    editor_.jobs->cancel(job);
+    while (editor_.jobs->status(job).active()) std::this_thread::sleep_for(std::chrono::microseconds(200));
     const double took = 1e3 * (seconds() - asked);
-    while (editor_.jobs.busy()) frame();
+    while (editor_.jobs->busy()) frame();
     return took;
   }
 
   void turn(const char* name, const std::string& script) {
     player_.play(script);
-    const Rect view = *editor_.layout.place_of(ViewId::Body);
+    const Rect view = *editor_.screen->layout.place_of(ViewId::Body);
     const auto at = [&](double way) {
       return view.centre() + glm::vec2(120 * std::sin(way), 40 * std::sin(0.7 * way));
     };
@@ -157,7 +163,7 @@ class ArmSolved {
     std::printf(
         "%s{\"view\": \"%s\", \"solving\": %s, \"frames\": %zu, \"scale\": %d, \"median\": %.1f, \"p95\": %.1f, "
         "\"worst\": %.1f}",
-        first_ ? "" : ",\n  ", name, editor_.jobs.busy() ? "true" : "false", took.size(),
+        first_ ? "" : ",\n  ", name, editor_.jobs->busy() ? "true" : "false", took.size(),
         editor_.views->body.picture->scale(), percentile(took, 50), percentile(took, 95), percentile(took, 100));
     std::fflush(stdout);
     first_ = false;

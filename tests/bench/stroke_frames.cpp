@@ -24,13 +24,19 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/project/history.h"
 #include "editor/app/headless_window.h"
 #include "editor/app/script_player.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/frame_timing.h"
+#include "editor/context/open_project.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/views.h"
 #include "editor/motion/timeline.h"
 #include "editor/shown/frame_all.h"
+#include "editor/shown/test_pose.h"
 #include "editor/skin/paint_mode.h"
 #include "editor/skin/weight_display.h"
 #include "tests/bench/arm_document.h"
@@ -55,16 +61,16 @@ class ArmPainted {
         editor_(*host_),
         player_(editor_, *host_) {
     player_.step();
-    editor_.history.reset(bench::arm_document(), "Open arm");
-    editor_.name = "arm";
+    editor_.history->reset(bench::arm_document(), "Open arm");
+    editor_.project->name = "arm";
     frame_all(editor_, false);
     player_.play("key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-job\nwait-idle");
     // Paints a bone in the middle of the body, so that the stroke crosses the border of its weight.
     const Armature& armature = *editor_.document().armature;
     for (int bone = 0; bone < std::ssize(armature.bones); ++bone)
       if (armature.bones[static_cast<std::size_t>(bone)].name.find("orearm") != std::string::npos || bone == 0)
-        editor_.selection.bone = bone;
-    editor_.selection.bones = {*editor_.selection.bone};
+        editor_.selection->bone = bone;
+    editor_.selection->bones = {*editor_.selection->bone};
     rest();
   }
 
@@ -78,7 +84,8 @@ class ArmPainted {
     Painting& painting = *editor_.skin->painting;
     painting.radius = voxels * editor_.document().volume->grid.spacing.x;
     const auto is_body = [](const ViewPlace& place) { return place.id == ViewId::Body; };
-    const ViewPlace view = *std::find_if(editor_.layout.view_places.begin(), editor_.layout.view_places.end(), is_body);
+    const ViewPlace view =
+        *std::find_if(editor_.screen->layout.view_places.begin(), editor_.screen->layout.view_places.end(), is_body);
     const std::vector<glm::vec2> path = middle_of_body(view);
     if (path.size() < 2) throw Error("the body is not seen", name, "look at the picture");
     player_.play("move \"3D view/view\"");
@@ -91,11 +98,11 @@ class ArmPainted {
     const double step = painting.spacing * painting.radius /
                         // distance of two dabs, pixels
                         ViewProjection(editor_, view).millimetres_per_pixel(place->seen);
-    const std::size_t before = static_cast<std::size_t>(editor_.history.position());
+    const std::size_t before = static_cast<std::size_t>(editor_.history->position());
     frame(ButtonChanged{MouseButton::Left, true});
     const double begin = seconds();
     int dabs = 0;
-    for (double due = begin; (dabs = dabs_of_stroke(editor_)) < kDabs; due += kFrame) {
+    for (double due = begin; (dabs = dabs_of_stroke(editor_.skin)) < kDabs; due += kFrame) {
       std::this_thread::sleep_for(std::chrono::duration<double>(due + kFrame - seconds()));
       due = std::max(due, seconds() - kFrame);
       // Moves the mouse to the place on the path that it reaches by now. The editor sees all motion since the last
@@ -110,7 +117,7 @@ class ArmPainted {
       frame();
       std::this_thread::sleep_for(std::chrono::duration<double>(due - seconds()));
     }
-    if (static_cast<std::size_t>(editor_.history.position()) != before + 1)
+    if (static_cast<std::size_t>(editor_.history->position()) != before + 1)
       throw Error("the stroke changed nothing", name, "look at what it paints");
     report(name, dabs, took, of_stroke);
     player_.play("key Ctrl+Z");

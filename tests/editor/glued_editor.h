@@ -2,11 +2,14 @@
 // The editor with a trunk and an arm that touch, in the Skin workspace.
 #pragma once
 
+#include "editor/context/background_task.h"
+#include "editor/context/open_project.h"
 #include "editor/context/view_projection.h"
 #include "editor/seams/seam_view.h"
 #include "editor/shown/frame_all.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/small_editor.h"
 #include "tests/support/glued_arm.h"
 
@@ -31,10 +34,10 @@ struct GluedEditor : SmallEditor {
 
   explicit GluedEditor(float scale = 1)
       : SmallEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale), false) {
-    editor->history.reset(glued_document(), "Open glued arm");
-    editor->name = "glued";
-    editor->worker_program = LIMBER_PROGRAM;
-    editor->preferences.reduce_motion = true;
+    editor->history->reset(glued_document(), "Open glued arm");
+    editor->project->name = "glued";
+    editor->background->worker_program = LIMBER_PROGRAM;
+    editor->preferences->reduce_motion = true;
     editor::frame_all(*editor, false);
     play("key Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle");
   }
@@ -46,18 +49,18 @@ struct GluedEditor : SmallEditor {
 
   void open_only(const std::string& section) {
     for (const char* folded : {"Bones", "Layers", "Brush", "Problems", "Outliner", "Steps", "Seams", "Bone map"})
-      editor->open_sections[folded] = folded == section;
+      editor->ui->open_sections[folded] = folded == section;
     play("wait-idle");
   }
   std::int64_t faces() const {
     const auto seams = shown_seams(*editor);
     return seams && *seams ? (*seams)->size() : 0;
   }
-  int steps() const { return static_cast<int>(editor->history.position()); }
-  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  int steps() const { return static_cast<int>(editor->history->position()); }
+  std::string last_edit() const { return editor->history->steps()[editor->history->position()].label; }
   // Returns the pixel at which the view shows a point, as if the interface scale were 1.
   std::string at(const glm::dvec3& point) const {
-    const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->look.scale);
+    const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->ui->look.scale);
     char line[80];
     std::snprintf(line, sizeof line, "%.4f %.4f", pixel.x, pixel.y);
     return line;

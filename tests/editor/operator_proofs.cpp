@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "tests/editor/operator_proofs.h"
 
+#include "editor/context/operator_registry.h"
 #include "editor/files/project_session.h"
 
 #include <algorithm>
@@ -14,8 +15,8 @@ constexpr glm::ivec2 kWindow{1120, 560}, kSmall{160, 120};
 }  // namespace
 
 Stage::Stage() : sitting(home.folder.path(), {}, kWindow) {
-  editor().worker_program = LIMBER_PROGRAM;
-  editor().preferences.reduce_motion = true;  // cameras move at once
+  editor().background->worker_program = LIMBER_PROGRAM;
+  editor().preferences->reduce_motion = true;  // cameras move at once
   open_limb();
 }
 
@@ -24,7 +25,7 @@ void Stage::open_limb() {
   opened->document = small_limb();
   opened->name = "limb";
   opened->label = "Open limb";
-  opened->agreed = editor().history.revision();
+  opened->agreed = editor().history->revision();
   replace_project(editor(), opened);
   sitting.test.player.settle();
 }
@@ -41,31 +42,31 @@ void Stage::watch() {
   ran_.clear();
   // Wraps each operator, so that it is recorded when it runs. The editor may replace its operators, so this is done
   // each time.
-  for (editor::Operator& op : editor().operators)
-    op.run = [this, id = op.id, act = op.run](editor::Editor& e) {
+  for (editor::Operator& op : editor().operators->all)
+    op.run = [this, id = op.id, act = op.run](editor::Context& c) {
       ran_.insert(id);
-      act(e);
+      act(c);
     };
 }
 
 Seen Stage::look() {
-  editor::Editor& e = editor();
-  Seen seen{e.document(),
-            static_cast<int>(e.history.steps().size()),
-            static_cast<int>(e.history.position()),
-            e.views->body.camera,
+  editor::Context& c = editor();
+  Seen seen{c.document(),
+            static_cast<int>(c.history->steps().size()),
+            static_cast<int>(c.history->position()),
+            c.views->body.camera,
             {},
-            e.views->cross_hair,
-            e.selection,
+            c.views->cross_hair,
+            c.selection,
             sitting.test.host->clipboard(),
             {},
             {}};
-  for (int i = 0; i < 3; ++i) seen.slices[i] = e.views->slices[i].camera;
-  render::View3D body(e.views->renderer);
-  body.draw(e.views->scene, seen.camera, kSmall, 0, 1);
+  for (int i = 0; i < 3; ++i) seen.slices[i] = c.views->slices[i].camera;
+  render::View3D body(c.views->renderer);
+  body.draw(c.views->scene, seen.camera, kSmall, 0, 1);
   seen.body = body.read().rgba;
-  render::SliceView slice(e.views->renderer);
-  slice.draw(e.views->scene, seen.slices[1], e.views->slice_display, kSmall);
+  render::SliceView slice(c.views->renderer);
+  slice.draw(c.views->scene, seen.slices[1], c.views->slice_display, kSmall);
   seen.slice = slice.read().rgba;
   return seen;
 }

@@ -9,6 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "editor/context/selection.h"
+#include "render/scene/camera.h"
+#include "render/scene/slice_camera.h"
 #include "tests/editor/sitting.h"
 #include "tests/editor/small_limb.h"
 

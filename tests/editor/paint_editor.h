@@ -5,9 +5,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/project/history.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/weighed_limb.h"
 
 namespace limber::test {
@@ -20,8 +23,8 @@ struct PaintEditor : LimbEditor {
       : LimbEditor(scale > 1 ? glm::ivec2(2000, 1200) : glm::ivec2(1000, 600), preferences_of(scale)) {
     Document next = editor->document();
     next.weights = test::half_weights(*next.volume);
-    editor->history.reset(next, "Open weighted limb");
-    editor->preferences.reduce_motion = true;
+    editor->history->reset(next, "Open weighted limb");
+    editor->preferences->reduce_motion = true;
     play("key N\nkey Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle");
     if (parallel) play("key Num5\nwait-idle");
     choose(1);
@@ -37,13 +40,13 @@ struct PaintEditor : LimbEditor {
   }
 
   void choose(int bone) {
-    editor->selection.bone = bone;
-    editor->selection.bones = {bone};
+    editor->selection->bone = bone;
+    editor->selection->bones = {bone};
     play("wait-idle");
   }
   // Returns the pixel at which the 3D view shows a point of the ball's front, as if the interface scale were 1.
   std::string pixel_of(const glm::dvec3& point) const {
-    const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->look.scale);
+    const glm::dvec2 pixel = body_seen(*editor)->pixel_of(point).value() / double(editor->ui->look.scale);
     char line[80];
     std::snprintf(line, sizeof line, "%.4f %.4f", pixel.x, pixel.y);
     return line;
@@ -64,8 +67,8 @@ struct PaintEditor : LimbEditor {
     release();
   }
   const SkinWeights& weights() const { return *editor->document().weights; }
-  int steps() const { return static_cast<int>(editor->history.position()); }
-  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  int steps() const { return static_cast<int>(editor->history->position()); }
+  std::string last_edit() const { return editor->history->steps()[editor->history->position()].label; }
   // Calls body(world, voxel, influence) for each tissue voxel.
   template <class Body>
   void for_each(const Body& body) const {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "editor/app/editor_session.h"
+#include "editor/context/user_folders.h"
 #include "editor/files/project_session.h"
 #include "tests/editor/small_editor.h"
 

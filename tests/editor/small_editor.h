@@ -8,10 +8,13 @@
 #include <doctest/doctest.h>
 
 #include "core/volume_io/volume_io.h"
+#include "editor/app/editor.h"
 #include "editor/app/headless_window.h"
 #include "editor/app/script_player.h"
+#include "editor/context/background_task.h"
 #include "editor/context/document_edits.h"
-#include "editor/context/editor.h"
+#include "editor/context/open_project.h"
+#include "editor/context/views.h"
 #include "editor/shown/frame_all.h"
 #include "tests/support/program.h"
 
@@ -59,12 +62,12 @@ struct SmallEditor {
         editor(std::make_unique<editor::Editor>(*host, preferences)),
         player(*editor, *host) {
     // Workers run at normal priority, since other tests run at the same time.
-    editor->workers_yield = false;
+    editor->background->workers_yield = false;
     editor->views->renderer.average_at_rest(0);
     player.step();
     if (!with_body) return;
-    editor->history.reset(small_body(), "Open ball");
-    editor->name = "ball";
+    editor->history->reset(small_body(), "Open ball");
+    editor->project->name = "ball";
     editor::frame_all(*editor, false);
     player.settle();
   }

@@ -22,9 +22,9 @@ inline Document small_limb() {
 struct LimbEditor : SmallEditor {
   explicit LimbEditor(const glm::ivec2& size = {1280, 720}, const editor::Preferences& preferences = {})
       : SmallEditor(size, preferences, false) {
-    editor->history.reset(small_limb(), "Open limb");
-    editor->name = "limb";
-    editor->worker_program = LIMBER_PROGRAM;
+    editor->history->reset(small_limb(), "Open limb");
+    editor->project->name = "limb";
+    editor->background->worker_program = LIMBER_PROGRAM;
     editor::frame_all(*editor, false);
     player.settle();
   }

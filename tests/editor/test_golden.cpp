@@ -14,6 +14,7 @@
 //   LIMBER_SCENES=2048x1280@2 build/tests/limber_editor_tests -tc="golden:*"
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -22,9 +23,11 @@
 #include "core/binding/heat_diffusion.h"
 #include "core/phantom/phantom.h"
 #include "editor/context/background_task.h"
+#include "editor/context/selection.h"
 #include "editor/files/export_figure.h"
 #include "editor/files/project_session.h"
 #include "editor/motion/graph.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/shown_image.h"
 #include "tests/editor/sitting.h"
 
@@ -129,12 +132,12 @@ void check_golden(const std::string& name, const Image& window) {
 struct Scene {
   explicit Scene(const glm::ivec2& size = kWindow)
       : sitting(home.folder.path(), {}, wanted_window().value_or(Window{size}).size) {
-    editor().preferences.reduce_motion = true;
+    editor().preferences->reduce_motion = true;
     editor().views->renderer.average_at_rest(6);  // frames averaged at rest, as for users
     // Most pictures use the light of a body that has just moved: they check the window, and would take twice as long
     // otherwise. The light at rest has its own picture, and tests/render/passes/test_light_pass.cpp.
     editor().views->renderer.light_at_rest(render::Light::Draft);
-    editor().preferences.scale = wanted_window().value_or(Window{}).scale;
+    editor().preferences->scale = wanted_window().value_or(Window{}).scale;
     sitting.play("wait-idle");
   }
 
@@ -153,7 +156,7 @@ struct Scene {
     opened->document.armature = std::make_shared<const Armature>(std::move(phantom.armature));
     opened->name = name;
     opened->label = "Open " + name;
-    opened->agreed = editor().history.revision();
+    opened->agreed = editor().history->revision();
     replace_project(editor(), opened);
     sitting.test.player.settle();
   }
@@ -198,7 +201,7 @@ TEST_CASE("golden: a figure of the arm cut lengthwise, with soft shadows, outlin
   Visibility visibility = *cut.visibility;
   visibility.clip_plane = {true, cut.armature->bones[1].head, glm::dvec3(1, 0, 0)};
   cut.visibility = std::make_shared<const Visibility>(visibility);
-  scene.editor().history.commit("Cut", cut);
+  scene.editor().history->commit("Cut", cut);
   scene.play("wait-idle");
   render::Camera& camera = scene.editor().views->body.camera;
   camera = zoomed(camera, 0.7);
@@ -211,8 +214,8 @@ TEST_CASE("golden: a figure of the arm cut lengthwise, with soft shadows, outlin
 TEST_CASE("golden: arm, X-ray with bones, one chosen") {
   Arm scene;
   scene.play("move \"3D view/view\"\n key Alt+Z");
-  scene.editor().selection.bone = 1;
-  scene.editor().selection.bones = {1};
+  scene.editor().selection->bone = 1;
+  scene.editor().selection->bones = {1};
   check_golden("arm_xray", scene.picture());
 }
 
@@ -221,15 +224,15 @@ TEST_CASE("golden: arm, bones as cylinders in front, with names and axes") {
   scene.play(
       "click View/Bones/Cylinders\n click \"View/Bones/Bone names\"\n click \"View/Bones/Bone axes\"\n click "
       "\"View/Bones/Bones in front\"\n click tool.rotate");
-  scene.editor().selection.bone = 1;
-  scene.editor().selection.bones = {1};
+  scene.editor().selection->bone = 1;
+  scene.editor().selection->bones = {1};
   check_golden("bones_cylinders", scene.picture());
 }
 
 TEST_CASE("golden: arm, bones as sticks in the sidebar's display") {
   Arm scene;
-  scene.editor().open_sections["Outliner"] = false;
-  scene.editor().open_sections["Tissues"] = false;
+  scene.editor().ui->open_sections["Outliner"] = false;
+  scene.editor().ui->open_sections["Tissues"] = false;
   scene.play("key Alt+Z\n click View/Bones/Sticks\n click Display/fold");
   check_golden("bones_sticks", scene.picture());
 }
@@ -242,11 +245,11 @@ TEST_CASE("golden: arm, a clip box through the elbow") {
   Visibility visibility = *cut.visibility;
   visibility.clip_box.low.y = std::round((voxel_from_world(cut.volume->grid) * elbow).y) - 0.5;
   cut.visibility = std::make_shared<const Visibility>(visibility);
-  scene.editor().history.commit("Move clip box", cut);
+  scene.editor().history->commit("Move clip box", cut);
   render::Camera& camera = scene.editor().views->body.camera;
   camera.centre = elbow;
   camera.distance *= 0.45;
-  scene.editor().touch();
+  scene.editor().ui->touch();
   check_golden("clip_box", scene.picture());
 }
 
@@ -265,8 +268,8 @@ TEST_CASE("golden: bones chosen in a box and under a circle") {
 TEST_CASE("golden: a limb held by a pin and a pole, at rest and out of reach") {
   Small scene;
   scene.play("key Ctrl+3\n move \"3D view/view\"\n key Alt+Z\n key Num3");
-  scene.editor().selection.bone = 1;
-  scene.editor().selection.bones = {1};
+  scene.editor().selection->bone = 1;
+  scene.editor().selection->bones = {1};
   scene.play("key Shift+I");
   check_golden("ik_pin_pole", scene.picture());
   scene.play("key G\n key Z\n key -\n key 9\n key 0");
@@ -284,9 +287,9 @@ TEST_CASE("golden: an arm's eased keys as curves, with the handles of one") {
     set_shape(clip.keys, bone, frame, {Interpolation::Bezier, HandleKind::Automatic});
   }
   next.clips = {std::make_shared<const Clip>(clip)};
-  scene.editor().history.commit("Keys", next);
-  scene.editor().selection.bone = 1;
-  scene.editor().selection.bones = {1};
+  scene.editor().history->commit("Keys", next);
+  scene.editor().selection->bone = 1;
+  scene.editor().selection->bones = {1};
   show_graph(scene.editor(), true);
   scene.play("key Ctrl+3\n wait-idle");
   graph_of(scene.editor()).chosen = {{{{bone, false}, 0}, 20}};
@@ -299,15 +302,15 @@ struct Weighted : Arm {
   Weighted() {
     Document next = editor().document();
     next.weights = std::make_shared<const SkinWeights>(diffuse_heat(*next.volume, *next.tissues, *next.armature));
-    editor().history.commit("Heat diffusion", next);
-    editor().selection.bone = 1;
-    editor().selection.bones = {1};
+    editor().history->commit("Heat diffusion", next);
+    editor().selection->bone = 1;
+    editor().selection->bones = {1};
     play("key Ctrl+2\n move \"3D view/view\"\n key Num3\n wait-idle");
     render::Camera& camera = editor().views->body.camera;
     camera.centre = next.armature->bones[1].head;
     camera.distance *= 0.5;
     editor().views->cross_hair = camera.centre;
-    editor().touch();
+    editor().ui->touch();
   }
 };
 
@@ -414,10 +417,10 @@ TEST_CASE("golden: a job at work") {
 
 TEST_CASE("golden: an error message") {
   Arm scene;
-  scene.editor().messages.show_error(
+  scene.editor().messages->show_error(
       "the rig lies outside the volume: /data/limbs/far.json: choose the rig of this volume, or check its units (mm) "
       "and axes (LPS)");
-  scene.editor().touch();
+  scene.editor().ui->touch();
   check_golden("error", scene.picture());
 }
 

@@ -8,6 +8,10 @@
 
 #include "core/base/error.h"
 #include "editor/context/frame_timing.h"
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
+#include "editor/ui/ui.h"
 #include "render/gl/object.h"
 #include "render/image_io.h"
 #include "tests/editor/small_clip.h"
@@ -53,7 +57,7 @@ TEST_CASE("replay: a key pressed and released between two frames is not lost") {
 
 TEST_CASE("replay: clicks faster than frames all arrive") {
   SmallEditor test({1280, 720});
-  const editor::Widget* eye = test.editor->widgets.find("Muscle/17/eye");
+  const editor::Widget* eye = test.editor->ui->widgets.find("Muscle/17/eye");
   REQUIRE(eye);
   test.host->events.push(editor::PointerMoved{eye->rect.centre()});
   for (int i = 0; i < 7; ++i)
@@ -136,12 +140,12 @@ TEST_CASE("replay: any input ends the move of a camera") {
 
 TEST_CASE("replay: Escape drops a drag") {
   SmallEditor test;
-  test.host->events.push(editor::PointerMoved{test.editor->widgets.find("3D view/view")->rect.centre()});
+  test.host->events.push(editor::PointerMoved{test.editor->ui->widgets.find("3D view/view")->rect.centre()});
   test.host->events.push(editor::ButtonChanged{editor::MouseButton::Middle, true});
   test.player.settle();
-  CHECK(test.editor->drag);
+  CHECK(test.editor->interaction->drag);
   test.play("key Escape");
-  CHECK_FALSE(test.editor->drag);
+  CHECK_FALSE(test.editor->interaction->drag);
 }
 
 TEST_CASE("replay: slices step, zoom about the pointer, shift, and meet in the cross-hair") {
@@ -193,17 +197,17 @@ TEST_CASE("replay: clip box and clip plane are edits like any other") {
 
 TEST_CASE("replay: splitters follow the pointer, and a double click restores them") {
   SmallEditor test({1280, 720});
-  const float before = test.editor->layout.sidebar.width();
+  const float before = test.editor->screen->layout.sidebar.width();
   test.play("drag \"splitter sidebar/grip\" -60 0");
-  CHECK(test.editor->layout.sidebar.width() == doctest::Approx(before + 60).epsilon(0.02));
+  CHECK(test.editor->screen->layout.sidebar.width() == doctest::Approx(before + 60).epsilon(0.02));
   test.play("double-click \"splitter sidebar/grip\"");
-  CHECK(test.editor->layout.sidebar.width() == before);
+  CHECK(test.editor->screen->layout.sidebar.width() == before);
   // The pointer rests on the splitter before it is dragged.
   test.play("click view.four\n move \"splitter four-y/grip\"\n wait 0.5\n wait-idle");
   test.play("click view.four\n drag \"splitter four-y/grip\" 0 50");
-  CHECK(test.editor->arrangement().four_y > 0.55f);
+  CHECK(test.editor->screen->arrangement().four_y > 0.55f);
   test.play("key Ctrl+2\n key Ctrl+1");
-  CHECK(test.editor->arrangement().four_y > 0.55f);  // each workspace stores its own position of the splitter
+  CHECK(test.editor->screen->arrangement().four_y > 0.55f);  // each workspace stores its own position of the splitter
 }
 
 TEST_CASE("replay: the area under the pointer is maximized and shrinks back") {
@@ -245,10 +249,10 @@ TEST_CASE("replay: a volume opens in the background while the editor goes on, an
   const Document body = small_body();
   write_volume(*body.volume, folder / "ball.nrrd", *body.tissues);
   SmallEditor test({1024, 640}, {}, false);
-  const std::vector<editor::ViewPlace> before = test.editor->layout.view_places;
-  test.editor->to_open = {folder / "ball.nrrd"};
+  const std::vector<editor::ViewPlace> before = test.editor->screen->layout.view_places;
+  test.editor->project->to_open = {folder / "ball.nrrd"};
   test.player.step();
-  CHECK(test.editor->layout.view_places[0].rect == before[0].rect);  // the layout does not change for a job
+  CHECK(test.editor->screen->layout.view_places[0].rect == before[0].rect);  // the layout does not change for a job
   test.play("wait-job\n expect volume yes\n expect name ball");
   CHECK(*test.editor->document().volume->voxels.data() == 0);
   CHECK(test.editor->document().volume->voxels == body.volume->voxels);
@@ -262,7 +266,7 @@ TEST_CASE("replay: named widgets lie in their regions and none covers another") 
     SmallEditor test(size, {.scale = scale});
     for (const char* arrangement : {"click view.one", "click view.four", "click view.split\n click \"Help/Console\""}) {
       test.play(arrangement);
-      const editor::Layout& layout = test.editor->layout;
+      const editor::Layout& layout = test.editor->screen->layout;
       const auto region_of = [&](editor::Region region) {
         switch (region) {
           case editor::Region::TopBar: return layout.top_bar;
@@ -274,7 +278,7 @@ TEST_CASE("replay: named widgets lie in their regions and none covers another") 
           default: return layout.window;
         }
       };
-      const auto& widgets = test.editor->widgets.widgets();
+      const auto& widgets = test.editor->ui->widgets.widgets();
       CHECK(widgets.size() > 15);
       for (std::size_t i = 0; i < widgets.size(); ++i) {
         INFO(size.x, "x", size.y, ": ", widgets[i].name);
@@ -313,19 +317,19 @@ TEST_CASE("replay: every operator that can run without more words does, and leav
     run(*test.editor, op.id);
     test.play("key Escape");
     CHECK(test.fact("error") == "none");
-    test.editor->drag.reset();
+    test.editor->interaction->drag.reset();
   }
 }
 
 TEST_CASE("replay: while a number is typed its field shows digits alone, and no tip covers what is below") {
   SmallEditor test({1280, 720});
-  test.editor->history.reset(bending_limb(), "Open limb");
+  test.editor->history->reset(bending_limb(), "Open limb");
   test.play("key Ctrl+3\nwait-idle\nmove view.four\nwait 2");
-  CHECK(test.editor->tip.widget == "Four views");  // no field has the keyboard, so tips are shown
+  CHECK(test.editor->ui->tip.widget == "Four views");  // no field has the keyboard, so tips are shown
   CHECK(test.fact("text:Four views") == "shown");
   test.play("click \"Motion/Onion skin and paths/Onion frames...\"\nwait-idle\nmove \"Ghosts per side/value\"\nwait 2");
-  CHECK(test.editor->tip.widget.empty());  // this dialog's first field has the keyboard, so none is shown
-  const editor::Rect field = test.editor->widgets.find("Ghosts per side/value")->rect;
+  CHECK(test.editor->ui->tip.widget.empty());  // this dialog's first field has the keyboard, so none is shown
+  const editor::Rect field = test.editor->ui->widgets.find("Ghosts per side/value")->rect;
   const auto beside = [&] {
     const render::Image picture = test.host->picture();
     std::vector<std::uint8_t> pixels;
@@ -338,7 +342,7 @@ TEST_CASE("replay: while a number is typed its field shows digits alone, and no 
   };
   const auto before = beside();
   test.play("double-click \"Ghosts per side/value\"\ntype 7\nwait 2");
-  CHECK(test.editor->tip.widget.empty());
+  CHECK(test.editor->ui->tip.widget.empty());
   CHECK(beside() == before);
   test.play("key Return\nwait-idle");
   CHECK(test.editor->timeline->onion.count == 7);
@@ -346,7 +350,7 @@ TEST_CASE("replay: while a number is typed its field shows digits alone, and no 
 
 TEST_CASE("replay: a script tells what its frames cost, and what a clip that plays looks like") {
   SmallEditor test;
-  test.editor->history.reset(bending_limb(), "Open limb");
+  test.editor->history->reset(bending_limb(), "Open limb");
   const TemporaryFolder folder;
   const auto file = [&](const char* name) { return (folder / name).string(); };
   test.play("key Ctrl+3\nwait-idle\nframe-log " + file("before") +
@@ -403,10 +407,10 @@ TEST_CASE("replay: a face of the clip box follows its handle, shown while dragge
   test.play("key Num1\n wait 0.3\n key Alt+B\n wait-idle");
   const auto box = [&] { return test.editor->document().visibility->clip_box; };
   const ClipBox before = box();
-  REQUIRE(test.editor->widgets.find("Clip face z+"));
-  const int steps = static_cast<int>(test.editor->history.steps().size());
+  REQUIRE(test.editor->ui->widgets.find("Clip face z+"));
+  const int steps = static_cast<int>(test.editor->history->steps().size());
   test.play("press \"Clip face z+\"");
-  const glm::vec2 at = test.editor->input.pointer;
+  const glm::vec2 at = test.editor->ui->input.pointer;
   for (int i = 1; i <= 5; ++i) {
     test.host->events.push(editor::PointerMoved{at + glm::vec2(0, 12.0f * i)});
     test.player.settle();
@@ -417,15 +421,15 @@ TEST_CASE("replay: a face of the clip box follows its handle, shown while dragge
   test.play("release\n expect edit \"Move clip box\"");
   CHECK(box().high.z < before.high.z);
   CHECK(box().low == before.low);
-  CHECK(test.editor->history.steps().size() == steps + 1u);
+  CHECK(test.editor->history->steps().size() == steps + 1u);
   // The face follows the pointer to within a voxel.
   glm::dvec2 pixel;
   const AffineTransform world = world_from_voxel(test.editor->document().volume->grid);
   glm::dvec3 face = (box().low + box().high) * 0.5;
   face.z = box().high.z;
-  REQUIRE(render::project(test.editor->views->body.camera, world * face, glm::ivec2(test.editor->layout.views.size()),
-                          pixel));
-  CHECK(std::abs(pixel.y + test.editor->layout.views.low.y - (at.y + 60)) < 10);
+  REQUIRE(render::project(test.editor->views->body.camera, world * face,
+                          glm::ivec2(test.editor->screen->layout.views.size()), pixel));
+  CHECK(std::abs(pixel.y + test.editor->screen->layout.views.low.y - (at.y + 60)) < 10);
   test.play("key Ctrl+Z");
   CHECK(box() == before);
   test.play("press \"Clip face z+\"");
@@ -462,7 +466,7 @@ TEST_CASE("replay: Alt and a click choose, and list what lies behind") {
 
 TEST_CASE("replay: labels of the header's switches go before a choice goes behind three dots") {
   SmallEditor test({1280, 720});
-  test.editor->history.reset(bending_limb(), "Open limb");
+  test.editor->history->reset(bending_limb(), "Open limb");
   test.play("key Ctrl+1\nwait-idle\nexpect widget:header/Snap\nexpect widget:header/Axes\nexpect text:Templates");
 }
 
@@ -473,9 +477,9 @@ TEST_CASE("replay: what does not fit the header goes behind three dots") {
       "click \"more/Clip plane\"\n expect clip-plane yes");
   // The menu leaves the buttons beside it free.
   test.play("click header/More\n wait 1");
-  const editor::Rect entry = test.editor->widgets.find("more/Clip plane")->rect;
-  CHECK(entry.low.y > test.editor->layout.tool_header.high.y);
-  CHECK(entry.high.x <= test.editor->layout.window.high.x);
+  const editor::Rect entry = test.editor->ui->widgets.find("more/Clip plane")->rect;
+  CHECK(entry.low.y > test.editor->screen->layout.tool_header.high.y);
+  CHECK(entry.high.x <= test.editor->screen->layout.window.high.x);
   CHECK(entry.low.x >= 0);
 }
 
@@ -485,7 +489,7 @@ TEST_CASE("replay: the cross-hair starts inside the body, and slices show all of
   CHECK(volume.at(glm::ivec3(glm::round(voxel_from_world(volume.grid) * test.editor->views->cross_hair))) != 0);
   test.play("click view.four");
   for (const editor::ViewId id : {editor::ViewId::Axial, editor::ViewId::Coronal, editor::ViewId::Sagittal}) {
-    const glm::vec2 size = test.editor->layout.place_of(id)->size();
+    const glm::vec2 size = test.editor->screen->layout.place_of(id)->size();
     for (const double side : {-40.0, 40.0}) {
       const glm::vec2 pixel =
           editor::pixel_of(editor::slice_of(*test.editor->views, id).camera, glm::dvec3(side), size);
@@ -533,6 +537,6 @@ TEST_CASE("replay: tissues without a name are listed by their label") {
   for (Label& label : volume.voxels) label += label ? 1000 : 0;  // labels that no built-in table names
   write_volume(volume, folder / "ball.mha");
   SmallEditor test({1600, 900}, {}, false);
-  test.editor->to_open = {folder / "ball.mha"};
+  test.editor->project->to_open = {folder / "ball.mha"};
   test.play("wait-job\n wait-idle\n expect volume yes\n expect \"text:Label 1017\"");
 }

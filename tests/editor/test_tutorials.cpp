@@ -21,7 +21,7 @@ TEST_CASE("tutorials: an arm is rigged from nothing, weighted and bent in twelve
                       [](const ScriptLine& line) { return !line.words[0].starts_with("wait"); }) == 12);
 
   Sitting sitting(home.folder.path());
-  sitting.editor().worker_program = LIMBER_PROGRAM;
+  sitting.editor().background->worker_program = LIMBER_PROGRAM;
   sitting.test.player.play(script, home.folder.path());
 
   const Document& document = sitting.editor().document();
@@ -41,5 +41,5 @@ TEST_CASE("tutorials: an arm is rigged from nothing, weighted and bent in twelve
         doctest::Approx(150));
   CHECK(glm::degrees(2 * std::acos(std::abs(document.pose->rotation[*rig.find("Forearm")].w))) == doctest::Approx(60));
   CHECK(limit_excess(forearm, document.pose->rotation[*rig.find("Forearm")]) < 1e-9);
-  CHECK(sitting.editor().history.steps().size() < 9);  // number of edits, each of which can be undone
+  CHECK(sitting.editor().history->steps().size() < 9);  // number of edits, each of which can be undone
 }

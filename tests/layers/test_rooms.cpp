@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -149,4 +150,18 @@ TEST_CASE("rooms: a header's change rebuilds few sources of the editor") {
   for (const auto& [header, count] : rebuilt) counts.push_back(count);
   std::nth_element(counts.begin(), counts.begin() + std::ssize(counts) / 2, counts.end());
   CHECK(counts[counts.size() / 2] < 10);
+  // What nearly all include: the kit of widgets, the context and what most of its users need.
+  CHECK(std::count_if(counts.begin(), counts.end(), [](int count) { return count >= 40; }) <= 36);
+}
+
+TEST_CASE("rooms: few files of the editor name the struct that owns its state") {
+  const std::regex word(R"(\bEditor\b)");
+  int naming = 0;
+  for (const fs::path& file : sources({"editor"})) {
+    const std::vector<std::string> lines = lines_of(file);
+    naming +=
+        std::any_of(lines.begin(), lines.end(), [&](const std::string& line) { return std::regex_search(line, word); });
+  }
+  CHECK(naming > 0);
+  CHECK(naming < 40);
 }

@@ -4,9 +4,12 @@
 #include <fstream>
 
 #include "core/prepare/prepare.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/resampling_settings.h"
 #include "editor/resample/fem_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/operator_proofs.h"
 #include "tests/support/kuhn_mesh.h"
 
@@ -25,7 +28,7 @@ Effect becomes(const char* fact, const char* value = "shown") {
 Effect edits(const char* label, const char* fact, const char* value) {
   return [=](Stage& s, const Seen& b) {
     return s.is("edit", label) && s.is(fact, value) &&
-           static_cast<int>(s.editor().history.position()) == b.position + 1;
+           static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
 // The effect is the volume that `expected` makes of the old one.
@@ -56,7 +59,7 @@ void solved_limb(Stage& stage) {
   result->from_volume = next.volume;
   result->solved = solved;
   next.results = {result};
-  stage.editor().history.commit("Result", next);
+  stage.editor().history->commit("Result", next);
   stage.play("key Ctrl+4\n wait-idle");
   show_result(stage.editor(), "Swollen");
   stage.play("wait-idle");
@@ -79,12 +82,12 @@ std::vector<Proof> proofs_of_tissues() {
       {"tool.cross_hair", "click tool.cross_hair", becomes("tool", "cross-hair")},
       {"tool.select", "click tool.select", becomes("tool", "select")},
       {"select.pick", "click \"3D view/view\"",
-       [](Stage& s, const Seen&) { return s.editor().selection.bone && s.is("tissue", "none"); }, Shows::Nothing,
+       [](Stage& s, const Seen&) { return s.editor().selection->bone && s.is("tissue", "none"); }, Shows::Nothing,
        "click Muscle/17/name\n wait-idle"},
       {"select.none", "click \"Edit/Select/Select nothing\"", becomes("selected", "0"), Shows::Nothing, chosen},
       {"select.extend", "click \"3D view/view\" Shift",
        [](Stage& s, const Seen&) {
-         return s.editor().selection.tissues == std::set<Label>{17, 143};
+         return s.editor().selection->tissues == std::set<Label>{17, 143};
        },
        Shows::Nothing, "click Muscle/17/name\n wait-idle",
        [](Stage& s) { s.editor().views->bones = false; }},  // otherwise a bone under the pointer would be selected
@@ -107,12 +110,12 @@ std::vector<Proof> proofs_of_tissues() {
        Shows::InBody, "move \"3D view/view\"\n key Alt+H\n click \"Cortical bone/111/name\""},
       {"edit.undo", "key Ctrl+Z",
        [](Stage& s, const Seen& b) {
-         return s.is("hidden", "0") && static_cast<int>(s.editor().history.position()) == b.position - 1;
+         return s.is("hidden", "0") && static_cast<int>(s.editor().history->position()) == b.position - 1;
        },
        Shows::InBody},
       {"edit.redo", "key Ctrl+Shift+Z",
        [](Stage& s, const Seen& b) {
-         return s.is("hidden", "3") && static_cast<int>(s.editor().history.position()) == b.position + 1;
+         return s.is("hidden", "3") && static_cast<int>(s.editor().history->position()) == b.position + 1;
        },
        Shows::InBody},
       {"edit.rename", "click Edit/Rename\n key Ctrl+A\n type \"Thigh\"\n key Return",
@@ -182,15 +185,15 @@ std::vector<Proof> proofs_of_work() {
        },
        Shows::InBody, "key Ctrl+3\n move \"3D view/view\"\n key Alt+Z"},
       {"resample.lbs", "click Edit/Resample/LBS",
-       [](Stage& s, const Seen&) { return s.editor().resampling.method == "lbs"; }},
+       [](Stage& s, const Seen&) { return s.editor().resampling->method == "lbs"; }},
       {"resample.run", "key Ctrl+Return\n wait-job",
        [](Stage& s, const Seen&) { return results(s) == 1 && s.document().results[0]->name == "Fore 30\u00b0, LBS"; }},
       {"resample.mix", "click Edit/Resample/Mixed",
-       [](Stage& s, const Seen&) { return s.editor().resampling.method == "mix"; }},
+       [](Stage& s, const Seen&) { return s.editor().resampling->method == "mix"; }},
       {"resample.dqs", "click Edit/Resample/DQ",
-       [](Stage& s, const Seen&) { return s.editor().resampling.method == "dqs"; }},
+       [](Stage& s, const Seen&) { return s.editor().resampling->method == "dqs"; }},
       {"resample.fem", "click Edit/Resample/FEM",
-       [](Stage& s, const Seen&) { return s.editor().resampling.method == "fem"; }},
+       [](Stage& s, const Seen&) { return s.editor().resampling->method == "fem"; }},
       // The worker is slow, so that there is a solve to watch.
       {"result.watch", "click \"Edit/Resample/Watch the solve\"",
        [](Stage& s, const Seen&) { return s.editor().fem->watched == 0 && !s.editor().fem->solves.empty(); },
@@ -198,7 +201,7 @@ std::vector<Proof> proofs_of_work() {
        [](Stage& s) {
          std::ofstream(s.home / "worker") << "#!/bin/sh\nsleep 100\n";
          std::filesystem::permissions(s.home / "worker", std::filesystem::perms::owner_all);
-         s.editor().worker_program = s.home / "worker";
+         s.editor().background->worker_program = s.home / "worker";
        }},
       {"result.show_last", "key F3\n type \"show result\"\n key Return",
        [](Stage& s, const Seen&) {
@@ -233,14 +236,14 @@ std::vector<Proof> proofs_of_work() {
       {"fem.tets", "click \"View/Finite elements/Tetrahedra\"\n wait-idle",
        [](Stage& s, const Seen&) { return s.editor().views->scene.mesh.has_value(); }, Shows::InSlice},
       {"fem.display_pie", "click \"View/Finite elements/Volume ratio\"\n wait-idle\n click \"3D view/legend\"",
-       [](Stage& s, const Seen&) { return s.editor().shown_popup == "Finite elements"; }},
+       [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Finite elements"; }},
   };
 }
 
 TEST_CASE("operators: tissues are chosen, hidden and cut, and edits undone") {
   Stage stage;
   // Folds the panels above, so that the tissues are in view.
-  for (const char* above : {"Steps", "Bone"}) stage.editor().open_sections[above] = false;
+  for (const char* above : {"Steps", "Bone"}) stage.editor().ui->open_sections[above] = false;
   prove(stage, proofs_of_tissues());
 }
 

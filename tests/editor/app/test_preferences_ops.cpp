@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/keep_preferences.h"
+#include "editor/context/operator.h"
 #include "editor/context/preferences.h"
+#include "editor/context/preferences_state.h"
 
 #include <fstream>
 
@@ -110,7 +112,7 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
   const Path file = folder / "limber" / "preferences.json";
   {
     SmallEditor test({1280, 720});
-    test.editor->preferences_path = file;
+    test.editor->preferences_state->path = file;
     test.play(R"(
       key Ctrl+,
       expect dialog yes
@@ -136,7 +138,7 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
       expect dialog no
     )");
     CHECK_FALSE(test.editor->views->scale_bar);
-    CHECK(test.editor->history.limit() == std::int64_t{64} << 20);
+    CHECK(test.editor->history->limit() == std::int64_t{64} << 20);
   }
   std::string problem;
   const Preferences kept = read_preferences(file, problem);
@@ -171,7 +173,7 @@ TEST_CASE("preferences: Escape gives up waiting for a key, Delete takes it away,
     click dialog/Blender
     expect "text:no key" absent
   )");
-  CHECK(test.editor->preferences.keys.empty());
+  CHECK(test.editor->preferences->keys.empty());
 }
 
 TEST_CASE("preferences: Maya's keys have no clash, name only operators that exist, and act at once") {
@@ -181,8 +183,8 @@ TEST_CASE("preferences: Maya's keys have no clash, name only operators that exis
   for (const auto& [context, bindings] : maya.contexts)
     for (const Binding& binding : bindings) {
       INFO(context, ": ", binding.operator_id);
-      CHECK(
-          (find_operator(*test.editor, binding.operator_id) || keymap_preset("blender").chord_of(binding.operator_id)));
+      CHECK((find_operator(test.editor->operators, binding.operator_id) ||
+             keymap_preset("blender").chord_of(binding.operator_id)));
     }
   test.play(R"(
     click Edit/Preferences...
@@ -196,33 +198,33 @@ TEST_CASE("preferences: Maya's keys have no clash, name only operators that exis
     key Z
     expect hidden 0
   )");
-  CHECK(test.editor->preferences.keymap == "maya");
+  CHECK(test.editor->preferences->keymap == "maya");
 }
 
 TEST_CASE("preferences: keys are exported and imported as a file, a file that is no key map changes nothing") {
   const TemporaryFolder folder;
   SmallEditor test({1280, 720});
-  test.editor->preferences.keys[{"select", "select.none"}] = {"A"};
-  test.editor->preferences.keys[{"global", "edit.undo"}] = {"Ctrl+U"};
-  const KeyChanges mine = test.editor->preferences.keys;
+  test.editor->preferences->keys[{"select", "select.none"}] = {"A"};
+  test.editor->preferences->keys[{"global", "edit.undo"}] = {"Ctrl+U"};
+  const KeyChanges mine = test.editor->preferences->keys;
   keep_preferences(*test.editor);
   const std::string file = "type \"" + (folder / "keys.json").string() + "\"\nkey Return\n";
   test.play("click \"Edit/Change keys...\"\nclick dialog/Export...\n" + file +
             "expect error none\nclick \"Restore all\"");
-  CHECK(test.editor->preferences.keys.empty());
+  CHECK(test.editor->preferences->keys.empty());
   test.play("click dialog/Import...\nkey Escape\nexpect \"text:No key runs two commands\"\nclick dialog/Import...\n" +
             file + "expect error none\nexpect \"text:1 clash\"");
-  CHECK(test.editor->preferences.keys == mine);
+  CHECK(test.editor->preferences->keys == mine);
   std::ofstream(folder / "keys.json") << "{}";
   test.play("click dialog/Import...\n" + file + "expect error \"This is not a keymap\"\nkey Return\nkey Escape");
-  CHECK(test.editor->preferences.keys == mine);
+  CHECK(test.editor->preferences->keys == mine);
 }
 
 TEST_CASE("preferences: a folder that cannot be written is one warning, not an error") {
   SmallEditor test;
-  test.editor->preferences_path = "/proc/limber/preferences.json";
+  test.editor->preferences_state->path = "/proc/limber/preferences.json";
   keep_preferences(*test.editor);
   keep_preferences(*test.editor);
-  CHECK(test.editor->messages.toasts.size() == 1);
-  CHECK(test.editor->messages.errors.empty());
+  CHECK(test.editor->messages->toasts.size() == 1);
+  CHECK(test.editor->messages->errors.empty());
 }

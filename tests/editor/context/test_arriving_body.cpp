@@ -25,7 +25,7 @@ TEST_CASE("arriving body: the frame that shows an opened body finds it uploaded"
   Sitting sitting(home.folder.path());
   bool was_there = false;
   editor::open_volume(sitting.editor(), home / "scans/ball.nrrd",
-                      [&](editor::Editor& e) { was_there = e.views->renderer.resources().has(e.document().volume); });
+                      [&](editor::Context& c) { was_there = c.views->renderer.resources().has(c.document().volume); });
   sitting.play("wait-job\n wait-idle");
   REQUIRE(sitting.editor().document().volume);
   CHECK(was_there);
@@ -69,7 +69,7 @@ TEST_CASE("arriving body: over a posed body with its weights shown, a volume of 
   // The Skin workspace shows weights, the Pose workspace shows the body posed.
   for (const char* workspace : {"key Ctrl+2", "key Ctrl+3"}) {
     CAPTURE(workspace);
-    stage.editor().history.reset(posed, "Posed limb");
+    stage.editor().history->reset(posed, "Posed limb");
     stage.play(std::string(workspace) + "\n wait-idle");
     editor::open_volume(stage.editor(), other);
     stage.play("wait-job\n wait-idle");

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/dialogs.h"
 #include "editor/dialogs/block_drawing.h"
+#include "editor/ui/ui.h"
 
 #include "tests/editor/small_editor.h"
 
 namespace limber::editor {
 // Declared again here, as dialog.h includes ImGui and tests are built without its headers.
-Rect begin_dialog(Editor& editor, const std::string& title, float width, float height,
+Rect begin_dialog(Context& editor, const std::string& title, float width, float height,
                   const std::function<void()>& close);
-void end_dialog(Editor& editor);
+void end_dialog(Context& editor);
 }  // namespace limber::editor
 
 using namespace limber;
@@ -22,10 +24,10 @@ constexpr float kColumn = 200;  // width of the column, pixels
 class OneBlock final : public Dialog {
  public:
   explicit OneBlock(Block block) : block_(std::move(block)) {}
-  void draw(Editor& editor) override {
+  void draw(Context& editor) override {
     const Rect rect = begin_dialog(editor, "One block", 600, 400, {});
     BlockPlace place{rect.low.x, rect.low.x + kColumn, "block"};
-    height_ = draw_block(editor, block_, place, rect.low.y) - rect.low.y;
+    height_ = draw_block(editor.ui, block_, place, rect.low.y) - rect.low.y;
     left_ = rect.low.x;
     end_dialog(editor);
   }
@@ -45,12 +47,12 @@ std::vector<Rect> words_of(const std::string& text, float& left, float& height) 
   auto dialog = std::make_unique<OneBlock>(
       parse_markdown("[" + text + "](page.md)\n", [](const std::string& id) { return id; }).at(0));
   const OneBlock& shown = *dialog;
-  test.editor->open_dialog(std::move(dialog));
+  test.editor->dialogs->open(std::move(dialog));
   test.player.settle();
   left = shown.left();
   height = shown.height();
   std::vector<Rect> words;
-  while (const Widget* word = test.editor->widgets.find("block/" + std::to_string(words.size())))
+  while (const Widget* word = test.editor->ui->widgets.find("block/" + std::to_string(words.size())))
     words.push_back(word->rect);
   return words;
 }

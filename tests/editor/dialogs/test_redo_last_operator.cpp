@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator_registry.h"
 #include "editor/dialogs/redo_last_operator.h"
 
 #include "core/base/error.h"
@@ -12,12 +13,12 @@ using limber::test::LimbEditor;
 namespace {
 
 struct AdjustingEditor : LimbEditor {
-  AdjustingEditor() : LimbEditor({820, 540}) { editor->preferences.reduce_motion = true; }
+  AdjustingEditor() : LimbEditor({820, 540}) { editor->preferences->reduce_motion = true; }
 
   void choose(const std::string& bone) {
-    editor->selection = {};
-    editor->selection.bone = editor->document().armature->find(bone).value();
-    editor->selection.bones = {*editor->selection.bone};
+    *editor->selection = {};
+    editor->selection->bone = editor->document().armature->find(bone).value();
+    editor->selection->bones = {*editor->selection->bone};
     editor->transform_settings->part = TransformSettings::Part::Whole;
   }
   // Changes a field of the last operation to a number, or to the choice with this index.
@@ -29,7 +30,7 @@ struct AdjustingEditor : LimbEditor {
         (field.kind == FormField::Kind::Choice ? field.chosen = static_cast<int>(value) : field.value = value);
     redo_last_operator(*editor, fields);
   }
-  std::int64_t position() const { return editor->history.position(); }
+  std::int64_t position() const { return editor->history->position(); }
   const Armature& rig() const { return *editor->document().armature; }
 };
 
@@ -70,7 +71,7 @@ TEST_CASE("adjust: what was done with a number is as if it had been done with th
       std::set<int> chosen;
     };
     const auto outcome = [&](bool adjusted) {
-      test.editor->history.reset(limber::test::small_limb(), "Open limb");
+      test.editor->history->reset(limber::test::small_limb(), "Open limb");
       test.choose("Fore");
       test.play(deed.ready);
       const auto before = test.position();
@@ -78,9 +79,9 @@ TEST_CASE("adjust: what was done with a number is as if it had been done with th
       REQUIRE(test.position() == before + 1);
       if (adjusted) test.change(deed.label, deed.value);
       CHECK(test.position() == before + 1);
-      CHECK(std::ssize(test.editor->history.steps()) == before + 2);
+      CHECK(std::ssize(test.editor->history->steps()) == before + 2);
       const Outcome found{test.fact("edit"), test.rig(), pose_of(test.editor->document()),
-                          test.editor->selection.bones};
+                          test.editor->selection->bones};
       test.play("key Ctrl+Z");
       CHECK(test.position() == before);
       CHECK(why_not_redo(*test.editor) != "");
@@ -141,19 +142,19 @@ TEST_CASE("adjust: what has no numbers says so, and what fails leaves all as it 
   CHECK(why_not_redo(*test.editor) == "Add bone has nothing to adjust");
 
   act_and_allow_redo(*test.editor, {number_of("Bones", "", 1, 0, 9, "%.0f")},
-                     [](Editor& e, const std::vector<FormField>& fields) {
+                     [](Context& c, const std::vector<FormField>& fields) {
                        if (fields[0].value > 5) throw Error("too many", "bones", "take fewer");
-                       Document next = e.document();
+                       Document next = c.document();
                        next.frame = static_cast<int>(fields[0].value);
-                       commit(e, "Step", std::move(next));
+                       commit(c, "Step", std::move(next));
                      });
   test.change("Bones", 4);
   CHECK(test.editor->document().frame == 4);
   test.change("Bones", 7);
   CHECK(test.editor->document().frame == 4);
   CHECK(test.editor->last_operation->fields[0].value == 4);
-  CHECK(!test.editor->messages.errors.empty());
-  test.editor->messages.errors.clear();
+  CHECK(!test.editor->messages->errors.empty());
+  test.editor->messages->errors.clear();
   test.change("Bones", 2);
   CHECK(test.editor->document().frame == 2);
   CHECK(test.position() == 2);
@@ -170,7 +171,7 @@ TEST_CASE("adjust: the box in the view unfolds and its numbers act, and forms ha
   CHECK(test.position() == 1);
   test.play("move \"3D view/view\"\nkey F9\nwait-idle\nkey Escape");
   // Opening the form to adjust the last operator does not count as an operator.
-  CHECK(test.editor->last_operator == "rig.move");
+  CHECK(test.editor->operators->last == "rig.move");
   test.play("key Ctrl+F2\nclick Bones/All\nclick Suffix/text\ntype \".L\"\nwait-idle\nkey Return\nwait-idle");
   REQUIRE(test.rig().bones[1].name == "Fore.L");
   test.play(

@@ -137,7 +137,7 @@ TEST_CASE("export figure: the legend of a large figure is that of a picture of a
 TEST_CASE("export picture: cancelled before its job began, it ends, and while it waits the editor is at rest") {
   SmallEditor test({320, 240});
   Editor& editor = *test.editor;
-  editor.jobs.set_at_once(0);
+  editor.jobs->set_at_once(0);
   bool taken = false;
   start_picture_task(editor, {.label = "Export three pictures",
                               .scene = editor.views->scene,
@@ -148,10 +148,10 @@ TEST_CASE("export picture: cancelled before its job began, it ends, and while it
                               .finish = [](Progress&) -> Finish { return {}; }});
   for (int i = 0; i < 100 && editor.rest() == 0; ++i) test.player.step();
   CHECK(editor.rest() > 0);
-  CHECK(editor.each_frame.size() == 1);
-  editor.jobs.cancel_all();
+  CHECK(editor.background->each_frame.size() == 1);
+  editor.jobs->cancel_all();
   for (int i = 0; i < 10; ++i) test.player.step();
-  CHECK(editor.each_frame.empty());
+  CHECK(editor.background->each_frame.empty());
   CHECK(editor.at_rest());
   CHECK_FALSE(taken);
 }
@@ -168,10 +168,10 @@ TEST_CASE("export picture: what OpenGL cannot draw fails the job with its messag
                               .finish = [](Progress&) -> Finish { return {}; }});
   test.play("wait-job\n wait-idle");
   CHECK_FALSE(taken);
-  CHECK(editor.each_frame.empty());
+  CHECK(editor.background->each_frame.empty());
   CHECK(test.fact("error") == "The graphics driver reports an invalid value");
   const TemporaryFolder folder;
-  editor.messages.errors.clear();
+  editor.messages->errors.clear();
   export_picture(editor, folder / "picture.png");
   test.play("wait-job");
   CHECK(std::filesystem::exists(folder / "picture.png"));

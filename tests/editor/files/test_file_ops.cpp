@@ -7,7 +7,10 @@
 #include "core/project/session.h"
 #include "core/rig_io/gltf_rig.h"
 #include "core/rig_io/rig_io.h"
+#include "editor/context/project_life.h"
+#include "editor/context/start_screen_state.h"
 #include "editor/files/import.h"
+#include "editor/input/keymap.h"
 #include "render/image_io.h"
 #include "tests/editor/operator_proofs.h"
 #include "tests/editor/small_clip.h"
@@ -120,7 +123,7 @@ void make_ten_recent(Stage& s) {
     write_volume(*small_body().volume, path, *small_body().tissues);
     recents.push_back({path, 1000 - k});
   }
-  s.editor().recent_files.recents = recents;
+  s.editor().recent_files->recents = recents;
 }
 
 Proof sample(const char* id, const std::string& name, Effect effect) {
@@ -245,10 +248,11 @@ std::vector<Proof> proofs_of_files() {
     return s.is("name", "Body, opened") && s.fact("hidden") != "0";
   }));
   proofs.push_back({"file.open_recent", "key Ctrl+Shift+O",
-                    [](Stage& s, const Seen&) { return s.editor().start_screen && s.is("text:Samples"); }});
+                    [](Stage& s, const Seen&) { return s.editor().start_screen->shown && s.is("text:Samples"); }});
   proofs.push_back({"file.recover", "click File/Recover...\n click dialog/Recover\n wait-job",
                     [](Stage& s, const Seen&) {
-                      return s.editor().life.recoverable.empty() && s.document().shown_clip() && s.is("unsaved", "yes");
+                      return s.editor().life->recoverable.empty() && s.document().shown_clip() &&
+                             s.is("unsaved", "yes");
                     },
                     Shows::Nothing, "", leave_edits});
   proofs.push_back({"file.quit", "key Ctrl+Q\n click \"Don't save\"", becomes("quit", "yes")});
@@ -270,7 +274,9 @@ std::vector<Proof> proofs_of_pages() {
       {"edit.export_keymap", "key F3\n type \"export keymap\"\n key Return\n type mine\n key Return\n wait-job",
        [](Stage& s, const Seen&) { return std::filesystem::exists(s.home / "mine.json"); }},
       {"edit.import_keymap", "key F3\n type \"import keymap\"\n key Return\n type other.json\n key Return\n wait-job",
-       [](Stage& s, const Seen&) { return s.editor().keymap.find(*chord_from_text("Ctrl+F9"), {"global"}) != nullptr; },
+       [](Stage& s, const Seen&) {
+         return s.editor().keymap->find(*chord_from_text("Ctrl+F9"), {"global"}) != nullptr;
+       },
        Shows::Nothing, "",
        [](Stage& s) {
          std::string keys = read_file(s.home / "mine.json");
@@ -280,7 +286,7 @@ std::vector<Proof> proofs_of_pages() {
       {"help.keys", "click Help/Keys",
        [](Stage& s, const Seen&) { return s.is("dialog", "yes") && s.is("text:Search commands"); }},
       {"help.last_error", "click \"Help/Error details\"", becomes("error", "It broke"), Shows::Nothing, "",
-       [](Stage& s) { s.editor().messages.toast_failure("it broke: here: mend it", "A job"); }},
+       [](Stage& s) { s.editor().messages->toast_failure("it broke: here: mend it", "A job"); }},
       {"help.system_facts", "click \"Help/Copy system facts\"",
        [](Stage& s, const Seen&) { return s.sitting.test.host->clipboard().find("OpenGL") != std::string::npos; }},
       {"help.about", "click \"Help/About and licences\"", becomes("text:GNU Affero")},

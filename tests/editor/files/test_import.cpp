@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/files/import.h"
 
 #include <fstream>
@@ -60,13 +62,13 @@ TEST_CASE("opening: a dropped motion whose z axis points up is turned upright an
   sitting.play("drop " + (files / "z.bvh").string() + "\n wait-job\n wait-idle");
   REQUIRE(sitting.editor().document().clips.size() == 1);
   CHECK(stands());
-  CHECK(sitting.editor().messages.log.back().text.find("turned upright") != std::string::npos);
+  CHECK(sitting.editor().messages->log.back().text.find("turned upright") != std::string::npos);
 
   sitting.play("click File/Import/Motion...\n wait-idle\n type " + (files / "z.bvh").string() +
                "\n key Return\n wait-job\n wait-idle\n expect dialog yes\n key Return\n wait-idle");
   REQUIRE(sitting.editor().document().clips.size() == 2);
   CHECK(stands());
-  CHECK(sitting.editor().messages.log.back().text.starts_with("z.bvh is turned upright"));
+  CHECK(sitting.editor().messages->log.back().text.starts_with("z.bvh is turned upright"));
 }
 
 TEST_CASE("opening: a volume and what belongs to it come in together, dropped in any order") {
@@ -95,7 +97,7 @@ TEST_CASE("opening: what does not fit the open volume is refused in one message 
     const Document before = sitting.editor().document();
     import_file(sitting.editor(), kind, files / file);
     sitting.play("wait-job");
-    CHECK(sitting.editor().messages.errors.size() == 1);
+    CHECK(sitting.editor().messages->errors.size() == 1);
     CHECK(sitting.editor().document() == before);
     sitting.play("key Escape");
   }
@@ -134,7 +136,7 @@ TEST_CASE("opening: a damaged file is one error message, and the open project st
   const std::string hash = sitting.test.fact("document");
   editor::open_files(sitting.editor(), {files / "short.nrrd"});
   sitting.play("wait-job\n expect name ball\n expect position 0\n expect unsaved no");
-  CHECK(sitting.editor().messages.errors.size() == 1);
+  CHECK(sitting.editor().messages->errors.size() == 1);
   CHECK(sitting.test.fact("document") == hash);
 }
 
@@ -187,7 +189,7 @@ TEST_CASE("export: what the project was read from is not written over, by whatev
                                    {"tissues", "tissues.json"},
                                    {"pose", "rig.json"}}) {
     INFO(std::string(name));
-    sitting.editor().messages.toasts.clear();
+    sitting.editor().messages->toasts.clear();
     editor::run(sitting.editor(), std::string("file.export_") + kind);
     sitting.play(
         "expect dialog yes\n type " + std::string(name) +
@@ -202,9 +204,9 @@ TEST_CASE("export: what the project was read from is not written over, by whatev
 TEST_CASE("export: a project that is opened in another's place was read from other files") {
   const TubeFiles files;
   Sitting sitting(files.folder.path(), {files / "tube.nrrd"});
-  CHECK_FALSE(sitting.editor().inputs.empty());
+  CHECK_FALSE(sitting.editor().project->inputs.empty());
   sitting.open_ball();
-  CHECK(sitting.editor().inputs.empty());
+  CHECK(sitting.editor().project->inputs.empty());
 }
 
 TEST_CASE("export: the view is written as a picture, and turned all around without holding up the editor") {
@@ -212,7 +214,7 @@ TEST_CASE("export: the view is written as a picture, and turned all around witho
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
   sitting.play("key F12\n type view\n key Return\n wait-job\n expect error none");
   const render::Image picture = render::read_png(home / "view.png");
-  CHECK(picture.size == glm::ivec2(sitting.editor().layout.place_of(editor::ViewId::Body)->size()));
+  CHECK(picture.size == glm::ivec2(sitting.editor().screen->layout.place_of(editor::ViewId::Body)->size()));
   sitting.play("key Ctrl+F12\n type turn\n key Return\n wait-job\n expect error none");
   for (const char* name : {"turn-0000.png", "turn-0035.png"}) CHECK(std::filesystem::exists(home / name));
   CHECK(render::read_png(home / "turn-0000.png").rgba == picture.rgba);

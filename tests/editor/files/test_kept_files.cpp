@@ -82,7 +82,7 @@ TEST_CASE("kept: preferences, recent files and keys of version 0.1.0 act as they
 
   SmallEditor test({1280, 720});
   import_keymap(*test.editor, kept("keys.json"));
-  CHECK(test.editor->preferences.keys == KeyChanges{{{"global", "edit.undo"}, {"Ctrl+U"}}});
+  CHECK(test.editor->preferences->keys == KeyChanges{{{"global", "edit.undo"}, {"Ctrl+U"}}});
   test.play("click Muscle/17/eye\n expect hidden 1\n key Ctrl+U\n expect hidden 0");
 }
 
@@ -90,13 +90,13 @@ TEST_CASE("kept: an exported key map says which commands have no keys, and bring
   const TemporaryFolder folder;
   SmallEditor test({1024, 640}, {}, false);
   const KeyChanges none = {{{"global", "edit.undo"}, {}}, {{"slice", "image.drag_window"}, {}}};
-  test.editor->preferences.keys = none;
+  test.editor->preferences->keys = none;
   apply_preferences(*test.editor);
   export_keymap(*test.editor, folder / "mine.json");
-  test.editor->preferences.keys.clear();
+  test.editor->preferences->keys.clear();
   apply_preferences(*test.editor);
   import_keymap(*test.editor, folder / "mine.json");
-  CHECK(test.editor->preferences.keys == none);
+  CHECK(test.editor->preferences->keys == none);
 }
 
 TEST_CASE("kept: operators have the ids that key maps and recordings of version 0.1.0 name") {
@@ -105,7 +105,7 @@ TEST_CASE("kept: operators have the ids that key maps and recordings of version 
   int count = 0;
   for (std::string id; std::getline(ids, id); ++count) {
     CAPTURE(id);
-    CHECK(find_operator(*test.editor, id) != nullptr);
+    CHECK(find_operator(test.editor->operators, id) != nullptr);
   }
   CHECK(count > 350);
 }
@@ -118,7 +118,7 @@ TEST_CASE("kept: a recording of version 0.1.0 plays to its end") {
                   (home / "arm/tissues.json").string(), "--rig", (home / "arm/rig.json").string()});
   REQUIRE(created.exit_code == 0);
   Sitting sitting(home.folder.path(), {home / "arm.limber"});
-  sitting.editor().worker_program = LIMBER_PROGRAM;
+  sitting.editor().background->worker_program = LIMBER_PROGRAM;
   sitting.play(read_file(kept("recording.txt")));
   CHECK(sitting.editor().document().results.size() == 1);
   CHECK(sitting.editor().document().results[0]->method == "dqs");

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "core/motion/recorded_clip.h"
+#include "editor/context/operator.h"
 #include "editor/files/picture_files.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/live_preview.h"
@@ -32,7 +33,7 @@ TEST_CASE(
   LimbEditor test({900, 640});
   Document document = bending_limb();
   document.weights = half_weights(*document.volume);
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   const TemporaryFolder folder;
   test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
@@ -66,7 +67,7 @@ TEST_CASE(
   LimbEditor test({900, 640});
   Document document = bending_limb();
   document.weights = half_weights(*document.volume);
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   const TemporaryFolder folder;
   test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle\n click resample.dqs\n wait-job\n wait-idle");
   edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
@@ -99,7 +100,7 @@ TEST_CASE(
   test.play("click resample.dqs\n wait-job\n wait-idle");
   export_motion_pictures(*test.editor, folder / "cancelled.png");
   test.player.step();
-  for (const JobStatus& job : test.editor->jobs.statuses()) test.editor->jobs.cancel(job.id);
+  for (const JobStatus& job : test.editor->jobs->statuses()) test.editor->jobs->cancel(job.id);
   test.play("wait-job\n wait-idle\n wait 1\n wait-idle");
   CHECK(why_no_motion_pictures(*test.editor) == "");
   CHECK_FALSE(std::filesystem::exists(folder / "cancelled-0009.png"));
@@ -111,7 +112,7 @@ TEST_CASE("motion pictures: too many are refused before they are listed") {
   LimbEditor test({900, 640});
   Document document = bending_limb();
   document.weights = half_weights(*document.volume);
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   const TemporaryFolder folder;
   // Tries two billion frames, and a video of a clip that shows one frame in 100 seconds.
   edit_clip(*test.editor, "Range", PoseThen::FromClip, [](Clip& clip) {
@@ -131,12 +132,12 @@ TEST_CASE("motion pictures: too many are refused before they are listed") {
 
 TEST_CASE("motion pictures: without weights or a clip it is said what is missing") {
   LimbEditor test({900, 640});
-  const Operator* op = find_operator(*test.editor, "file.export_motion_pictures");
+  const Operator* op = find_operator(test.editor->operators, "file.export_motion_pictures");
   REQUIRE(op);
   CHECK(op->disabled_reason(*test.editor) == "Import a motion first, or insert a key");
   Document document = bending_limb();
   document.weights = nullptr;
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   CHECK(op->disabled_reason(*test.editor) == "Compute the weights first");
 }
 
@@ -151,9 +152,9 @@ TEST_CASE("motion pictures: a camera that follows the body keeps it where it is,
   document.clip = 0;
   document.frame = 0;
   document.pose = nullptr;
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   const TemporaryFolder folder;
-  test.editor->project_path = folder / "limb.limber";
+  test.editor->project->path = folder / "limb.limber";
   test.play(
       "key Ctrl+3\n move \"3D view/view\"\n wait-idle\n click \"File/Export/Motion as pictures...\"\n wait-idle\n key "
       "Return\n wait-idle\n key Return\n wait-job\n wait-idle");
@@ -190,7 +191,7 @@ TEST_CASE("motion pictures: a camera follows the body from where it is seen, out
     CAPTURE(by_hand);
     document.frame = by_hand ? 0 : 3;
     document.pose = std::make_shared<const Pose>(poses[3]);
-    test.editor->history.reset(document, "Open limb");
+    test.editor->history->reset(document, "Open limb");
     test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle\n wait 1\n wait-idle");
     const auto exported = [&](const char* menu, const std::string& file, const char* answer) {
       test.play(std::string("click \"File/Export/") + menu + "\"\n wait-idle\n key Ctrl+A\n type \"" +

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/project_life.h"
 #include "editor/files/project_session.h"
+#include "editor/ui/ui.h"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <regex>
@@ -71,7 +74,7 @@ TEST_CASE("project: saved, closed and opened again it is the same document with 
   sitting.play("expect layout four\n expect display xray\n expect hidden 1\n expect unsaved no");
   CHECK(sitting.test.fact("document") == hash);
   CHECK(editor_state(sitting.editor()) == state);
-  CHECK(sitting.editor().recent_files.recents[0].path == home / "ball.limber");
+  CHECK(sitting.editor().recent_files->recents[0].path == home / "ball.limber");
 }
 
 TEST_CASE(
@@ -156,7 +159,7 @@ TEST_CASE("project: a sitting that ends well leaves nothing to recover, not even
   {
     Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
     sitting.play("click Muscle/17/eye");
-    CHECK(sitting.editor().life.session->flush(20));
+    CHECK(sitting.editor().life->session->flush(20));
     CHECK_FALSE(std::filesystem::is_empty(home / "edits"));
     sitting.play("key Ctrl+Q\n click \"Don't save\"\n expect quit yes");
   }
@@ -191,13 +194,13 @@ TEST_CASE("project: after kill -9 of the program its edits are offered on the st
   ::waitpid(child, nullptr, 0);
 
   Sitting sitting(home.folder.path());
-  sitting.editor().folders.edits = home / "limber/edits";
+  sitting.editor().folders->edits = home / "limber/edits";
   look_for_leftovers(sitting.editor());
   sitting.play(
       "wait-job\n expect \"text:An unsaved project closed unexpectedly\"\n click recovery/Recover\n wait-job\n expect "
       "volume yes\n expect unsaved yes");
   CHECK(std::stoi(sitting.test.fact("hidden")) >= 1);
-  CHECK(sitting.editor().life.recoverable.empty());
+  CHECK(sitting.editor().life->recoverable.empty());
   sitting.play("key Ctrl+Q\n click \"Don't save\"");
 }
 
@@ -206,7 +209,7 @@ TEST_CASE("project: what a crash left of a saved project is offered when it is o
   {
     Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
     sitting.play("key Ctrl+S\n type ball\n key Return\n wait-job\n click Muscle/17/eye");
-    CHECK(sitting.editor().life.session->flush(20));
+    CHECK(sitting.editor().life->session->flush(20));
   }  // ends without a question, like a killed program
   for (const bool wanted : {true, false}) {
     Sitting sitting(home.folder.path(), {home / "ball.limber"});
@@ -234,7 +237,7 @@ TEST_CASE("project: two editors do not write one project, the second may look at
     expect name "Copy of ball"
     expect unsaved yes
   )");
-  CHECK(second.editor().project_path.empty());
+  CHECK(second.editor().project->path.empty());
   second.play("key Ctrl+N\n click \"Don't save\"");
 }
 
@@ -246,7 +249,7 @@ TEST_CASE("project: where nothing can be written, one message says so and the ed
       "1");
   CHECK(sitting.test.fact("error") != "none");
   sitting.play("key Escape\n expect error none\n expect name ball");
-  CHECK(sitting.editor().project_path.empty());
+  CHECK(sitting.editor().project->path.empty());
 }
 
 TEST_CASE(
@@ -273,7 +276,7 @@ TEST_CASE(
   sitting.play("key Ctrl+S\n wait-job\n expect unsaved no");
   CHECK(verify_project(home / "ball.limber").empty());
   // After a warning about the lost file, a message says that edits are kept again.
-  const auto& toasts = sitting.editor().messages.toasts;
+  const auto& toasts = sitting.editor().messages->toasts;
   CHECK(std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) { return toast.line == "ball.limber"; }));
 
   Project other;
@@ -289,8 +292,8 @@ TEST_CASE("project: a preferred autosave writes the file by itself") {
   const Home home;
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"});
   sitting.play("key Ctrl+S\n type ball\n key Return\n wait-job");
-  sitting.editor().preferences.autosave_minutes = 1;
+  sitting.editor().preferences->autosave_minutes = 1;
   sitting.play("click Muscle/17/eye\n wait 0.1\n wait-job\n expect unsaved yes");
-  sitting.editor().life.unsaved_since = sitting.editor().now - 60;
+  sitting.editor().life->unsaved_since = sitting.editor().ui->now - 60;
   sitting.play("wait 0.1\n wait-job\n expect unsaved no");
 }

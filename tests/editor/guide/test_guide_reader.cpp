@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/guide/guide_reader.h"
+#include "editor/ui/ui.h"
 
 #include <filesystem>
 #include <sstream>
@@ -44,7 +45,7 @@ TEST_CASE("guide reader: Home and End go to the ends of a page, Space and PageUp
   test.play("key F1\n key Alt+Right\n expect \"text:Five steps from a sample to a bent arm.\"");
   // Returns the visible part of the page's picture; empty if it is scrolled out of view.
   const auto picture = [&] {
-    const Widget* shown = test.editor->widgets.find("picture images/first-pose.png");
+    const Widget* shown = test.editor->ui->widgets.find("picture images/first-pose.png");
     return shown ? std::pair(shown->rect.low.y, shown->rect.high.y) : std::pair(0.0f, 0.0f);
   };
   const auto top = picture();
@@ -80,7 +81,7 @@ TEST_CASE("guide reader: a page that one comes back to stands where it was left"
   SmallEditor test({1280, 720});
   test.play("key F1\n key Alt+Right\n key End");
   const auto shown = [&] {
-    const Widget* picture = test.editor->widgets.find("picture images/first-pose.png");
+    const Widget* picture = test.editor->ui->widgets.find("picture images/first-pose.png");
     return picture ? std::pair(picture->rect.low.y, picture->rect.high.y) : std::pair(0.0f, 0.0f);
   };
   const auto left = shown();

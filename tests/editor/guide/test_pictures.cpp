@@ -65,8 +65,8 @@ Image picture_of(const std::string& name, Bodies bodies) {
               .exit_code == 0);
 
   Sitting sitting(home.folder.path(), {}, kWindow);
-  sitting.editor().worker_program = LIMBER_PROGRAM;
-  sitting.editor().preferences.reduce_motion = true;
+  sitting.editor().background->worker_program = LIMBER_PROGRAM;
+  sitting.editor().preferences->reduce_motion = true;
   if (bodies == Bodies::Fine) sitting.editor().views->renderer.average_at_rest(6);
   sitting.editor().views->renderer.light_at_rest(render::Light::Draft);
   std::vector<ScriptLine> lines = parse_script(script);

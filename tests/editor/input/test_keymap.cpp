@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
 #include "editor/input/keymap.h"
 
 #include <set>
 
 #include <doctest/doctest.h>
 
-#include "editor/context/editor.h"
+#include "editor/app/editor.h"
 #include "editor/screen/menus.h"
 #include "editor/ui/asset_path.h"
 

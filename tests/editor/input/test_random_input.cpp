@@ -5,6 +5,12 @@
 #include <cstdlib>
 #include <random>
 
+#include "editor/context/dialogs.h"
+#include "editor/context/interaction.h"
+#include "editor/context/outliner_state.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/small_limb.h"
 
@@ -21,7 +27,7 @@ std::uint64_t number_from(const char* name, std::uint64_t otherwise) {
 
 class MessageDialog final : public Dialog {
  public:
-  void draw(Editor&) override {}
+  void draw(Context&) override {}
 };
 
 class RandomUser {
@@ -32,7 +38,7 @@ class RandomUser {
     volume->voxels.assign(volume->voxels.size(), 0);
     volume->at({12, 10, 15}) = 111;
     document_.volume = volume;
-    test_.editor->preferences.reduce_motion = true;
+    test_.editor->preferences->reduce_motion = true;
     begin_again();
   }
 
@@ -66,8 +72,8 @@ class RandomUser {
   // Presses Escape until no dialog, menu, message, tool or field is open.
   void put_away() {
     const auto open = [this] {
-      return editor().dialog || !editor().messages.errors.empty() || editor().modal || editor().keyboard.typed ||
-             menu_is_open();
+      return editor().dialogs->shown || !editor().messages->errors.empty() || editor().interaction->modal ||
+             editor().ui->keyboard.typed || menu_is_open();
     };
     test_.player.settle();
     // Escape is pressed at least twice, because open() does not notice lists of choices.
@@ -80,59 +86,59 @@ class RandomUser {
 
   // Shows the limb in the Rig workspace, with nothing open and nothing pending.
   void begin_again() {
-    Editor& e = editor();
+    Context& c = editor();
     put_away();
-    e.messages.toasts.clear();
-    e.history.reset(document_, "Open limb");
-    e.workspace = Workspace::Rig;
-    e.arrangements = default_arrangements();
-    e.arrangement().sidebar = true;
-    e.open_sections = {{"Steps", true}};
-    e.outliner = {};
-    e.selection = {};
-    e.selection.bone = 1;
-    e.selection.bones = {1};
-    e.list_focus = {};
-    e.renaming.reset();
-    e.tool = Tool::Select;
-    test_.host->events.push(PointerMoved{e.layout.views.centre()});
+    c.messages->toasts.clear();
+    c.history->reset(document_, "Open limb");
+    c.screen->workspace = Workspace::Rig;
+    c.screen->arrangements = default_arrangements();
+    c.screen->arrangement().sidebar = true;
+    c.ui->open_sections = {{"Steps", true}};
+    *c.outliner = {};
+    *c.selection = {};
+    c.selection->bone = 1;
+    c.selection->bones = {1};
+    c.ui->list_focus = {};
+    c.ui->renaming.reset();
+    c.interaction->tool = Tool::Select;
+    test_.host->events.push(PointerMoved{c.screen->layout.views.centre()});
     put_away();
   }
 
   // Randomly makes something happen that the user did not cause.
   void let_something_happen() {
     if (!now_and_then()) return;
-    Editor& e = editor();
+    Context& c = editor();
     const std::string words =
         "Message " + std::to_string(upto(30)) +
         (now_and_then()
              ? " that is so long that it takes two lines of its box, or even three of them where they are narrow"
              : "");
     switch (upto(6)) {
-      case 0: return e.messages.ok(words, now_and_then() ? words : "");
-      case 1: return e.messages.toast_error(words);
-      case 2: return at_end_of_job([](Editor& ed) { ed.messages.show_error("it failed: here: try again"); });
-      case 3: return at_end_of_job([](Editor& ed) { ed.open_dialog(std::make_unique<MessageDialog>()); });
-      case 4: return at_end_of_job([words](Editor& ed) { ed.messages.info(words, words); });
+      case 0: return c.messages->ok(words, now_and_then() ? words : "");
+      case 1: return c.messages->toast_error(words);
+      case 2: return at_end_of_job([](Context& c) { c.messages->show_error("it failed: here: try again"); });
+      case 3: return at_end_of_job([](Context& c) { c.dialogs->open(std::make_unique<MessageDialog>()); });
+      case 4: return at_end_of_job([words](Context& c) { c.messages->info(words, words); });
       case 5:
         if (held_.find("/Steps/") != std::string::npos) return;
-        return at_end_of_job([](Editor& ed) { ed.open_sections["Steps"] = !ed.open_sections["Steps"]; });
-      default: return at_end_of_job([words](Editor& ed) { ed.messages.warn(words); });
+        return at_end_of_job([](Context& c) { c.ui->open_sections["Steps"] = !c.ui->open_sections["Steps"]; });
+      default: return at_end_of_job([words](Context& c) { c.messages->warn(words); });
     }
   }
   // Starts a job that ends before the next frame. Time stands still until then.
   void at_end_of_job(Finish finish) {
     pending_ = true;
     start_task(editor(), "", [this, finish](Progress&) -> Finish {
-      return [this, finish](Editor& e) {
-        finish(e);
+      return [this, finish](Context& c) {
+        finish(c);
         pending_ = false;
       };
     });
   }
 
   bool menu_is_open() {
-    const auto& widgets = editor().widgets.widgets();
+    const auto& widgets = editor().ui->widgets.widgets();
     return std::any_of(widgets.begin(), widgets.end(),
                        [](const Widget& widget) { return widget.region == Region::Popup; });
   }
@@ -161,10 +167,10 @@ class RandomUser {
   }
   // Returns a number that changes when a command runs, and when a tool starts or ends.
   std::size_t commands() {
-    std::size_t count = editor().history.position();
-    for (const auto& [id, times] : editor().preferences.command_counts)
+    std::size_t count = editor().history->position();
+    for (const auto& [id, times] : editor().preferences->command_counts)
       count += id == "edit.rename" ? 0 : static_cast<std::size_t>(times);  // F2 does not count
-    return count + 1000 * static_cast<std::size_t>(editor().modal != nullptr);
+    return count + 1000 * static_cast<std::size_t>(editor().interaction->modal != nullptr);
   }
   // Types letters and Backspaces in bursts, with events between the frames. Returns the text that the field must hold.
   std::string type(const std::string& letters, std::size_t commands_before) {
@@ -215,7 +221,7 @@ constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz 0123456789";
 
 void RandomUser::rename() {
   const std::size_t before = commands();
-  const Widget* row = editor().widgets.find("Outliner/bone Fore/name");
+  const Widget* row = editor().ui->widgets.find("Outliner/bone Fore/name");
   REQUIRE(row);
   push(PointerMoved{row->rect.centre()});
   push(ButtonChanged{MouseButton::Left, true});
@@ -228,13 +234,14 @@ void RandomUser::rename() {
   letter('q');
   let_something_happen();
   key(Key::Return);
-  const bool sidebar = editor().arrangement().sidebar.value();
+  const bool sidebar = editor().screen->arrangement().sidebar.value();
   letter('n');  // shows or hides the sidebar
   settle();
   CHECK(editor().document().armature->bones.size() == 2);
   CHECK(editor().document().armature->bones[1].name == text);
   // If a dialog has waited for the name to be entered, it opens first and takes the key.
-  if (!editor().dialog && editor().messages.errors.empty()) CHECK(editor().arrangement().sidebar.value() != sidebar);
+  if (!editor().dialogs->shown && editor().messages->errors.empty())
+    CHECK(editor().screen->arrangement().sidebar.value() != sidebar);
 }
 
 void RandomUser::search() {
@@ -247,7 +254,7 @@ void RandomUser::search() {
 }
 
 void RandomUser::type_number() {
-  const Widget* field = editor().widgets.find("Bone/Length");
+  const Widget* field = editor().ui->widgets.find("Bone/Length");
   if (!field) return;  // scrolled out of view
   ++numbers_;
   push(PointerMoved{field->rect.centre()});
@@ -265,17 +272,17 @@ void RandomUser::type_number() {
 }
 
 void RandomUser::hold_widget() {
-  for (int i = upto(4); i > 0; --i) editor().messages.toast_error("Failed " + std::to_string(i));
+  for (int i = upto(4); i > 0; --i) editor().messages->toast_error("Failed " + std::to_string(i));
   settle();
   std::vector<Widget> all;
-  for (const Widget& widget : editor().widgets.widgets())
+  for (const Widget& widget : editor().ui->widgets.widgets())
     if (widget.enabled && !widget.name.ends_with("/view") && widget.rect.contains(glm::floor(widget.rect.centre())))
       all.push_back(widget);
   const Widget held = all[static_cast<std::size_t>(upto(static_cast<int>(all.size()) - 1))];
   push(PointerMoved{glm::floor(held.rect.centre())});
   settle();
   const auto place = [&]() -> std::optional<Rect> {
-    for (const Widget& widget : editor().widgets.widgets())
+    for (const Widget& widget : editor().ui->widgets.widgets())
       if (widget.name == held.name) return widget.rect;
     return std::nullopt;
   };
@@ -303,27 +310,27 @@ void RandomUser::hold_widget() {
 }
 
 void RandomUser::press_command() {
-  const bool strip = editor().arrangement().tool_strip;
+  const bool strip = editor().screen->arrangement().tool_strip;
   let_something_happen();
   const bool calm = !pending_;
   letter('t');
   settle();
-  if (calm) CHECK(editor().arrangement().tool_strip != strip);
+  if (calm) CHECK(editor().screen->arrangement().tool_strip != strip);
 }
 
 void RandomUser::drag_view() {
   const auto before = editor().views->body.camera;
-  push(PointerMoved{editor().layout.views.centre()});
+  push(PointerMoved{editor().screen->layout.views.centre()});
   push(ButtonChanged{MouseButton::Middle, true});
   step();
   for (int i = 1; i < 4; ++i) {
-    push(PointerMoved{editor().layout.views.centre() + glm::vec2(11 * i, 7 * i)});
+    push(PointerMoved{editor().screen->layout.views.centre() + glm::vec2(11 * i, 7 * i)});
     let_something_happen();
     step();
   }
   CHECK(!(editor().views->body.camera == before));
-  CHECK(!editor().dialog);
-  CHECK(editor().messages.errors.empty());
+  CHECK(!editor().dialogs->shown);
+  CHECK(editor().messages->errors.empty());
   push(ButtonChanged{MouseButton::Middle, false});
   settle();
 }
@@ -333,7 +340,7 @@ void RandomUser::do_anything() {
   constexpr Key kKeys[] = {Key::G,    Key::R,    Key::S,         Key::X,      Key::Y,  Key::A,  Key::Tab,  Key::Up,
                            Key::Down, Key::Left, Key::Backspace, Key::Delete, Key::F2, Key::F3, Key::Num1, Key::Home};
   for (int i = 5 + upto(20); i > 0; --i) {
-    const bool field = editor().keyboard.typed && test_.host->events.empty();
+    const bool field = editor().ui->keyboard.typed && test_.host->events.empty();
     const std::size_t before = commands();
     bool letters = false;
     switch (upto(5)) {
@@ -350,7 +357,7 @@ void RandomUser::do_anything() {
     if (field && letters) {
       settle();
       CHECK(commands() == before);
-      CHECK(editor().keyboard.typed);
+      CHECK(editor().ui->keyboard.typed);
     } else {
       step();
     }

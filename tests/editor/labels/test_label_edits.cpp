@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
 #include "editor/labels/label_edits.h"
 
 #include <cmath>
@@ -19,20 +20,20 @@ std::int64_t voxels_with(const Document& document, Label label) {
 }
 
 // Makes a hole in the ball's bone and an island of bone in its muscle, and selects bone.
-void spoil(Editor& editor) {
+void spoil(Context& editor) {
   Document next = editor.document();
   auto volume = std::make_shared<LabelVolume>(*small_body().volume);
   volume->at({11, 10, 15}) = 0;
   volume->at({12, 10, 20}) = 111;
   next.volume = volume;
-  editor.history.commit("Spoil", next);
-  editor.selection.tissue = 111;
-  editor.selection.tissues = {111};
+  editor.history->commit("Spoil", next);
+  editor.selection->tissue = 111;
+  editor.selection->tissues = {111};
 }
 
 std::function<bool(Stage&, const Seen&)> edits(const char* label, std::int64_t voxels) {
   return [=](Stage& s, const Seen& b) {
-    return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1 &&
+    return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1 &&
            voxels_with(s.document(), 111) - voxels_with(b.document, 111) == voxels;
   };
 }
@@ -75,7 +76,7 @@ std::vector<Proof> proofs_of_label_edits() {
     spoil(s.editor());
     Document next = s.document();
     next.volume = small_body().volume;
-    s.editor().history.commit("Clean", next);
+    s.editor().history->commit("Clean", next);
   };
   return {
       {"labels.fill_holes", menu + "Fill holes...\"\n wait-idle\n click dialog/Fill\n wait-job\n wait-idle",
@@ -92,8 +93,8 @@ std::vector<Proof> proofs_of_label_edits() {
        [](Stage& s, const Seen& b) {
          const Tissue* part = s.document().tissues->find(1);
          return part && part->name == "Cortical bone 2" && part->kind == TissueKind::CorticalBone &&
-                s.editor().selection.tissue == Label(1) &&
-                static_cast<int>(s.editor().history.position()) == b.position + 1 &&
+                s.editor().selection->tissue == Label(1) &&
+                static_cast<int>(s.editor().history->position()) == b.position + 1 &&
                 voxels_with(s.document(), 1) > 20 &&
                 voxels_with(s.document(), 1) + voxels_with(s.document(), 111) == voxels_with(b.document, 111);
        },
@@ -102,7 +103,7 @@ std::vector<Proof> proofs_of_label_edits() {
        [](Stage& s, const Seen& b) {
          const auto& tissues = s.document().tissues->tissues;
          return s.is("edit", "New tissue") && tissues.size() == b.document.tissues->tissues.size() + 1 &&
-                s.document().tissues->find(*s.editor().selection.tissue)->name == "New tissue";
+                s.document().tissues->find(*s.editor().selection->tissue)->name == "New tissue";
        }},
   };
 }
@@ -120,7 +121,7 @@ TEST_CASE("label edits: undo and redo restore the labels bit for bit") {
   for (const char* deed :
        {"Fill holes...\"\n wait-idle\n click dialog/Fill", "Remove islands...\"\n wait-idle\n click dialog/Remove",
         "Grow...\"\n wait-idle\n click dialog/Grow", "Shrink...\"\n wait-idle\n click dialog/Shrink"}) {
-    INFO(std::string(deed), test.fact("toast"), test.editor->selection.tissue.value_or(0));
+    INFO(std::string(deed), test.fact("toast"), test.editor->selection->tissue.value_or(0));
     test.play(menu + std::string(deed) + "\n wait-job\n wait-idle");
   }
   const LabelVolume after = *test.editor->document().volume;
@@ -136,17 +137,17 @@ TEST_CASE("label edits: weights that no longer fit are removed with a warning, u
   LimbEditor test;
   Document next = test.editor->document();
   next.weights = half_weights(*next.volume);
-  test.editor->history.reset(next, "Weighed");
-  test.editor->selection.tissue = 143;
+  test.editor->history->reset(next, "Weighed");
+  test.editor->selection->tissue = 143;
   const std::string menu = kMenu;
   test.play(menu + "Shrink...\"\n wait-idle\n click \"Replace with/Air\"\n click dialog/Shrink\n wait-job\n wait-idle");
   CHECK_FALSE(test.editor->document().weights);
-  CHECK(test.editor->messages.toasts.back().detail.find("weights") != std::string::npos);
+  CHECK(test.editor->messages->toasts.back().detail.find("weights") != std::string::npos);
   run(*test.editor, "edit.undo");
   CHECK(test.editor->document().weights == next.weights);
 
   // When bone grows into muscle, the same voxels are tissue, so the weights remain.
-  test.editor->selection.tissue = 111;
+  test.editor->selection->tissue = 111;
   test.play(menu + "Grow...\"\n wait-idle\n click dialog/Grow\n wait-job\n wait-idle");
   CHECK(test.editor->document().volume != next.volume);
   CHECK(test.editor->document().weights == next.weights);
@@ -158,7 +159,7 @@ TEST_CASE("label edits: weights that no longer fit are removed with a warning, u
 
 TEST_CASE("label edits: a table of tissues that was changed meanwhile is not overwritten") {
   LimbEditor test;
-  test.editor->selection.tissue = 111;
+  test.editor->selection->tissue = 111;
   const Document before = test.editor->document();
   const Tissue part = new_tissue_like(*before.tissues, before.tissues->find(111));
   start_label_edit(*test.editor, {"Split bone",
@@ -176,19 +177,19 @@ TEST_CASE("label edits: a table of tissues that was changed meanwhile is not ove
   test.play("wait-job\n wait-idle");
   CHECK(test.editor->document().tissues == table);
   CHECK(test.editor->document().volume == before.volume);
-  CHECK(test.editor->messages.last_failure.find("tissues was changed meanwhile") != std::string::npos);
+  CHECK(test.editor->messages->last_failure.find("tissues was changed meanwhile") != std::string::npos);
 }
 
 TEST_CASE("label edits: an edit that finds nothing is no step, and a cut beside the tissue says what to do") {
   LimbEditor test;
-  test.editor->selection.tissue = 65;
-  const auto steps = test.editor->history.steps().size();
+  test.editor->selection->tissue = 65;
+  const auto steps = test.editor->history->steps().size();
   const std::string menu = kMenu;
   test.play(menu + "Fill holes...\"\n wait-idle\n click dialog/Fill\n wait-job\n wait-idle");
-  CHECK(test.editor->history.steps().size() == steps);
-  CHECK(test.editor->messages.toasts.back().detail == "No hole was filled");
+  CHECK(test.editor->history->steps().size() == steps);
+  CHECK(test.editor->messages->toasts.back().detail == "No hole was filled");
   test.play(menu + "Split by a cut\"\n move 60 100\n press\n move 90 100\n wait-idle\n release\n wait-job\n wait-idle");
-  CHECK(test.editor->history.steps().size() == steps);
+  CHECK(test.editor->history->steps().size() == steps);
   CHECK(test.fact("toast") == "The line does not cut the tissue");
 }
 

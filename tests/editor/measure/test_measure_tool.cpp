@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/interaction.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/measure/measure_tool.h"
+#include "editor/ui/ui.h"
 
 #include <cmath>
 #include <numbers>
@@ -29,8 +34,8 @@ bool has_kind(Stage& s, MeasureKind kind) {
 
 // Clicks at a world point in one of the views.
 void click_at(SmallEditor& test, ViewId id, const glm::dvec3& point) {
-  const ViewProjection view(*test.editor, {id, *test.editor->layout.place_of(id)});
-  const glm::dvec2 at = view.pixel_of(point).value() / double(test.editor->look.scale);
+  const ViewProjection view(*test.editor, {id, *test.editor->screen->layout.place_of(id)});
+  const glm::dvec2 at = view.pixel_of(point).value() / double(test.editor->ui->look.scale);
   char line[80];
   std::snprintf(line, sizeof line, "move %.4f %.4f", at.x, at.y);
   test.play(line);
@@ -49,7 +54,7 @@ struct FourViews : SmallEditor {
     return measure(one.kind, one.points);
   }
   double pixel(ViewId id) const {
-    return ViewProjection(*editor, {id, *editor->layout.place_of(id)}).millimetres_per_pixel(glm::dvec3(0));
+    return ViewProjection(*editor, {id, *editor->screen->layout.place_of(id)}).millimetres_per_pixel(glm::dvec3(0));
   }
 };
 
@@ -60,7 +65,7 @@ std::vector<Proof> proofs_of_measuring() {
   const auto has = [](MeasureKind kind) { return [kind](Stage& s, const Seen&) { return has_kind(s, kind); }; };
   return {
       {"measure.menu", "click \"strip/measure.menu\"\n wait-idle",
-       [](Stage& s, const Seen&) { return s.editor().shown_popup == "Measure"; }, Shows::Nothing, four},
+       [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Measure"; }, Shows::Nothing, four},
       {"measure.distance",
        "click View/Overlays/Measure/\"Measure distance\"\n click Axial/view\n click \"3D view/view\"\n key Return\n "
        "wait-idle",
@@ -146,7 +151,7 @@ TEST_CASE("measure tool: a slice's girth is that of the ball's cut, and a skin's
   const std::size_t before = measured(test.editor->document()).size();
   click_at(test, ViewId::Axial, {44, -46, 0});
   CHECK(measured(test.editor->document()).size() == before);
-  CHECK(test.editor->messages.toasts.back().line == "The pointer is not on the body");
+  CHECK(test.editor->messages->toasts.back().line == "The pointer is not on the body");
   test.play("expect error none");
 }
 
@@ -172,13 +177,13 @@ TEST_CASE("measurements stay on the tissue when the body is posed, and are kept 
   document.measurements = std::make_shared<const Measurements>(
       Measurements{{"Across the joint", MeasureKind::Distance, {{0, 6, 26}, {4, 8, -26}}},
                    {"In the fore", MeasureKind::Angle, {{0, 0, -10}, {0, 0, -20}, {8, 0, -20}}}});
-  test.editor->history.reset(document, "Open limb");
+  test.editor->history->reset(document, "Open limb");
   test.play("key Ctrl+3\n wait-idle");
   Pose pose = pose_of(test.editor->document());
   pose.rotation[1] = glm::angleAxis(glm::radians(70.0), glm::dvec3(1, 0, 0));
   const auto moved = posed_from_rest(*document.armature, pose);
   document.pose = std::make_shared<const Pose>(pose);
-  test.editor->history.commit("Bend", document);
+  test.editor->history->commit("Bend", document);
   test.play("wait-idle");
   REQUIRE(test.editor->views->scene.pose);
   const auto placed = placed_measurements(*test.editor, test.editor->views->scene);
@@ -203,16 +208,16 @@ TEST_CASE("measure tool: between two clicks the view can be turned, zoomed and l
   test.play("drag \"3D view/view\" 120 30 MMB\n wait-idle");
   CHECK(glm::distance(test.editor->views->body.camera.world_from_view * glm::dvec3(1, 0, 0),
                       before.world_from_view * glm::dvec3(1, 0, 0)) > 0.1);
-  CHECK_FALSE(test.editor->drag);
+  CHECK_FALSE(test.editor->interaction->drag);
   const double distance = test.editor->views->body.camera.distance;
   test.play("wheel \"3D view/view\" 2\n wait-idle");
   CHECK(test.editor->views->body.camera.distance < distance);
   test.play("move \"3D view/view\"\n key Ctrl+Num1\n wait 0.4\n wait-idle");
-  CHECK(test.editor->modal);
+  CHECK(test.editor->interaction->modal);
   click_at(test, ViewId::Body, {0, 0, 0});
   CHECK(std::abs(test.last_value() - 80) < 8);  // mm from the front of the ball to its back
   test.play("key Escape\n wait-idle");
-  CHECK_FALSE(test.editor->modal);
+  CHECK_FALSE(test.editor->interaction->modal);
 }
 
 TEST_CASE("measure tool: in a posed body the points are those of the body at rest under the pointer") {
@@ -222,7 +227,7 @@ TEST_CASE("measure tool: in a posed body the points are those of the body at res
   Pose pose = rest_pose(*document.armature);
   pose.rotation[1] = glm::angleAxis(glm::radians(50.0), glm::dvec3(1, 0, 0));
   document.pose = std::make_shared<const Pose>(pose);
-  test.editor->history.reset(document, "Open limb");
+  test.editor->history->reset(document, "Open limb");
   test.play("key Ctrl+3\n key Ctrl+Alt+Q\n wait-idle");
   REQUIRE(test.editor->views->scene.pose);
   const glm::dvec3 rest(0, 0, -25), shown = posed_from_rest(*document.armature, pose)[1] * rest;
@@ -246,12 +251,12 @@ TEST_CASE("measure tool: a dialog that opens gets the keyboard, and undo works b
   }
   CHECK(measured(test.editor->document()).size() == 2);
   test.play("key Ctrl+Z\n wait-idle");
-  CHECK(test.editor->modal);
+  CHECK(test.editor->interaction->modal);
   CHECK(measured(test.editor->document()).size() == 1);
   test.editor->measures->chosen = "Distance 1";
   run(*test.editor, "measure.rename");
   test.play("wait-idle\n expect dialog yes");
-  CHECK_FALSE(test.editor->modal);
+  CHECK_FALSE(test.editor->interaction->modal);
   test.play("key Ctrl+A\n type hint\n key Return\n wait-idle\n expect dialog no");
   CHECK(measured(test.editor->document()).back().name == "hint");
   // If the h of "hint" were taken as the command H, it would hide a tissue.
@@ -283,7 +288,7 @@ TEST_CASE("measurements: points in the air stay where they are, and results that
   result.volume = std::make_shared<const LabelVolume>(*document.volume);
   result.from_pose = document.pose;
   document.results.push_back(std::make_shared<const Result>(result));
-  test.editor->history.reset(document, "Open limb");
+  test.editor->history->reset(document, "Open limb");
   test.play("key Ctrl+3\n wait-idle");
   const auto moved = posed_from_rest(*document.armature, pose);
   const auto posed = placed_measurements(*test.editor, test.editor->views->scene);

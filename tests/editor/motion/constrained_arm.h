@@ -2,6 +2,8 @@
 // An editor that shows an arm and a thigh on a turning trunk, with constraints.
 #pragma once
 
+#include "core/project/history.h"
+#include "editor/context/selection.h"
 #include "editor/motion/constrained_pose.h"
 #include "editor/motion/constraint_edits.h"
 #include "editor/pose/pose_edits.h"
@@ -44,7 +46,7 @@ inline Clip turning_trunk() {
   return clip;
 }
 
-inline void open_arm(Editor& editor, std::vector<Constraint> constraints, int bone, std::optional<int> target,
+inline void open_arm(Context& editor, std::vector<Constraint> constraints, int bone, std::optional<int> target,
                      const std::function<void(Clip&)>& change = {}) {
   editor.timeline->play = {};
   editor.timeline->shows_graph = false;
@@ -56,12 +58,12 @@ inline void open_arm(Editor& editor, std::vector<Constraint> constraints, int bo
   document.clips = {std::make_shared<const Clip>(clip)};
   document.frame = 10;
   document.pose = pose_at_frame(document);
-  editor.history.reset(std::move(document), "Open arm");
+  editor.history->reset(std::move(document), "Open arm");
   editor.timeline->constraint.clear();
-  editor.selection = {};
-  editor.selection.bone = bone;
-  editor.selection.bones = {bone};
-  if (target) editor.selection.bones.insert(*target);
+  *editor.selection = {};
+  editor.selection->bone = bone;
+  editor.selection->bones = {bone};
+  if (target) editor.selection->bones.insert(*target);
 }
 
 inline Constraint planted_hand(double weight = 1) {
@@ -73,9 +75,9 @@ inline Constraint planted_hand(double weight = 1) {
           .place{9, -6, -8}};
 }
 
-inline const std::map<int, double>& weights(Editor& editor) {
+inline const std::map<int, double>& weights(Context& editor) {
   static const std::map<int, double> kNone;
-  const auto& all = shown_clip(editor)->keys.weights;
+  const auto& all = shown_clip(editor.document())->keys.weights;
   return all.empty() ? kNone : all.begin()->second;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/base/file.h"
 #include "core/rig_io/rig_io.h"
+#include "editor/context/selection.h"
 #include "editor/motion/graph.h"
 #include "editor/motion/timeline.h"
 #include "tests/editor/small_editor.h"
@@ -120,8 +121,8 @@ struct TakeEditor : SmallEditor {
   void lift_keys(const std::string& bone, const char* degrees) {
     const std::vector<Bone>& bones = editor->document().armature->bones;
     const auto found = std::find_if(bones.begin(), bones.end(), [&](const Bone& b) { return b.name == bone; });
-    editor->selection.bone = static_cast<int>(found - bones.begin());
-    editor->selection.bones = {*editor->selection.bone};
+    editor->selection->bone = static_cast<int>(found - bones.begin());
+    editor->selection->bones = {*editor->selection->bone};
     if (!editor->timeline->shows_graph) play("click \"Motion/Curves/Graph editor\"\n wait-idle");
     play("move graph\n wait-idle\n key A\n key G\n key Y" + typed_keys(degrees) + "\n key Return\n wait-idle");
   }

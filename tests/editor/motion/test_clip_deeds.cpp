@@ -10,6 +10,7 @@
 #include "core/motion/loop_poses.h"
 #include "core/motion/motion_edit.h"
 #include "core/rig/mirror.h"
+#include "editor/context/dialogs.h"
 #include "editor/dialogs/redo_last_operator.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/motion/timeline.h"
@@ -40,8 +41,8 @@ struct DeedEditor : SmallEditor {
                                   {40, glm::angleAxis(0.4, glm::dvec3(0, 1, 0))}};
     clip.markers = {{30, "here"}};
     add_clip(document, std::move(clip));
-    editor->history.reset(std::move(document), "Open walker");
-    editor->name = "walker";
+    editor->history->reset(std::move(document), "Open walker");
+    editor->project->name = "walker";
     frame_all(*editor, false);
     play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   }
@@ -52,7 +53,7 @@ struct DeedEditor : SmallEditor {
     const ClipOnRig* clip = clip_on_rig(*editor);
     REQUIRE(clip);
     CHECK(clip->problem() == "");
-    const auto [low, high] = playing_range(*editor);
+    const auto [low, high] = playing_range(editor->document());
     for (int frame = low; frame <= high; ++frame) all.push_back(clip->at(frame));
     return all;
   }
@@ -95,7 +96,7 @@ TEST_CASE("whole clips: mirrored, every frame is the mirror image, and again it 
   for (Pose& pose : wanted) pose = flipped(pose, test.rig);
   test.deed("Mirror clip", "");
   CHECK(farthest(test.played(), wanted) < 1e-9);
-  CHECK(shown_clip(*test.editor)->keys.bones.contains("RightArm"));
+  CHECK(shown_clip(test.editor->document())->keys.bones.contains("RightArm"));
   test.undo_and_redo(old);
   test.deed("Mirror clip", "");
   CHECK(farthest(test.played(), before) < 1e-9);
@@ -106,8 +107,8 @@ TEST_CASE("whole clips: baked, what plays is the same without keys") {
   const Document old = test.editor->document();
   const std::vector<Pose> before = test.played();
   test.deed("Bake clip", "");
-  CHECK(shown_clip(*test.editor)->keys.empty());
-  CHECK(shown_clip(*test.editor)->markers == old.clips[0]->markers);
+  CHECK(shown_clip(test.editor->document())->keys.empty());
+  CHECK(shown_clip(test.editor->document())->markers == old.clips[0]->markers);
   CHECK(test.editor->document().clips.size() == 1);
   CHECK(farthest(test.played(), before) < 1e-6);
   test.undo_and_redo(old);
@@ -129,7 +130,7 @@ TEST_CASE("whole clips: repeated, the new clip plays what was computed") {
       "Loop");
   CHECK(test.editor->document().clips.size() == 1);
   CHECK(farthest(test.played(), looped(test.rig, before, {.repeats = 3, .blend = 18}).poses) < 2e-6);
-  CHECK(playing_range(*test.editor).high == kStart + 3 * (kFrames - 1));
+  CHECK(playing_range(test.editor->document()).high == kStart + 3 * (kFrames - 1));
 }
 
 TEST_CASE("whole clips: a take from a file is joined at the place, heading and rate of the shown one") {
@@ -148,7 +149,7 @@ TEST_CASE("whole clips: a take from a file is joined at the place, heading and r
   CHECK(test.fact("clip") == "steps + other");
   const JoinedPoses wanted = joined(test.rig, {}, before, at_speed(other, 0.5), kRate, {.fade = 18});
   CHECK(farthest(test.played(), wanted.poses) < 2e-6);
-  const std::vector<Marker>& markers = shown_clip(*test.editor)->markers;
+  const std::vector<Marker>& markers = shown_clip(test.editor->document())->markers;
   REQUIRE(markers.size() == 2);
   CHECK(markers[1].name == "other");
   CHECK(markers[1].frame == kStart + kFrames - 18);
@@ -165,11 +166,11 @@ TEST_CASE("whole clips: a length is set, and what cannot be reached is said") {
   };
   test.deed("Change speed...", set_length("3") + "click Change\n wait-idle");
   // A speed factor of 28 is refused, so the dialog stays open.
-  CHECK(test.editor->dialog);
+  CHECK(test.editor->dialogs->shown);
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
   test.deed("Change speed...", set_length("43") + "click Change\n wait-idle");
-  CHECK_FALSE(test.editor->dialog);
+  CHECK_FALSE(test.editor->dialogs->shown);
   const std::vector<Pose> after = test.played();
   REQUIRE(after.size() == 43);
   // The key at frame 20 would move to frame 12.5, so the arm is not compared.
@@ -200,7 +201,7 @@ TEST_CASE("whole clips: what was computed for another rig is refused") {
 
 TEST_CASE("whole clips: a cancelled bake or change of speed leaves the document as it was") {
   DeedEditor test;
-  test.editor->preferences.reduce_motion = true;
+  test.editor->preferences->reduce_motion = true;
   // Uses so many frames that computing takes longer than cancelling.
   Document document = test.editor->document();
   const std::vector<Pose> poses = sliding_steps(test.rig, kFrames, 0.01);
@@ -208,7 +209,7 @@ TEST_CASE("whole clips: a cancelled bake or change of speed leaves the document 
       motion_of_poses(test.rig, 100'000, kRate, [&](int frame) { return poses[frame % kFrames]; }));
   document.clips = {std::make_shared<const Clip>(clip_for(document, long_take, "long", 0))};
   document.clip = 0;
-  test.editor->history.reset(document, "Open walker");
+  test.editor->history->reset(document, "Open walker");
   test.play("wait-idle");
   const std::string speed =
       "click \"Motion/Clip/Whole clip/Change speed...\"\n wait-idle\n double-click Speed/value\n key Ctrl+A\n type "
@@ -217,10 +218,10 @@ TEST_CASE("whole clips: a cancelled bake or change of speed leaves the document 
     INFO(deed);
     const Document before = test.editor->document();
     test.play(deed);
-    REQUIRE(test.editor->jobs.busy());
-    test.editor->jobs.cancel_all();
+    REQUIRE(test.editor->jobs->busy());
+    test.editor->jobs->cancel_all();
     test.play("wait-job\n wait-idle");
-    CHECK_FALSE(test.editor->jobs.busy());
+    CHECK_FALSE(test.editor->jobs->busy());
     CHECK(test.editor->document() == before);
     CHECK(test.fact("error") == "none");
   }

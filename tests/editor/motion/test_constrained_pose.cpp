@@ -2,6 +2,9 @@
 // Constraints hold while poses, keys and the constraints themselves are edited by hand.
 #include "core/motion/motion_edit.h"
 #include "core/pose/pose_io.h"
+#include "editor/context/operator.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/transform_settings.h"
 #include "tests/editor/motion/constrained_arm.h"
 
 namespace limber::test {
@@ -12,7 +15,7 @@ TEST_CASE("constrained pose: rotations that are set under a constraint do not dr
     clip.keys.bones["LeftForeArm"] = {{0, glm::angleAxis(0.3, glm::dvec3(1, 0, 0))}};
   });
   test.editor->timeline->auto_key = true;
-  const auto keyed = [&] { return shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10); };
+  const auto keyed = [&] { return shown_clip(test.editor->document())->keys.bones.at("LeftForeArm").at(10); };
   run(*test.editor, "pose.clear_rotation");
   const Pose cleared = pose_of(test.document());
   CHECK(cleared.rotation[kFore] != glm::dquat(1, 0, 0, 0));  // the planted hand still bends the elbow
@@ -22,7 +25,7 @@ TEST_CASE("constrained pose: rotations that are set under a constraint do not dr
     CHECK(pose_of(test.document()) == cleared);
   }
   const glm::dquat copied = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
-  test.editor->posing.copied = {{"LeftForeArm", copied}};
+  test.editor->posing->copied = {{"LeftForeArm", copied}};
   run(*test.editor, "pose.paste");
   CHECK(keyed() == copied);
   Pose typed = pose_of(test.document());
@@ -50,8 +53,8 @@ TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand els
       CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
   };
   run(*test.editor, "motion.insert_key");
-  CHECK(shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));
-  CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftThigh"));
+  CHECK(shown_clip(test.editor->document())->keys.bones.contains("LeftForeArm"));
+  CHECK(!shown_clip(test.editor->document())->keys.bones.contains("LeftThigh"));
   is_held();
   // A marker makes the pose no longer come from the clip. The pose below the constraint is still known, so the
   // constraint is not applied twice.
@@ -63,7 +66,7 @@ TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand els
   run(*test.editor, "motion.insert_key");
   for (int bone = 0; bone < 5; ++bone)
     CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], cleared.rotation[bone])) > 1 - 1e-12);
-  CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == glm::dquat(1, 0, 0, 0));
+  CHECK(shown_clip(test.editor->document())->keys.bones.at("LeftForeArm").at(10) == glm::dquat(1, 0, 0, 0));
 }
 
 TEST_CASE("constrained pose: a flexed joint, an imported and a cleared pose are held by constraints, and keyed") {
@@ -76,7 +79,7 @@ TEST_CASE("constrained pose: a flexed joint, an imported and a cleared pose are 
   CHECK(test.fact("edit") == "Flex LeftForeArm");
   CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
   // The key stores the rotation by 30 degrees, without the effect of the constraint.
-  const glm::dquat keyed = shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10);
+  const glm::dquat keyed = shown_clip(test.editor->document())->keys.bones.at("LeftForeArm").at(10);
   CHECK(std::abs(keyed.w) == doctest::Approx(std::cos(glm::radians(15.0))));
   Pose pose = rest_pose(*test.document().armature);
   pose.rotation[kTrunk] = glm::angleAxis(-0.4, glm::dvec3(0, 0, 1));
@@ -85,12 +88,12 @@ TEST_CASE("constrained pose: a flexed joint, an imported and a cleared pose are 
   CHECK(test.fact("edit") == "Import pose.json");
   CHECK(std::abs(glm::dot(pose.rotation[kTrunk], pose_of(test.document()).rotation[kTrunk])) > 1 - 1e-9);
   CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
-  CHECK(shown_clip(*test.editor)->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
+  CHECK(shown_clip(test.editor->document())->keys.bones.at("LeftForeArm").at(10) == pose.rotation[kFore]);
   run(*test.editor, "pose.clear");
   CHECK(test.fact("edit") == "Clear pose");
   CHECK(pose_of(test.document()).rotation[kTrunk] == glm::dquat(1, 0, 0, 0));
   CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
-  CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").at(10) == glm::dquat(1, 0, 0, 0));
+  CHECK(shown_clip(test.editor->document())->keys.bones.at("Trunk").at(10) == glm::dquat(1, 0, 0, 0));
 }
 
 TEST_CASE("constrained pose: a limb stays where it is when another point or its direction is planted") {
@@ -120,9 +123,9 @@ TEST_CASE("constrained pose: a limb stays where it is when another point or its 
   handless.armature = std::make_shared<const Armature>(rig);
   handless.clips = {std::make_shared<const Clip>(turning_trunk())};
   handless.pose = pose_at_frame(handless);
-  test.editor->history.reset(handless, "Handless");
-  test.editor->selection.bone = kFore;
-  test.editor->selection.bones = {kFore};
+  test.editor->history->reset(handless, "Handless");
+  test.editor->selection->bone = kFore;
+  test.editor->selection->bones = {kFore};
   run(*test.editor, "constraint.add_plant");
   const Pose planted = pose_of(test.document());
   set_planted_point(*test.editor, "Plant LeftForeArm", PlantPoint::Joint);
@@ -135,7 +138,7 @@ TEST_CASE("constrained pose: a limb stays where it is when another point or its 
 TEST_CASE("constrained pose: what is left of a removed bone can be seen and removed without a selection") {
   const Constraint gone{.name = "Aim Tail", .kind = ConstraintKind::Aim, .bone = "Tail", .place{0, -50, 0}};
   ArmEditor test({gone, planted_hand()});
-  test.editor->selection = {};
+  *test.editor->selection = {};
   test.play("wait-idle\n click \"Constraints/Aim Tail/Remove\"\n wait-idle");
   REQUIRE(constraints_of(test.document()).list.size() == 1);
   CHECK(constraints_of(test.document()).list[0].name == "Plant LeftHand");
@@ -173,12 +176,12 @@ TEST_CASE("constrained pose: a motion that does not move the rig leaves the pose
   Pose pose = rest_pose(*document.armature);
   pose.rotation[kTrunk] = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
   document.pose = std::make_shared<const Pose>(pose);
-  test.editor->history.reset(document, "Foo");
-  test.editor->selection.bones = {kHand, kThigh};
-  test.editor->selection.bone = kHand;
+  test.editor->history->reset(document, "Foo");
+  test.editor->selection->bones = {kHand, kThigh};
+  test.editor->selection->bone = kHand;
   run(*test.editor, "constraint.add_plant");
   REQUIRE(constraints_of(test.document()).list.size() == 1);
-  CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").at(0) == pose.rotation[kTrunk]);
+  CHECK(shown_clip(test.editor->document())->keys.bones.at("Trunk").at(0) == pose.rotation[kTrunk]);
   // When the pose becomes the rest pose, the hand is planted where it is.
   const glm::dvec3 before = tail_of(test.document(), kHand);
   run(*test.editor, "pose.apply_as_rest");
@@ -206,12 +209,12 @@ TEST_CASE("constrained pose: X-mirror gives a constrained counterpart the mirror
   document.clips = {std::make_shared<const Clip>(clip)};
   document.frame = 10;
   document.pose = pose_at_frame(document);
-  test.editor->history.reset(document, "Thighs");
+  test.editor->history->reset(document, "Thighs");
   test.editor->timeline->auto_key = true;
   test.editor->transform_settings->x_mirror = true;
   for (const double degrees : {30.0, 60.0, 90.0}) {
     test.play("wait-idle\n move \"3D view/view\"\n key R\n key X\n key 3\n key 0\n key Return\n wait-idle");
-    const auto& keys = shown_clip(*test.editor)->keys.bones;
+    const auto& keys = shown_clip(test.editor->document())->keys.bones;
     const glm::dquat left = keys.at("LeftThigh").at(10), right = keys.at("RightThigh").at(10);
     CHECK(glm::degrees(2 * std::acos(std::abs(left.w))) == doctest::Approx(degrees));
     // The mirrored rotation has the same part about x and the opposite parts about y and z.

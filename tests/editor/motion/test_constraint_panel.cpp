@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves each operator of constraints, and tests what the panel does to the shown clip.
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
 #include "editor/motion/constraint_edits.h"
 
 #include "core/project/project_io.h"
@@ -60,7 +62,8 @@ std::vector<Proof> proofs_of_constraints() {
   const std::vector<Constraint> one{planted_hand()};
   return {
       {"constraint.add", "click Constraints/constraint.add\n wait-idle",
-       [](Stage& s, const Seen&) { return s.editor().shown_popup == "Add constraint"; }, Shows::Nothing, "", ready({})},
+       [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Add constraint"; }, Shows::Nothing, "",
+       ready({})},
       {"constraint.add_copy_rotation", choose("Add copy rotation"),
        has_one(ConstraintKind::CopyRotation, "LeftHand", "LeftThigh"), Shows::Nothing, "", ready({}, kHand, kThigh)},
       {"constraint.add_limit_rotation", choose("Add limit rotation"),
@@ -106,8 +109,8 @@ std::vector<Proof> proofs_of_constraints() {
        ready(one)},
       {"constraint.apply", choose("Apply constraints") + "\n wait-job\n wait-idle",
        [](Stage& s, const Seen&) {
-         return list_of(s).empty() && shown_clip(s.editor())->keys.bones.contains("LeftHand") &&
-                shown_clip(s.editor())->keys.bones.at("LeftHand").size() == 31;
+         return list_of(s).empty() && shown_clip(s.editor().document())->keys.bones.contains("LeftHand") &&
+                shown_clip(s.editor().document())->keys.bones.at("LeftHand").size() == 31;
        },
        Shows::Nothing, "", ready(one)},
   };
@@ -143,11 +146,11 @@ TEST_CASE("constraint panel: the weight is slid, keyed and unkeyed, each as one 
   ArmEditor test({planted_hand()});
   const std::string path = "\"Constraints/Plant LeftHand/";
   test.play("click " + path + "Fold\"\n wait-idle");
-  const std::size_t steps = test.editor->history.steps().size();
+  const std::size_t steps = test.editor->history->steps().size();
   const Pose full = pose_of(test.document());
   test.play("double-click " + path + "Plant LeftHand weight\"\n key Ctrl+A\n type 0.25\n key Return\n wait-idle");
   CHECK(constraints_of(test.document()).list[0].weight == 0.25);
-  CHECK(test.editor->history.steps().size() == steps + 1);
+  CHECK(test.editor->history->steps().size() == steps + 1);
   CHECK(pose_of(test.document()) != full);
   test.play("click " + path + "Key weight\"\n wait-idle");
   CHECK(weights(*test.editor) == std::map<int, double>{{10, 0.25}});
@@ -159,7 +162,7 @@ TEST_CASE("constraint panel: the weight is slid, keyed and unkeyed, each as one 
   go_to_frame(*test.editor, 15);
   CHECK(shown_weight(*test.editor, constraints_of(test.document()).list[0]) == doctest::Approx(0.625));
   // The keys of the weight appear in the timeline too.
-  CHECK(frames_of(shown_clip(*test.editor)->keys).contains(20));
+  CHECK(frames_of(shown_clip(test.editor->document())->keys).contains(20));
   go_to_frame(*test.editor, 20);
   test.play("wait-idle\n click " + path + "Key weight\"\n wait-idle");
   CHECK(weights(*test.editor) == std::map<int, double>{{10, 0.25}});
@@ -209,9 +212,9 @@ TEST_CASE("constraint panel: poses that a constraint makes alike in two frames k
   CHECK(std::abs(held.rotation[kTrunk].w) > 1 - 1e-12);
   go_to_frame(*test.editor, 30);
   commit_pose(*test.editor, "Same", held);  // the same pose as at frame 10
-  test.editor->selection.bones = {kTrunk};
+  test.editor->selection->bones = {kTrunk};
   run(*test.editor, "motion.insert_key");
-  const glm::dquat keyed = shown_clip(*test.editor)->keys.bones.at("Trunk").at(30);
+  const glm::dquat keyed = shown_clip(test.editor->document())->keys.bones.at("Trunk").at(30);
   CHECK(std::abs(glm::dot(keyed, glm::angleAxis(1.0, glm::dvec3(0, 0, 1)))) > 1 - 1e-12);
 }
 
@@ -222,9 +225,9 @@ TEST_CASE("constraint panel: a head is aimed by its face, and a project keeps an
   rig.bones.push_back({"Head", kTrunk, {0, 0, 20}, {0, 4, 40}, 0.3});
   document.armature = std::make_shared<const Armature>(rig);
   document.frame = 7;
-  test.editor->history.reset(document, "Head");
-  test.editor->selection.bone = 5;
-  test.editor->selection.bones = {5, kHand};
+  test.editor->history->reset(document, "Head");
+  test.editor->selection->bone = 5;
+  test.editor->selection->bones = {5, kHand};
   run(*test.editor, "constraint.add_aim");
   REQUIRE(constraints_of(test.document()).list.size() == 1);
   const Pose aimed = pose_of(test.document());
@@ -253,9 +256,9 @@ TEST_CASE("constraint panel: a planted hand stays while the trunk is turned by h
     CHECK(pose_of(test.document()) == dragged);
     CHECK(pose_of(test.document()).rotation[kTrunk] == turned.rotation[kTrunk]);
     CHECK(glm::distance(tail_of(test.document(), kHand), test.place()) < 0.01);
-    CHECK(shown_clip(*test.editor)->keys.bones.at("Trunk").contains(10) == auto_key);
+    CHECK(shown_clip(test.editor->document())->keys.bones.at("Trunk").contains(10) == auto_key);
     // Only the bones that the user turned get keys.
-    CHECK(!shown_clip(*test.editor)->keys.bones.contains("LeftForeArm"));
+    CHECK(!shown_clip(test.editor->document())->keys.bones.contains("LeftForeArm"));
   }
 }
 
@@ -266,19 +269,19 @@ TEST_CASE(
   Pose pose = rest_pose(*bare.armature);
   pose.rotation[kTrunk] = glm::angleAxis(0.4, glm::dvec3(0, 1, 0));
   bare.pose = std::make_shared<const Pose>(pose);
-  test.editor->history.reset(bare, "Pose");
+  test.editor->history->reset(bare, "Pose");
   run(*test.editor, "constraint.add_aim");
   REQUIRE(constraints_of(test.document()).list.size() == 1);
   CHECK(pose_of(test.document()).rotation[kTrunk] == pose.rotation[kTrunk]);
   run(*test.editor, "constraint.remove");
   CHECK(pose_of(test.document()) == pose);
   // Without a pose, no key is set. Removing the constraint also removes the pose that it made.
-  test.editor->history.reset(arm(), "Rest");
+  test.editor->history->reset(arm(), "Rest");
   run(*test.editor, "constraint.add_aim");
   const std::string name = constraints_of(test.document()).list[0].name;
   change_constraint(*test.editor, name, "Move target", [](Constraint& aim) { aim.place = {0, -90, 0}; });
   CHECK(test.document().pose);
-  CHECK(shown_clip(*test.editor)->keys.empty());
+  CHECK(shown_clip(test.editor->document())->keys.empty());
   run(*test.editor, "constraint.remove");
   CHECK(!test.document().pose);
 }
@@ -295,8 +298,8 @@ TEST_CASE("constraint panel: circles and targets that move along are refused wit
   test.play("key Escape\n wait-idle");
   CHECK_THROWS_WITH(set_target(*test.editor, "Plant LeftHand", "LeftForeArm"),
                     "the constrained bone moves its own target: Plant LeftHand: choose another target");
-  test.editor->selection.bones = {kTrunk};
-  test.editor->selection.bone = kTrunk;
+  test.editor->selection->bones = {kTrunk};
+  test.editor->selection->bone = kTrunk;
   CHECK_THROWS_WITH(add_constraint(*test.editor, ConstraintKind::Plant),
                     "a plant needs two bones above the bone: Plant Trunk: choose a hand or foot");
   CHECK(test.document() == before);
@@ -352,7 +355,7 @@ TEST_CASE("constraint panel: a project reopens with the pose below the constrain
   // Restoring a state has no effect on a clip without constraints.
   restore_editor_state(*other.editor, state);
   CHECK_FALSE(free_pose_by_hand(*other.editor));
-  other.editor->history.reset(read_project(folder / "arm.limber").document, "Open");
+  other.editor->history->reset(read_project(folder / "arm.limber").document, "Open");
   REQUIRE(pose_of(other.document()) == shown);
   CHECK(unconstrained_pose(*other.editor) != free);  // the project alone does not store the pose below the constraint
   restore_editor_state(*other.editor, state);
@@ -374,7 +377,7 @@ TEST_CASE("constraint panel: no order is offered where one constraint must wait 
     REQUIRE(std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end());
     for (const InOrder where : {InOrder::Earlier, InOrder::Later})
       for (const Constraint& one : list) CHECK_FALSE(order_neighbour(*test.editor, one.name, where));
-    CHECK(disabled_reason(*test.editor, *find_operator(*test.editor, "constraint.up")) ==
+    CHECK(disabled_reason(*test.editor, *find_operator(test.editor->operators, "constraint.up")) ==
           "The constraint cannot move up: this would not change the order in which constraints turn the same bones");
   }
 }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves each operator of the graph editor, and tests what dragging keys and handles does to a clip.
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/motion/graph.h"
+#include "editor/ui/ui.h"
 
 #include <cmath>
 
@@ -25,7 +29,7 @@ glm::dquat turned(double x, double y, double z) { return rotation_of_channels(gl
 
 // Opens the graph editor on keys of the lower bone at frames 10, 30 and 50, without a motion, with the pointer over the
 // curves.
-void open_graph(Editor& editor, const std::function<void(const std::string&)>& play) {
+void open_graph(Context& editor, const std::function<void(const std::string&)>& play) {
   editor.timeline->play = {};
   Document document = bending_limb();
   Clip clip{.name = "keys", .range_end = 60};
@@ -33,12 +37,12 @@ void open_graph(Editor& editor, const std::function<void(const std::string&)>& p
   document.clips = {std::make_shared<const Clip>(clip)};
   document.frame = 0;
   document.pose = nullptr;
-  editor.history.reset(std::move(document), "Open limb");
+  editor.history->reset(std::move(document), "Open limb");
   editor.timeline->graph.reset();
   editor.timeline->shows_graph = true;
   editor.timeline->chosen.clear();
-  editor.selection.bone = 1;
-  editor.selection.bones = {1};
+  editor.selection->bone = 1;
+  editor.selection->bones = {1};
   play("key Ctrl+3\n wait-idle\n move graph\n wait-idle");
 }
 
@@ -50,9 +54,11 @@ std::function<void(Stage&)> in_graph(const std::set<int>& chosen = {}, int axis 
   };
 }
 
-const std::map<int, glm::dquat>& fore(Editor& editor) { return shown_clip(editor)->keys.bones.at("Fore"); }
-KeyShape shape(Editor& editor, int frame) { return shape_at(shapes_of(shown_clip(editor)->keys, "Fore"), frame); }
-glm::dvec3 angles(Editor& editor, int frame) { return glm::degrees(channel_angles(fore(editor).at(frame))); }
+const std::map<int, glm::dquat>& fore(Context& editor) { return shown_clip(editor.document())->keys.bones.at("Fore"); }
+KeyShape shape(Context& editor, int frame) {
+  return shape_at(shapes_of(shown_clip(editor.document())->keys, "Fore"), frame);
+}
+glm::dvec3 angles(Context& editor, int frame) { return glm::degrees(channel_angles(fore(editor).at(frame))); }
 
 std::function<bool(Stage&, const Seen&)> goes_on(Interpolation interpolation) {
   return [=](Stage& s, const Seen&) {
@@ -67,7 +73,7 @@ std::function<bool(Stage&, const Seen&)> handles_are(HandleKind handles) {
 std::function<bool(Stage&, const Seen&)> eases(double early, double late) {
   return [=](Stage& s, const Seen&) {
     const auto share = [&](int frame) {
-      const Clip& clip = *shown_clip(s.editor());
+      const Clip& clip = *shown_clip(s.editor().document());
       const glm::dquat q = value_at(fore(s.editor()), shapes_of(clip.keys, "Fore"), frame);
       return glm::length(turn_between(fore(s.editor()).at(10), q)) /
              glm::length(turn_between(fore(s.editor()).at(10), fore(s.editor()).at(30)));
@@ -87,7 +93,7 @@ struct GraphEditor : SmallEditor {
     open_graph(*editor, [this](const std::string& script) { play(script); });
     player.settle();
   }
-  glm::vec2 point(int frame, int axis) { return graph_point(*editor, {{kFore, axis}, frame}); }
+  glm::vec2 point(int frame, int axis) { return graph_point(editor->timeline, {{kFore, axis}, frame}); }
   void drag(const glm::vec2& from, const glm::vec2& to) {
     for (int step = 0; step <= 4; ++step) {
       host->events.push(PointerMoved{glm::mix(from, to, step / 4.0f)});
@@ -107,7 +113,8 @@ struct GraphEditor : SmallEditor {
 std::vector<Proof> proofs_of_curves() {
   const auto choose = [](const char* id) { return std::string("click \"Motion/Curves/") + id + "\"\n wait-idle"; };
   const auto frames_are = [](const std::set<int>& frames) {
-    return [=](Stage& s, const Seen&) { return key_frames_of(shown_clip(s.editor())->keys, kFore) == frames; };
+    return
+        [=](Stage& s, const Seen&) { return key_frames_of(shown_clip(s.editor().document())->keys, kFore) == frames; };
   };
   const auto chosen_count = [](std::size_t count) {
     return [=](Stage& s, const Seen&) { return chosen_graph_keys(s.editor()).size() == count; };
@@ -160,9 +167,9 @@ std::vector<Proof> proofs_of_curves() {
        in_graph({30})},
       {"graph.delete", "key X", frames_are({10, 50}), Shows::Nothing, "", in_graph({30})},
       {"graph.interpolation_menu", "key T",
-       [](Stage& s, const Seen&) { return s.editor().shown_popup == "Interpolation"; }, Shows::Nothing, "",
+       [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Interpolation"; }, Shows::Nothing, "",
        in_graph({30})},
-      {"graph.handle_menu", "key V", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Handles"; },
+      {"graph.handle_menu", "key V", [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Handles"; },
        Shows::Nothing, "", in_graph({30})},
       {"graph.constant", choose("Interpolation/Constant"), goes_on(Interpolation::Constant), Shows::Nothing, "",
        in_graph({10})},
@@ -199,7 +206,7 @@ TEST_CASE("operators: curves are shown and shaped") {
 TEST_CASE("graph: a dragged key changes its own channel and its frame, live, and undo takes it back") {
   GraphEditor test;
   const auto old = fore(*test.editor);
-  const auto steps = test.editor->history.position();
+  const auto steps = test.editor->history->position();
   const glm::dvec3 before = angles(*test.editor, 30);
   go_to_frame(*test.editor, 30);
   const glm::vec2 key = test.point(30, 0);
@@ -210,7 +217,7 @@ TEST_CASE("graph: a dragged key changes its own channel and its frame, live, and
   CHECK(fore(*test.editor) == old);
   CHECK(bend_of(shown_pose(*test.editor)) > 45);
   test.release();
-  CHECK(test.editor->history.position() == steps + 2);
+  CHECK(test.editor->history->position() == steps + 2);
   const glm::dvec3 after = angles(*test.editor, 30);
   CHECK(after.x == doctest::Approx(before.x + 10).epsilon(0.02));
   CHECK(std::abs(after.y - before.y) < 1e-9);
@@ -221,7 +228,7 @@ TEST_CASE("graph: a dragged key changes its own channel and its frame, live, and
   const glm::vec2 moved = test.point(30, 0);
   test.drag(moved, {x_of(timeline, 36), moved.y});
   test.release();
-  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{10, 36, 50});
+  CHECK(key_frames_of(shown_clip(test.editor->document())->keys, kFore) == std::set<int>{10, 36, 50});
   CHECK(fore(*test.editor).at(10) == old.at(10));
   CHECK(fore(*test.editor).at(50) == old.at(50));
   test.play("key Ctrl+Z\n wait-idle\n key Ctrl+Z\n wait-idle");
@@ -235,9 +242,9 @@ TEST_CASE("graph: G with Y and a typed number turns by exactly so many degrees, 
   CHECK(angles(*test.editor, 30).z == doctest::Approx(7).epsilon(1e-9));
   CHECK(angles(*test.editor, 50).z == doctest::Approx(37).epsilon(1e-9));
   CHECK(angles(*test.editor, 50).x == doctest::Approx(20).epsilon(1e-9));
-  const Keys now = shown_clip(*test.editor)->keys;
+  const Keys now = shown_clip(test.editor->document())->keys;
   test.play("key G\n key 9\n wait-idle\n key Escape\n wait-idle");
-  CHECK(shown_clip(*test.editor)->keys == now);
+  CHECK(shown_clip(test.editor->document())->keys == now);
   CHECK(chosen_graph_keys(*test.editor).size() == 2);
   CHECK(!graph_of(*test.editor).preview);
 }
@@ -266,7 +273,7 @@ TEST_CASE("graph: a dragged handle sets the slope of its channel alone and makes
   CHECK(std::abs(speeds->y - speeds_before->y) < 1e-9);
   CHECK(std::abs(speeds->z - speeds_before->z) < 1e-9);
   // Computes the slope of the played curve by a difference over a small step.
-  const Keys& keys = shown_clip(*test.editor)->keys;
+  const Keys& keys = shown_clip(test.editor->document())->keys;
   const auto x_at = [&](double frame) {
     return glm::degrees(channel_angles(value_at(fore(*test.editor), shapes_of(keys, "Fore"), frame)).x);
   };
@@ -281,7 +288,7 @@ TEST_CASE("graph: over a motion the curve is what plays, and the motion's own cu
   Clip clip = *document.clips[0];
   clip.keys.bones["Fore"] = {{10, turned(40, 0, 0)}, {40, turned(40, 0, 0)}};
   document.clips = {std::make_shared<const Clip>(clip)};
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   test.player.settle();
   const GraphCurve& curve = graph_of(*test.editor).curves.tracks.at(kFore);
   REQUIRE(curve.values.size() == 61);
@@ -300,7 +307,7 @@ TEST_CASE("graph: curves do not jump where an angle goes beyond half a turn") {
   clip.keys.bones["Fore"] = {
       {0, turned(0, 0, 0)}, {20, turned(170, 0, 0)}, {40, turned(340, 0, 0)}, {60, turned(510, 0, 0)}};
   document.clips = {std::make_shared<const Clip>(clip)};
-  test.editor->history.reset(std::move(document), "Open limb");
+  test.editor->history->reset(std::move(document), "Open limb");
   test.player.settle();
   const GraphCurve& curve = graph_of(*test.editor).curves.tracks.at(kFore);
   for (int frame = 0; frame <= 60; ++frame) CHECK(curve.values[frame].x == doctest::Approx(8.5 * frame).epsilon(1e-6));
@@ -322,14 +329,14 @@ TEST_CASE("graph: rows and buttons stand inside the area and beside one another 
     preferences.scale = scale;
     SmallEditor test(size, preferences, false);
     open_graph(*test.editor, [&](const std::string& script) { test.play(script); });
-    test.editor->selection.bones = {0, 1};
+    test.editor->selection->bones = {0, 1};
     test.player.settle();
-    const auto& widgets = test.editor->widgets.widgets();
+    const auto& widgets = test.editor->ui->widgets.widgets();
     int in_graph = 0;
     for (const Widget& widget : widgets) {
       if (widget.region != Region::Bottom) continue;
       in_graph += widget.name.ends_with("/X");
-      CHECK(test.editor->layout.bottom.contains(intersection(widget.rect, test.editor->layout.bottom)));
+      CHECK(test.editor->screen->layout.bottom.contains(intersection(widget.rect, test.editor->screen->layout.bottom)));
       for (const Widget& other : widgets)
         if (other.region == Region::Bottom && other.name != widget.name) CHECK_FALSE(widget.rect.overlaps(other.rect));
     }
@@ -344,9 +351,9 @@ TEST_CASE("graph: a root bone has its shift as well, whose values are mm") {
   clip.keys.root = {{0, {0, 0, 0}}, {40, {100, -20, 5}}};
   set_root_shape(clip.keys, 0, {.next = Interpolation::Bezier});
   document.clips = {std::make_shared<const Clip>(clip)};
-  test.editor->history.reset(std::move(document), "Open limb");
-  test.editor->selection.bone = 0;
-  test.editor->selection.bones = {0};
+  test.editor->history->reset(std::move(document), "Open limb");
+  test.editor->selection->bone = 0;
+  test.editor->selection->bones = {0};
   test.player.settle();
   const GraphTrack shift{test.editor->document().armature->bones[0].name, true};
   CHECK(!is_shown(graph_of(*test.editor), {shift, 1}));
@@ -360,7 +367,7 @@ TEST_CASE("graph: a root bone has its shift as well, whose values are mm") {
   }
   graph_of(*test.editor).chosen = {{{shift, 1}, 40}};
   test.play("move graph\n key G\n key Y\n key -\n key 5\n key Return\n wait-idle");
-  CHECK(glm::distance(shown_clip(*test.editor)->keys.root.at(40), glm::dvec3(100, -25, 5)) < 1e-9);
+  CHECK(glm::distance(shown_clip(test.editor->document())->keys.root.at(40), glm::dvec3(100, -25, 5)) < 1e-9);
 }
 
 TEST_CASE("graph: a clip resampled to twice the rate keeps its curves in time") {
@@ -374,8 +381,8 @@ TEST_CASE("graph: a clip resampled to twice the rate keeps its curves in time") 
   test.play(
       "click \"Motion/Clip/Resample clip...\"\n wait-idle\n double-click \"Frame rate/value\"\n key Ctrl+A\n type 60\n "
       "key Return\n key Return\n wait-idle");
-  REQUIRE(shown_clip(*test.editor)->rate == 60);
-  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{20, 60, 100});
+  REQUIRE(shown_clip(test.editor->document())->rate == 60);
+  CHECK(key_frames_of(shown_clip(test.editor->document())->keys, kFore) == std::set<int>{20, 60, 100});
   const ClipOnRig after = played();
   for (int frame = 0; frame <= 60; ++frame)
     CHECK(std::abs(glm::dot(after.at(2 * frame).rotation[1], before.at(frame).rotation[1])) > 1 - 1e-12);
@@ -383,19 +390,19 @@ TEST_CASE("graph: a clip resampled to twice the rate keeps its curves in time") 
 
 TEST_CASE("graph: Escape during a drag leaves keys, selection and the shown pose as they were") {
   GraphEditor test;
-  const Keys keys = shown_clip(*test.editor)->keys;
+  const Keys keys = shown_clip(test.editor->document())->keys;
   go_to_frame(*test.editor, 30);
   test.player.settle();
   const double bend = bend_of(shown_pose(*test.editor));
-  const auto steps = test.editor->history.position();
+  const auto steps = test.editor->history->position();
   const glm::vec2 key = test.point(30, 0);
   test.drag(key, key + glm::vec2(30, 40));
   CHECK(std::abs(bend_of(shown_pose(*test.editor)) - bend) > 1);
   test.play("key Escape");
   test.release();
-  CHECK(shown_clip(*test.editor)->keys == keys);
+  CHECK(shown_clip(test.editor->document())->keys == keys);
   CHECK(bend_of(shown_pose(*test.editor)) == doctest::Approx(bend));
-  CHECK(test.editor->history.position() == steps);
+  CHECK(test.editor->history->position() == steps);
   CHECK(!graph_of(*test.editor).preview);
 }
 
@@ -409,14 +416,14 @@ TEST_CASE("graph: S scales values about their middle, and time about the play he
   const ClipOnRig before(test.editor->document().clips[0], test.editor->document().armature);
   test.play("move graph\n key S\n key X\n key 3\n key Return\n wait-idle");
   CHECK(test.fact("edit") == "Scale keys in the graph");
-  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{30, 90, 150});
+  CHECK(key_frames_of(shown_clip(test.editor->document())->keys, kFore) == std::set<int>{30, 90, 150});
   const ClipOnRig after(test.editor->document().clips[0], test.editor->document().armature);
   for (int frame = 0; frame <= 60; ++frame)
     CHECK(std::abs(glm::dot(after.at(3 * frame).rotation[1], before.at(frame).rotation[1])) > 1 - 1e-12);
   test.play("key Ctrl+Z\n wait-idle");
   graph_of(*test.editor).chosen = {{{kFore, 0}, 10}, {{kFore, 0}, 30}, {{kFore, 0}, 50}};
   test.play("move graph\n key S\n key Y\n key 2\n key Return\n wait-idle");
-  CHECK(key_frames_of(shown_clip(*test.editor)->keys, kFore) == std::set<int>{10, 30, 50});
+  CHECK(key_frames_of(shown_clip(test.editor->document())->keys, kFore) == std::set<int>{10, 30, 50});
   CHECK(angles(*test.editor, 10).x == doctest::Approx(-20));
   CHECK(angles(*test.editor, 30).x == doctest::Approx(60));
   CHECK(angles(*test.editor, 30).y == doctest::Approx(10));

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Edits keys in the graph editor and the timeline: effects on slopes, on top of a motion, and when another clip is
 // shown in the meantime.
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/motion/graph_edits.h"
 
 #include <cmath>
@@ -65,17 +69,17 @@ struct KeyEditor : SmallEditor {
     open(std::move(document), graph);
   }
   void open(Document document, bool graph) {
-    editor->history.reset(std::move(document), "Open limb");
+    editor->history->reset(std::move(document), "Open limb");
     editor->timeline->graph.reset();
     editor->timeline->shows_graph = false;
-    editor->selection.bone = 1;
-    editor->selection.bones = {1};
+    editor->selection->bone = 1;
+    editor->selection->bones = {1};
     play("key Ctrl+3\n wait-idle");
     if (graph) run(*editor, "graph.show");
     player.settle();
     play(graph ? "move graph\n wait-idle" : "move keys\n wait-idle");
   }
-  const Keys& keys() { return shown_clip(*editor)->keys; }
+  const Keys& keys() { return shown_clip(editor->document())->keys; }
 };
 
 }  // namespace
@@ -157,13 +161,13 @@ TEST_CASE("graph: a tool in use ends when another clip is shown, or none, and ch
     test.show(shaped_keys(), true);
     graph_of(*test.editor).chosen = {{{kFore, 0}, 30}};
     test.play("key G\n key 5\n wait-idle");
-    REQUIRE(test.editor->modal);
+    REQUIRE(test.editor->interaction->modal);
     Document next = test.editor->document();
     if (none) next.clips.clear();
     else add_clip(next, Clip{.name = "other"});
-    test.editor->history.commit("Make a clip", next);
+    test.editor->history->commit("Make a clip", next);
     test.player.settle();
-    CHECK(!test.editor->modal);
+    CHECK(!test.editor->interaction->modal);
     CHECK(!graph_of(*test.editor).preview);
     CHECK(test.editor->document() == next);
   }
@@ -180,9 +184,9 @@ TEST_CASE("timeline: a tool in use ends when another clip is shown, or none, and
     other.keys = shaped_keys();
     if (none) next.clips.clear();
     else add_clip(next, other);
-    test.editor->history.commit("Make a clip", next);
+    test.editor->history->commit("Make a clip", next);
     test.play("key Return\n wait-idle");
-    CHECK(!test.editor->modal);
+    CHECK(!test.editor->interaction->modal);
     CHECK(test.editor->timeline->moving.empty());
     CHECK(test.editor->document() == next);
   }
@@ -191,7 +195,7 @@ TEST_CASE("timeline: a tool in use ends when another clip is shown, or none, and
 TEST_CASE("graph: a drag ends without a change when another clip is shown") {
   KeyEditor test;
   test.show(shaped_keys(), true);
-  const glm::vec2 key = graph_point(*test.editor, {{kFore, 0}, 30});
+  const glm::vec2 key = graph_point(test.editor->timeline, {{kFore, 0}, 30});
   test.host->events.push(PointerMoved{key});
   test.player.step();
   test.host->events.push(ButtonChanged{MouseButton::Left, true});
@@ -201,7 +205,7 @@ TEST_CASE("graph: a drag ends without a change when another clip is shown") {
   REQUIRE(graph_of(*test.editor).preview);
   Document next = test.editor->document();
   add_clip(next, Clip{.name = "other"});
-  test.editor->history.commit("Make a clip", next);
+  test.editor->history->commit("Make a clip", next);
   test.host->events.push(PointerMoved{key + glm::vec2(80, 10)});
   test.player.step();
   test.host->events.push(ButtonChanged{MouseButton::Left, false});
@@ -214,12 +218,12 @@ TEST_CASE("project: what the pointer does ends when another project opens") {
   test.show(shaped_keys(), true);
   graph_of(*test.editor).chosen = {{{kFore, 0}, 30}};
   test.play("key G\n key 5\n wait-idle");
-  REQUIRE(test.editor->modal);
+  REQUIRE(test.editor->interaction->modal);
   const auto opened = std::make_shared<Opened>();
   opened->label = "New project";
-  opened->agreed = test.editor->history.revision();
+  opened->agreed = test.editor->history->revision();
   replace_project(*test.editor, opened);
-  CHECK(!test.editor->modal);
+  CHECK(!test.editor->interaction->modal);
   CHECK(!graph_of(*test.editor).preview);
   test.player.settle();
   CHECK(test.editor->document().clips.empty());
@@ -251,7 +255,7 @@ TEST_CASE("graph: a body with two root bones has one shift, which is moved once"
   document.clips = {std::make_shared<const Clip>(clip)};
   document.pose = nullptr;
   test.open(std::move(document), true);
-  test.editor->selection.bones = {0, 2};
+  test.editor->selection->bones = {0, 2};
   test.player.settle();
   graph_of(*test.editor).hidden.clear();
   run(*test.editor, "graph.select_all");
@@ -273,28 +277,28 @@ TEST_CASE("graph: keys of the rows that it hides are not changed by the timeline
 
 TEST_CASE("graph: the area below gets its height back in the workspace in which the graph was shown") {
   KeyEditor test;
-  const Arrangements before = test.editor->arrangements;
+  const Arrangements before = test.editor->screen->arrangements;
   run(*test.editor, "graph.show");
   test.player.settle();
-  CHECK(test.editor->arrangement().bottom_height > before[2].bottom_height);
+  CHECK(test.editor->screen->arrangement().bottom_height > before[2].bottom_height);
   test.play("key Ctrl+1\n wait-idle");
   run(*test.editor, "graph.show");  // the timeline is hidden in this workspace, so this shows the graph
   run(*test.editor, "graph.show");
   test.player.settle();
   for (std::size_t i = 0; i < before.size(); ++i)
-    CHECK(test.editor->arrangements[i].bottom_height == before[i].bottom_height);
+    CHECK(test.editor->screen->arrangements[i].bottom_height == before[i].bottom_height);
 }
 
 TEST_CASE("graph: the console hides it, and its tools refuse until it is shown again") {
   KeyEditor test;
   test.show(shaped_keys(), true);
   graph_of(*test.editor).chosen = {{{kFore, 0}, 30}};
-  test.editor->arrangement().console = true;
+  test.editor->screen->arrangement().console = true;
   test.player.settle();
-  const auto why = [&] { return disabled_reason(*test.editor, *find_operator(*test.editor, "graph.move")); };
+  const auto why = [&] { return disabled_reason(*test.editor, *find_operator(test.editor->operators, "graph.move")); };
   CHECK(why() == "Show the graph editor first");
   run(*test.editor, "graph.show");
-  CHECK(!test.editor->arrangement().console);
+  CHECK(!test.editor->screen->arrangement().console);
   CHECK(why().empty());
 }
 
@@ -303,7 +307,7 @@ TEST_CASE("graph: a shift of 1e17 mm is drawn") {
   Keys keys;
   keys.root = {{10, {1e17, 0, 0}}};
   test.show(keys, false);
-  test.editor->selection.bones = {0};
+  test.editor->selection->bones = {0};
   run(*test.editor, "graph.show");
   test.player.settle();
   const std::string bone = test.editor->document().armature->bones[0].name;

@@ -5,6 +5,8 @@
 #include "core/motion/clean_motion.h"
 #include "core/motion/motion_edit.h"
 #include "core/motion/pose_filter.h"
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
 #include "editor/motion/motion_clip_edits.h"
 #include "editor/motion/timeline.h"
 #include "tests/editor/small_editor.h"
@@ -31,8 +33,8 @@ struct WalkerEditor : SmallEditor {
         std::make_shared<const Motion>(motion_of_poses(rig, kFrames, kRate, [&](int frame) { return poses[frame]; })),
         "steps", kStart);
     add_clip(document, std::move(clip));
-    editor->history.reset(std::move(document), "Open walker");
-    editor->name = "walker";
+    editor->history->reset(std::move(document), "Open walker");
+    editor->project->name = "walker";
     frame_all(*editor, false);
     play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   }
@@ -103,7 +105,7 @@ TEST_CASE("cleaning clips: feet of a body that root motion keeps in place are pl
     edit_clip(*test.editor, "Root motion", PoseThen::FromClip, [&](Clip& clip) { clip.retarget.travel = travel; });
     test.play("click \"Motion/Clip/Clean clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle");
     CHECK(test.fact("toast").find("No standing foot") == std::string::npos);
-    CHECK(shown_clip(*test.editor)->retarget.travel == travel);
+    CHECK(shown_clip(test.editor->document())->retarget.travel == travel);
     if (travel == Travel::Locked)
       for (const Pose& pose : test.played()) CHECK(glm::length(pose.root_translation) < 1e-6);
     // Let go, the body travels, and the feet stand.
@@ -132,7 +134,7 @@ TEST_CASE("cleaning clips: a hand comes to the cross-hair and stays there, with 
       "wait-idle");
   REQUIRE(test.editor->document().clips.size() == 2);
   CHECK(test.fact("clip") == "steps held");
-  CHECK(shown_clip(*test.editor)->keys.empty());
+  CHECK(shown_clip(test.editor->document())->keys.empty());
   const std::vector<Pose> after = test.played();
   for (int f = 60; f <= 70; ++f)
     CHECK(glm::distance(place_of(right, PlantPoint::Tip, test.rig, after[f]), test.editor->views->cross_hair) < 3);
@@ -163,8 +165,8 @@ TEST_CASE("cleaning clips: a hand that rested and does not reach its place any m
       "\"Result/New clip\"\n click \"Hold at/Position\"\n wait-idle\n click \"Position/text\"\n key Ctrl+A\n type "
       "\"400, -150, 10\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
   REQUIRE(test.editor->document().clips.size() == 2);
-  REQUIRE(!test.editor->messages.toasts.empty());
-  const Toast& toast = test.editor->messages.toasts.back();
+  REQUIRE(!test.editor->messages->toasts.empty());
+  const Toast& toast = test.editor->messages->toasts.back();
   CAPTURE(toast.detail);
   CHECK(toast.severity == Severity::Warning);
   CHECK(toast.detail.find("the left hand does not reach its position") != std::string::npos);
@@ -177,8 +179,8 @@ TEST_CASE("reducing clips: where feet cannot be kept as closely as asked, a warn
     test.play(std::string("click \"Motion/Clip/Reduce to keys...\"\n wait-idle\n double-click \"Planted "
                           "feet/value\"\n key Ctrl+A\n type ") +
               mm + "\n key Tab\n wait-idle\n click Reduce\n wait-job\n wait-idle");
-    REQUIRE(!test.editor->messages.toasts.empty());
-    return test.editor->messages.toasts.back();
+    REQUIRE(!test.editor->messages->toasts.empty());
+    return test.editor->messages->toasts.back();
   };
   CHECK(reduced_with("1").severity != Severity::Warning);
   test.play("key Ctrl+Z\n wait-idle");
@@ -195,7 +197,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   test.play(
       "click \"Motion/Clip/Clean clip...\"\n wait-idle\n click \"Feet/As they are\"\n double-click "
       "\"Smooth/value\"\n key Ctrl+A\n type 0\n key Tab\n wait-idle\n click Clean\n wait-idle");
-  CHECK(test.editor->dialog);
+  CHECK(test.editor->dialogs->shown);
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
 
@@ -203,7 +205,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   test.play(
       "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Hold at/Position\"\n click Limb/list\n click "
       "\"Limb/left foot\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
-  CHECK(test.editor->dialog);
+  CHECK(test.editor->dialogs->shown);
   test.play("key Escape\n wait-idle");
   CHECK(test.editor->document().clips == old.clips);
 
@@ -214,7 +216,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
         "click \"Motion/Clip/Hold a hand or foot...\"\n wait-idle\n click \"Hold at/Position\"\n wait-idle\n click "
         "\"Position/text\"\n key Ctrl+A\n type \"" +
         std::string(far) + "\"\n wait-idle\n click Hold\n wait-job\n wait-idle");
-    CHECK(test.editor->dialog);
+    CHECK(test.editor->dialogs->shown);
     test.play("key Escape\n wait-idle");
     CHECK(test.editor->document().clips == old.clips);
   }
@@ -224,7 +226,7 @@ TEST_CASE("cleaning clips: what cannot be done is said, and nothing changes") {
   Armature rig = *old.armature;
   for (Bone& bone : rig.bones) bone.name = "b" + std::to_string(&bone - rig.bones.data());
   nameless.armature = std::make_shared<const Armature>(rig);
-  test.editor->history.reset(std::move(nameless), "Open");
-  CHECK(find_operator(*test.editor, "motion.hold")->disabled_reason(*test.editor).find("known names") !=
+  test.editor->history->reset(std::move(nameless), "Open");
+  CHECK(find_operator(test.editor->operators, "motion.hold")->disabled_reason(*test.editor).find("known names") !=
         std::string::npos);
 }

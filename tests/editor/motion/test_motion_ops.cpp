@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves each operator of the timeline and of clips.
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/motion/motion_path_overlay.h"
 #include "editor/pose/pose_edits.h"
 #include "tests/editor/operator_proofs.h"
@@ -15,7 +18,7 @@ namespace {
 std::function<void(Stage&)> stand_at(int frame) {
   return [frame](Stage& s) {
     s.editor().timeline->play = {};
-    s.editor().history.reset(bending_limb(), "Open limb");
+    s.editor().history->reset(bending_limb(), "Open limb");
     s.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
     go_to_frame(s.editor(), frame);
     s.play("wait-idle");
@@ -41,7 +44,7 @@ std::function<void(Stage&)> stand_with_names(const std::string& upper, const std
     Clip clip = *document.clips[0];
     clip.motion = std::make_shared<const Motion>(bending_motion(rig));
     document.clips[0] = std::make_shared<const Clip>(clip);
-    s.editor().history.reset(std::move(document), "Open limb");
+    s.editor().history->reset(std::move(document), "Open limb");
     s.play("wait-idle");
   };
 }
@@ -64,7 +67,7 @@ std::function<bool(Stage&, const Seen&)> frame_is(int frame) {
   };
 }
 std::function<bool(Stage&, const Seen&)> keys_are(const std::set<int>& frames) {
-  return [frames](Stage& s, const Seen&) { return frames_of(shown_clip(s.editor())->keys) == frames; };
+  return [frames](Stage& s, const Seen&) { return frames_of(shown_clip(s.editor().document())->keys) == frames; };
 }
 std::function<bool(Stage&, const Seen&)> plays(int direction) {
   return [direction](Stage& s, const Seen&) {
@@ -74,7 +77,7 @@ std::function<bool(Stage&, const Seen&)> plays(int direction) {
 
 std::function<bool(Stage&, const Seen&)> edit_is(const char* label) {
   return [=](Stage& s, const Seen& b) {
-    return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1;
+    return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
 std::function<void(Stage&)> edited(int frame, const std::function<void(Clip&)>& edit) {
@@ -96,12 +99,16 @@ std::function<bool(Stage&, const Seen&)> chosen_are(const std::set<int>& frames)
   return [=](Stage& s, const Seen&) { return s.editor().timeline->chosen == frames; };
 }
 std::function<bool(Stage&, const Seen&)> settings_are(const std::function<bool(const RetargetSettings&)>& are) {
-  return [=](Stage& s, const Seen&) { return shown_clip(s.editor()) && are(shown_clip(s.editor())->retarget); };
+  return [=](Stage& s, const Seen&) {
+    return shown_clip(s.editor().document()) && are(shown_clip(s.editor().document())->retarget);
+  };
 }
-bool maps(Stage& s, const char* bone, const char* joint) { return shown_clip(s.editor())->map.joint_of(bone) == joint; }
+bool maps(Stage& s, const char* bone, const char* joint) {
+  return shown_clip(s.editor().document())->map.joint_of(bone) == joint;
+}
 
 std::function<bool(Stage&, const Seen&)> rest_is(RestStance RestStances::*whose, RestStance which) {
-  return [=](Stage& s, const Seen&) { return shown_clip(s.editor())->map.stances.*whose == which; };
+  return [=](Stage& s, const Seen&) { return shown_clip(s.editor().document())->map.stances.*whose == which; };
 }
 
 }  // namespace
@@ -109,7 +116,8 @@ std::function<bool(Stage&, const Seen&)> rest_is(RestStance RestStances::*whose,
 std::vector<Proof> proofs_of_motion() {
   const auto range_is = [](int low, int high) {
     return [=](Stage& s, const Seen&) {
-      return shown_clip(s.editor())->range_start == low && shown_clip(s.editor())->range_end == high;
+      return shown_clip(s.editor().document())->range_start == low &&
+             shown_clip(s.editor().document())->range_end == high;
     };
   };
   const auto speed_is = [](double speed) {
@@ -137,7 +145,7 @@ std::vector<Proof> proofs_of_motion() {
        [](Stage& s, const Seen&) { return s.editor().timeline->auto_key; }, Shows::Nothing, "", stand_at(0)},
       {"motion.marker", "key M",
        [](Stage& s, const Seen&) {
-         return shown_clip(s.editor())->markers == std::vector<Marker>{{20, "F 20"}};
+         return shown_clip(s.editor().document())->markers == std::vector<Marker>{{20, "F 20"}};
        },
        Shows::Nothing, "",
        [](Stage& s) {
@@ -159,8 +167,8 @@ std::vector<Proof> proofs_of_motion() {
        [](Stage& s) {
          stand_at(20)(s);
          s.editor().timeline->paths.on = false;
-         s.editor().selection.bone = 1;
-         s.editor().selection.bones = {1};
+         s.editor().selection->bone = 1;
+         s.editor().selection->bones = {1};
        }},
       {"motion.onion_skin", "key Shift+O", [](Stage& s, const Seen&) { return s.editor().timeline->onion.on; },
        Shows::Nothing, "", stand_at(20)},
@@ -185,12 +193,12 @@ std::vector<Proof> proofs_of_motion() {
        Shows::Nothing, "", with_chosen({10, 30})},
       {"motion.rename_marker", "key Ctrl+M\n wait-idle\n key Ctrl+A\n type turn\n key Return",
        [](Stage& s, const Seen&) {
-         return shown_clip(s.editor())->markers == std::vector<Marker>{{20, "turn"}};
+         return shown_clip(s.editor().document())->markers == std::vector<Marker>{{20, "turn"}};
        },
        Shows::Nothing, "key M", point_at(20)},
       {"motion.delete_marker", "click \"Motion/Markers/Delete marker\"",
-       [](Stage& s, const Seen&) { return shown_clip(s.editor())->markers.empty(); }, Shows::Nothing, "key M",
-       point_at(20)},
+       [](Stage& s, const Seen&) { return shown_clip(s.editor().document())->markers.empty(); }, Shows::Nothing,
+       "key M", point_at(20)},
       {"motion.choose_all_keys", "key A", chosen_are({10, 30}), Shows::Nothing, "", with_chosen({})},
       {"motion.choose_no_keys", "key Alt+A", chosen_are({}), Shows::Nothing, "", with_chosen({10, 30})},
       {"motion.box_keys", "drag keys 400 10 LMB Ctrl", chosen_are({30}), Shows::Nothing, "",
@@ -206,7 +214,7 @@ std::vector<Proof> proofs_of_motion() {
       {"motion.duplicate_keys", "key Shift+D\n key 5\n key Return", keys_are({10, 15, 30}), Shows::Nothing, "",
        with_chosen({10})},
       {"motion.delete_keys", "key X", keys_are({30}), Shows::Nothing, "", with_chosen({10})},
-      {"motion.key_menu", "key K", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Keys"; },
+      {"motion.key_menu", "key K", [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Keys"; },
        Shows::Nothing, "", stand_at(0)},
       {"motion.preview_range", "key P", range_is(10, 30), Shows::Nothing, "", with_chosen({10, 30})},
       {"motion.clear_range", "key Alt+P", range_is(0, 60), Shows::Nothing, "key Ctrl+Home", point_at(20)},
@@ -218,7 +226,8 @@ std::vector<Proof> proofs_of_motion() {
       {"pose.propagate", "key Alt+P",
        [](Stage& s, const Seen& b) {
          return edit_is("Propagate pose")(s, b) &&
-                std::abs(glm::degrees(glm::angle(shown_clip(s.editor())->keys.bones.at("Fore").at(30))) - 20) < 1e-6;
+                std::abs(glm::degrees(glm::angle(shown_clip(s.editor().document())->keys.bones.at("Fore").at(30))) -
+                         20) < 1e-6;
        },
        Shows::Nothing, "move \"3D view/view\"", with_keys(20, {10, 30})},
       {"pose.apply_as_rest", "key Ctrl+A",
@@ -228,7 +237,9 @@ std::vector<Proof> proofs_of_motion() {
        },
        Shows::Nothing, "", stand_at(40)},
       {"view.timeline", "key Ctrl+T",
-       [](Stage& s, const Seen&) { return !s.editor().arrangement().timeline && s.editor().layout.bottom.empty(); },
+       [](Stage& s, const Seen&) {
+         return !s.editor().screen->arrangement().timeline && s.editor().screen->layout.bottom.empty();
+       },
        Shows::Nothing, "", stand_at(0)},
   };
 }
@@ -248,7 +259,7 @@ std::vector<Proof> proofs_of_clips() {
        stand_at(20)},
       {"motion.map_by_names", "click Motion/Retarget/Map...\n wait-idle\n click dialog/motion.map_by_names",
        [](Stage& s, const Seen&) {
-         return shown_clip(s.editor())->map.sources.empty() && s.is("edit", "Match by names");
+         return shown_clip(s.editor().document())->map.sources.empty() && s.is("edit", "Match by names");
        },
        Shows::InBody, "",
        edited(20,
@@ -309,8 +320,8 @@ std::vector<Proof> proofs_of_clips() {
        [](Stage& s, const Seen&) { return s.is("clip", "knee"); }, Shows::Nothing, "", stand_at(20)},
       {"motion.trim", "click \"Motion/Clip/Trim to range\"",
        [](Stage& s, const Seen&) {
-         return shown_clip(s.editor())->first == 10 && shown_clip(s.editor())->last == 30 &&
-                shown_clip(s.editor())->start == 10;
+         return shown_clip(s.editor().document())->first == 10 && shown_clip(s.editor().document())->last == 30 &&
+                shown_clip(s.editor().document())->start == 10;
        },
        Shows::Nothing, "", edited(0, [](Clip& clip) { clip.range_start = 10, clip.range_end = 30; })},
       {"motion.untrim", "click \"Motion/Clip/Undo trim\"", first_frame_is(0), Shows::Nothing, "",
@@ -319,8 +330,8 @@ std::vector<Proof> proofs_of_clips() {
        "click \"Motion/Clip/Resample clip...\"\n wait-idle\n double-click \"Frame rate/value\"\n key Ctrl+A\n type "
        "60\n key Return\n key Return",
        [](Stage& s, const Seen&) {
-         return shown_clip(s.editor())->rate == 60 && shown_clip(s.editor())->range_end == 120 &&
-                shown_clip(s.editor())->motion->frame_count == 121;
+         return shown_clip(s.editor().document())->rate == 60 && shown_clip(s.editor().document())->range_end == 120 &&
+                shown_clip(s.editor().document())->motion->frame_count == 121;
        },
        Shows::Nothing, "", stand_at(20)},
       {"motion.clean", "click \"Motion/Clip/Clean clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
@@ -334,13 +345,13 @@ std::vector<Proof> proofs_of_clips() {
       {"motion.close_gap", "click \"Motion/Clip/Close gap...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
          // A bend at constant speed continues across the closed gap.
-         return edit_is("Close gap")(s, b) && shown_clip(s.editor())->motion &&
+         return edit_is("Close gap")(s, b) && shown_clip(s.editor().document())->motion &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(22)) - 22) < 1e-3;
        },
        Shows::Nothing, "", stand_at(20)},
       {"motion.reduce_keys", "click \"Motion/Clip/Reduce to keys...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
-         const Clip* clip = shown_clip(s.editor());
+         const Clip* clip = shown_clip(s.editor().document());
          return edit_is("Reduce to keys")(s, b) && s.is("clip", "bending keys") && !clip->motion &&
                 clip->keys.bones.at("Fore").size() == 2 &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(33)) - 33) < 0.5;
@@ -348,16 +359,16 @@ std::vector<Proof> proofs_of_clips() {
        Shows::Nothing, "", stand_at(20)},
       {"motion.mirror_clip", "click \"Motion/Clip/Whole clip/Mirror clip\"\n wait-idle",
        [](Stage& s, const Seen& b) {
-         const auto& turns = shown_clip(s.editor())->keys.bones;
-         return edit_is("Mirror clip")(s, b) && shown_clip(s.editor())->retarget.mirror && turns.contains("Fore") &&
-                turns.at("Fore").at(20).y < -0.1;
+         const auto& turns = shown_clip(s.editor().document())->keys.bones;
+         return edit_is("Mirror clip")(s, b) && shown_clip(s.editor().document())->retarget.mirror &&
+                turns.contains("Fore") && turns.at("Fore").at(20).y < -0.1;
        },
        Shows::InBody, "",
        edited(20, [](Clip& clip) { clip.keys.bones["Fore"][20] = glm::angleAxis(0.6, glm::dvec3(0, 1, 0)); })},
       {"motion.loop_clip",
        "click \"Motion/Clip/Whole clip/Loop clip...\"\n wait-idle\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
-         const Clip* clip = shown_clip(s.editor());
+         const Clip* clip = shown_clip(s.editor().document());
          return edit_is("Loop clip")(s, b) && s.is("clip", "bending loop") && clip->range_end == 240 &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(150)) - 30) < 1e-3;
        },
@@ -366,7 +377,7 @@ std::vector<Proof> proofs_of_clips() {
        "click \"Motion/Clip/Whole clip/Join clip...\"\n type next\n key Return\n wait-job\n wait-idle\n key Return\n "
        "wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
-         const Clip* clip = shown_clip(s.editor());
+         const Clip* clip = shown_clip(s.editor().document());
          return edit_is("Join clip")(s, b) && s.is("clip", "bending + next") && clip->range_end == 60 + 61 - 9 &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[1], s.document().armature).at(112)) - 60) < 1e-3;
        },
@@ -379,13 +390,13 @@ std::vector<Proof> proofs_of_clips() {
        "click \"Motion/Clip/Whole clip/Change speed...\"\n wait-idle\n double-click Speed/value\n key Ctrl+A\n type "
        "2\n key Return\n key Return\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
-         return edit_is("Change speed")(s, b) && shown_clip(s.editor())->range_end == 30 &&
+         return edit_is("Change speed")(s, b) && shown_clip(s.editor().document())->range_end == 30 &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(15)) - 30) < 1e-3;
        },
        Shows::Nothing, "", stand_at(20)},
       {"motion.bake", "click \"Motion/Clip/Whole clip/Bake clip\"\n wait-job\n wait-idle",
        [](Stage& s, const Seen& b) {
-         return edit_is("Bake clip")(s, b) && shown_clip(s.editor())->keys.empty() &&
+         return edit_is("Bake clip")(s, b) && shown_clip(s.editor().document())->keys.empty() &&
                 std::abs(bend_of(ClipOnRig(s.document().clips[0], s.document().armature).at(30)) - 50) < 1e-3;
        },
        Shows::Nothing, "",

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves each operator of the strips' view, and tests what dragging strips and their ends does to a clip.
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
 #include "editor/motion/strip_view.h"
 
 #include <cmath>
@@ -39,16 +41,16 @@ Document limb_with_strips() {
   return document;
 }
 
-void open_strips(Editor& editor, const std::function<void(const std::string&)>& play, Document document) {
+void open_strips(Context& editor, const std::function<void(const std::string&)>& play, Document document) {
   editor.timeline->play = {};
-  editor.history.reset(std::move(document), "Open limb");
+  editor.history->reset(std::move(document), "Open limb");
   editor.timeline->graph.reset();
   editor.timeline->strips.reset();
   editor.timeline->frame.reset();
   editor.timeline->shows_graph = false;
   editor.timeline->shows_strips = true;
   editor.timeline->window.clip.clear();
-  editor.selection = {};
+  *editor.selection = {};
   play("key Ctrl+3\n wait-idle\n move \"timeline/ruler\"\n wait-idle");
   if (shown_strips(editor)) play("move timeline/strips\n wait-idle");
 }
@@ -57,7 +59,7 @@ std::function<void(Stage&)> in_strips(const std::set<std::string>& chosen = {}, 
   return [=](Stage& s) {
     open_strips(
         s.editor(), [&](const std::string& script) { s.play(script); }, limb_with_strips());
-    StripView& view = strip_view(s.editor());
+    StripView& view = strip_view(s.editor().timeline);
     view.chosen = chosen;
     if (!chosen.empty()) view.active = *chosen.begin();
     if (frame != 0) go_to_frame(s.editor(), frame);
@@ -65,12 +67,12 @@ std::function<void(Stage&)> in_strips(const std::set<std::string>& chosen = {}, 
   };
 }
 
-const Strips& strips_in(Editor& editor) { return *shown_clip(editor)->strips; }
-const Strip& strip_named(Editor& editor, const std::string& name) {
+const Strips& strips_in(Context& editor) { return *shown_clip(editor.document())->strips; }
+const Strip& strip_named(Context& editor, const std::string& name) {
   const StripPlace place = *find_strip(strips_in(editor), name);
   return strips_in(editor).tracks[place.track].strips[place.index];
 }
-bool has_strip(Editor& editor, const std::string& name) { return find_strip(strips_in(editor), name).has_value(); }
+bool has_strip(Context& editor, const std::string& name) { return find_strip(strips_in(editor), name).has_value(); }
 
 struct StripEditor : SmallEditor {
   explicit StripEditor(Document document = limb_with_strips()) : SmallEditor({1280, 760}, {}, false) {
@@ -122,7 +124,7 @@ std::vector<Proof> proofs_of_strips() {
   const auto on_track = [](const std::string& track) {
     return [=](Stage& s) {
       in_strips()(s);
-      strip_view(s.editor()).track = track;
+      strip_view(s.editor().timeline).track = track;
       s.play("wait-idle");
     };
   };
@@ -132,12 +134,12 @@ std::vector<Proof> proofs_of_strips() {
     Document document = limb_with_strips();
     document.clips.resize(2);
     document.clip = 0;
-    s.editor().history.reset(std::move(document), "Open limb");
+    s.editor().history->reset(std::move(document), "Open limb");
     s.play("wait-idle");
   };
   return {
       {"motion.next_face", "key Ctrl+Tab",
-       [](Stage& s, const Seen&) { return shown_face(s.editor()) == TimelineFace::Rows; }, Shows::Nothing, "",
+       [](Stage& s, const Seen&) { return shown_face(s.editor().timeline) == TimelineFace::Rows; }, Shows::Nothing, "",
        in_strips()},
       {"motion.show_rows", "click \"Motion/Range/Timeline rows\"\n wait-idle",
        [](Stage& s, const Seen&) { return s.is("widget:timeline/keys"); }, Shows::Nothing, "", in_strips()},
@@ -149,8 +151,8 @@ std::vector<Proof> proofs_of_strips() {
        }},
       {"strips.make", menu("Make strips of the clip"),
        [](Stage& s, const Seen&) {
-         return shown_clip(s.editor())->strips && shown_clip(s.editor())->name == "bending strips" &&
-                s.is("widget:timeline/strips");
+         return shown_clip(s.editor().document())->strips &&
+                shown_clip(s.editor().document())->name == "bending strips" && s.is("widget:timeline/strips");
        },
        Shows::Nothing, "", on_clip},
       {"strips.add", "key Shift+A\n wait-idle\n key Return\n wait-idle",
@@ -183,15 +185,15 @@ std::vector<Proof> proofs_of_strips() {
        Shows::Nothing, "",
        [](Stage& s) {
          in_strips({"keys"})(s);
-         s.editor().selection.bone = 1;
-         s.editor().selection.bones = {1};
+         s.editor().selection->bone = 1;
+         s.editor().selection->bones = {1};
        }},
       {"strips.bones_all", menu("Strip/Strip on all bones"),
        strip_is("keys", [](const Strip& strip) { return !strip.bones; }), Shows::Nothing, "",
        [](Stage& s) {
          in_strips({"keys"})(s);
-         s.editor().selection.bone = 0;
-         s.editor().selection.bones = {0};
+         s.editor().selection->bone = 0;
+         s.editor().selection->bones = {0};
          run(s.editor(), "strips.bones_selected");
        }},
       {"strips.begin_here", menu("Strip/Begin strip where the body is"),
@@ -205,8 +207,8 @@ std::vector<Proof> proofs_of_strips() {
        }},
       {"strips.bake", menu("Bake strips to clip") + "\n wait-job",
        [](Stage& s, const Seen&) {
-         return s.document().clips.size() == 4 && shown_clip(s.editor())->name == "strips baked" &&
-                shown_clip(s.editor())->motion;
+         return s.document().clips.size() == 4 && shown_clip(s.editor().document())->name == "strips baked" &&
+                shown_clip(s.editor().document())->motion;
        },
        Shows::Nothing, "", in_strips()},
       {"strips.add_track", menu("Track/Add strip track"),
@@ -237,7 +239,7 @@ TEST_CASE("strip view: a dragged strip moves live, one edit is made, and undo an
   StripEditor test;
   go_to_frame(*test.editor, 55);  // after the end of the upper strip
   const Strips before = strips_in(*test.editor);
-  const auto steps = test.editor->history.position();
+  const auto steps = test.editor->history->position();
   const float frame = test.x(1) - test.x(0);
   const glm::vec2 from = test.point("bending", 0.2);
   test.hold(Key::Ctrl, true);
@@ -247,7 +249,7 @@ TEST_CASE("strip view: a dragged strip moves live, one edit is made, and undo an
   CHECK(bend_of(shown_pose(*test.editor)) == doctest::Approx(45).epsilon(0.01));
   test.release();
   test.hold(Key::Ctrl, false);
-  CHECK(test.editor->history.position() == steps + 1);
+  CHECK(test.editor->history->position() == steps + 1);
   CHECK(strip_named(*test.editor, "bending").start == 10);
   CHECK(test.fact("edit") == "Move strips");
   CHECK(bend_of(pose_of(test.editor->document())) == doctest::Approx(45).epsilon(0.01));
@@ -384,14 +386,14 @@ TEST_CASE("strip view: Add strip changes nothing before it is confirmed, and is 
   document.clip = 0;
   StripEditor test(document);
   Editor& editor = *test.editor;
-  const auto position = editor.history.position();
+  const auto position = editor.history->position();
   run(editor, "strips.add");
   test.play("wait-idle\n key Escape\n wait-idle");
   CHECK(editor.document() == document);
-  CHECK(editor.history.position() == position);
+  CHECK(editor.history->position() == position);
   run(editor, "strips.add");
   test.play("wait-idle\n key Return\n wait-idle");
-  CHECK(editor.history.position() == position + 1);
+  CHECK(editor.history->position() == position + 1);
   REQUIRE(editor.document().clips.size() == 3);
   CHECK(strips_in(editor).tracks.size() == 2);
   CHECK(has_strip(editor, "bending"));
@@ -409,10 +411,10 @@ TEST_CASE("strip view: deleting a clip says which strips go with it, and the pos
   Document shown = editor.document();
   shown.clips = {shown.clips[0], shown.clips[2], shown.clips[1]};
   shown.clip = 2;
-  editor.history.reset(std::move(shown), "Open limb");
+  editor.history->reset(std::move(shown), "Open limb");
   run(editor, "motion.delete_clip");
   test.play("wait-idle");
-  REQUIRE(editor.dialog);
+  REQUIRE(editor.dialogs->shown);
   test.play("key Escape\n wait-idle");
   CHECK(editor.document().clips.size() == 3);
   run(editor, "motion.delete_clip");
@@ -454,15 +456,15 @@ TEST_CASE("strip view: Ctrl+Tab goes through keys, curves and strips, and the bu
   StripEditor test;
   Editor& editor = *test.editor;
   test.play("move \"timeline/ruler\"\n key Ctrl+Tab\n wait-idle");
-  CHECK(shown_face(editor) == TimelineFace::Rows);
+  CHECK(shown_face(editor.timeline) == TimelineFace::Rows);
   test.play("move \"timeline/ruler\"\n key Ctrl+Tab\n wait-idle");
-  CHECK(shown_face(editor) == TimelineFace::Graph);
+  CHECK(shown_face(editor.timeline) == TimelineFace::Graph);
   CHECK(!editor.timeline->shows_strips);
   test.play("move \"timeline/ruler\"\n key Ctrl+Tab\n wait-idle");
-  CHECK(shown_face(editor) == TimelineFace::Strips);
+  CHECK(shown_face(editor.timeline) == TimelineFace::Strips);
   CHECK(!editor.timeline->shows_graph);
   test.play("click timeline/face\n wait-idle\n click \"Timeline rows\"\n wait-idle");
-  CHECK(shown_face(editor) == TimelineFace::Rows);
+  CHECK(shown_face(editor.timeline) == TimelineFace::Rows);
 }
 
 }  // namespace limber::test

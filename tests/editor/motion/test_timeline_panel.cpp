@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
 #include "editor/motion/motion_path_overlay.h"
 #include "editor/motion/onion_skin_overlay.h"
@@ -6,6 +9,7 @@
 #include "editor/motion/timeline_tool.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/shown/frame_all.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/small_clip.h"
 
 namespace limber::test {
@@ -17,8 +21,8 @@ namespace {
 struct BendingEditor : SmallEditor {
   explicit BendingEditor(const Document& document = bending_limb(), const glm::ivec2& size = {1280, 720})
       : SmallEditor(size, {}, false) {
-    editor->history.reset(document, "Open limb");
-    editor->name = "limb";
+    editor->history->reset(document, "Open limb");
+    editor->project->name = "limb";
     frame_all(*editor, false);
     play("key Ctrl+3");
     player.settle();
@@ -48,11 +52,11 @@ TEST_CASE(
     "timeline: a press on the ruler shows that frame's pose in the same picture, and the release takes it as one "
     "edit") {
   BendingEditor test;
-  const auto steps = test.editor->history.position();
+  const auto steps = test.editor->history->position();
   test.press(20);
   CHECK(shown_frame(*test.editor) == 20);
   CHECK(test.shown_bend() == doctest::Approx(20));
-  CHECK(test.editor->history.position() == steps);
+  CHECK(test.editor->history->position() == steps);
   for (int frame : {25, 31, 40}) {
     test.host->events.push(PointerMoved{test.on_ruler(frame)});
     test.player.step();
@@ -62,7 +66,7 @@ TEST_CASE(
   test.release();
   CHECK(test.editor->document().frame == 40);
   CHECK(test.bend() == doctest::Approx(40));
-  CHECK(test.editor->history.position() == steps + 1);
+  CHECK(test.editor->history->position() == steps + 1);
 }
 
 TEST_CASE("timeline: Escape during scrubbing goes back to the frame before") {
@@ -79,12 +83,12 @@ TEST_CASE("timeline: steps from frame to frame are one edit, which undo takes ba
   Pose changed = pose_of(test.editor->document());
   changed.rotation[0] = glm::angleAxis(0.5, glm::dvec3(0, 0, 1));
   commit_pose(*test.editor, "Turn", changed);
-  const auto steps = test.editor->history.position();
+  const auto steps = test.editor->history->position();
   test.play("key Right\n key Right\n key Right");
   CHECK(test.editor->document().frame == 3);
   CHECK(test.bend() == doctest::Approx(3));
   CHECK(pose_of(test.editor->document()).rotation[0] == glm::dquat(1, 0, 0, 0));
-  CHECK(test.editor->history.position() == steps + 1);
+  CHECK(test.editor->history->position() == steps + 1);
   test.play("key Ctrl+Z");
   CHECK(test.editor->document().frame == 0);
   CHECK(pose_of(test.editor->document()) == changed);
@@ -114,7 +118,7 @@ TEST_CASE("timeline: playing stops at the range's end, begins again there, or tu
     test.editor->timeline->play.at_end = mode;
     go_to_frame(*test.editor, 10);
     play(*test.editor, 1);
-    test.editor->frame(test.editor->now + 25.01 / 30);
+    test.editor->frame(test.editor->ui->now + 25.01 / 30);
     CHECK(shown_frame(*test.editor) == expected);
     CHECK(test.editor->timeline->play.on == (mode != AtEnd::Stop));
   }
@@ -176,12 +180,12 @@ TEST_CASE("timeline: a frame that is typed stays in the clip, and a range does n
   type("Frame", "-50");
   CHECK(test.editor->document().frame == 0);
   type("Range start", "500");
-  CHECK(playing_range(*test.editor).low == 60);
-  CHECK(playing_range(*test.editor).high == 60);
+  CHECK(playing_range(test.editor->document()).low == 60);
+  CHECK(playing_range(test.editor->document()).high == 60);
   CHECK(test.fact("text:The range begins at frame 60") == "shown");
   type("Range start", "20");
   type("Range end", "-7");
-  CHECK(playing_range(*test.editor).high == 20);
+  CHECK(playing_range(test.editor->document()).high == 20);
   type("Range end", "900");
   CHECK(x_of(*test.editor->timeline, 900) <= test.editor->timeline->ruler.high.x);
 }
@@ -232,7 +236,7 @@ TEST_CASE("timeline: the ruler's zero has no sign, and the tab counts what the r
       test.editor->timeline->seconds = seconds;
       test.editor->timeline->window.low = low;
       test.player.settle();
-      for (const std::string& text : test.editor->widgets.texts()) CHECK_FALSE((text == "-0" || text == "-0.00"));
+      for (const std::string& text : test.editor->ui->widgets.texts()) CHECK_FALSE((text == "-0" || text == "-0.00"));
       CHECK(test.fact("text:1.00 s") == "shown");
       CHECK(test.fact("text:frame 30") == (seconds ? "shown" : "absent"));
     }
@@ -242,8 +246,8 @@ TEST_CASE(
     "timeline: the curve has a point at each frame that is wide enough, and markers have a row in small windows too") {
   {
     BendingEditor test;
-    test.editor->selection.bone = 1;
-    test.editor->touch();
+    test.editor->selection->bone = 1;
+    test.editor->ui->touch();
     test.player.settle();
     const auto& curve = test.editor->timeline->curve;
     CHECK(curve.step == 1);
@@ -264,13 +268,13 @@ TEST_CASE("timeline: buttons and rows stand inside the area and beside one anoth
     Preferences preferences;
     preferences.scale = scale;
     SmallEditor test(size, preferences, false);
-    test.editor->history.reset(bending_limb(), "Open limb");
+    test.editor->history->reset(bending_limb(), "Open limb");
     test.play("key Ctrl+3");
     test.player.settle();
-    const auto& widgets = test.editor->widgets.widgets();
+    const auto& widgets = test.editor->ui->widgets.widgets();
     for (const Widget& widget : widgets) {
       if (widget.region != Region::Bottom) continue;
-      CHECK(test.editor->layout.bottom.contains(widget.rect));
+      CHECK(test.editor->screen->layout.bottom.contains(widget.rect));
       for (const Widget& other : widgets)
         if (other.region == Region::Bottom && other.name != widget.name) CHECK_FALSE(widget.rect.overlaps(other.rect));
     }
@@ -283,16 +287,16 @@ TEST_CASE("timeline: another clip chosen from the list is shown at a frame it ha
   BendingEditor test(document);
   go_to_frame(*test.editor, 15);
   test.play("click Motion/Clip/list\n click Clip/bending\n wait-idle");
-  CHECK(shown_clip(*test.editor)->name == "bending");
+  CHECK(shown_clip(test.editor->document())->name == "bending");
   CHECK(test.fact("edit") == "Show clip bending");
   CHECK(test.bend() == doctest::Approx(15));
   go_to_frame(*test.editor, 50);
   test.play("click Motion/Clip/list\n click Clip/short\n wait-idle");
-  CHECK(shown_clip(*test.editor)->name == "short");
+  CHECK(shown_clip(test.editor->document())->name == "short");
   CHECK(test.editor->document().frame == 20);
   CHECK(test.bend() == doctest::Approx(20));
   test.play("key Ctrl+Z");
-  CHECK(shown_clip(*test.editor)->name == "bending");
+  CHECK(shown_clip(test.editor->document())->name == "bending");
   CHECK(test.bend() == doctest::Approx(50));
 }
 
@@ -318,7 +322,7 @@ TEST_CASE("onion skin: the body's outline is drawn at the frames before and afte
   // The ball is centred at the joint, so its outline does not move when it turns.
   const auto joint = body_seen(*test.editor)->pixel_of(glm::dvec3(0));
   for (const int frame : {20, 60})
-    CHECK(glm::distance(middle_of(frame), glm::vec2(*joint)) < 0.1f * test.editor->layout.window.size().y);
+    CHECK(glm::distance(middle_of(frame), glm::vec2(*joint)) < 0.1f * test.editor->screen->layout.window.size().y);
   const auto* kept = onion.outlines->lines.at(20).data();
   test.play("key Left\n key Right\n wait-idle");
   CHECK(onion.outlines->lines.at(20).data() == kept);
@@ -330,13 +334,13 @@ TEST_CASE("onion skin: the body's outline is drawn at the frames before and afte
 
 TEST_CASE("motion paths: the tip of a bending bone runs along an arc, drawn over the view, and follows the clip") {
   LimbEditor test;
-  test.editor->history.reset(bending_limb(), "Open limb");
+  test.editor->history->reset(bending_limb(), "Open limb");
   test.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   CHECK(motion_paths(*test.editor) == nullptr);
   test.editor->timeline->paths.on = true;
   CHECK(motion_paths(*test.editor) == nullptr);  // no paths without a selected bone
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
   test.play("wait-idle");
   const MotionPaths* paths = motion_paths(*test.editor);
   REQUIRE(paths);

@@ -3,9 +3,12 @@
 
 #include "core/pose/joint_turns.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/operator.h"
+#include "editor/context/pose_editing.h"
 #include "editor/context/transform_settings.h"
 #include "editor/pose/clinical_angle_edits.h"
 #include "editor/pose/pose_edits.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/operator_proofs.h"
 #include "tests/support/body_rig.h"
 
@@ -26,14 +29,14 @@ class AnglesStage : public Stage {
     next.weights.reset();
     next.pose.reset();
     commit(editor(), "Import rig", std::move(next));
-    editor().open_sections["Bone"] = false;
-    editor().open_sections["Pose library"] = false;
+    editor().ui->open_sections["Bone"] = false;
+    editor().ui->open_sections["Pose library"] = false;
     play("resize 1280 1000\n key Ctrl+3\n wait-idle");
   }
   void choose(const std::string& bone) {
-    editor().selection = {};
-    editor().selection.bone = require_bone(*document().armature, bone);
-    editor().selection.bones = {*editor().selection.bone};
+    *editor().selection = {};
+    editor().selection->bone = require_bone(*document().armature, bone);
+    editor().selection->bones = {*editor().selection->bone};
     play("wait-idle");
   }
   void type(const std::string& field, const std::string& number) {
@@ -43,7 +46,7 @@ class AnglesStage : public Stage {
     return *angles_of_joint(*document().armature, body_frames(*document().armature), pose_of(document()),
                             joint)[motion];
   }
-  int edits() { return static_cast<int>(editor().history.position()); }
+  int edits() { return static_cast<int>(editor().history->position()); }
 };
 
 }  // namespace
@@ -67,7 +70,7 @@ TEST_CASE("clinical angles panel: a typed angle is one edit of one motion, stops
   CHECK(pose_of(s.document()) == rest_pose(*s.document().armature));
   s.play("key Ctrl+Shift+Z\n wait-idle");
   CHECK(s.angle({Hip, BodySide::Left}, 0) == doctest::Approx(60));
-  s.editor().posing.keep_limits = false;
+  s.editor().posing->keep_limits = false;
   s.type("Left hip flexion", "140");
   CHECK(s.angle({Hip, BodySide::Left}, 0) == doctest::Approx(140));
 }
@@ -104,9 +107,9 @@ TEST_CASE("clinical angles panel: X-mirror sets both sides, and auto-key keeps t
 
 TEST_CASE("clinical angles panel: a list selects any joint, a forearm has two, and a hand curls and spreads") {
   AnglesStage s;
-  s.editor().selection = {};
+  *s.editor().selection = {};
   s.play("wait-idle\n click \"Clinical angles/Joint/list\"\n wait-idle\n click \"Right elbow\"\n wait-idle");
-  CHECK(s.editor().selection.bone == require_bone(*s.document().armature, "RightForearm"));
+  CHECK(s.editor().selection->bone == require_bone(*s.document().armature, "RightForearm"));
   s.type("Right elbow flexion", "70");
   s.type("Right forearm pronation", "80");
   CHECK(s.angle({Elbow, BodySide::Right}, 0) == doctest::Approx(70));

@@ -6,6 +6,10 @@
 #include "core/bones/bone_parts.h"
 #include "core/deform/preview_map.h"
 #include "editor/context/document_edits.h"
+#include "editor/context/interaction.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
 #include "editor/files/view_state_json.h"
 #include "editor/pose/live_preview.h"
@@ -30,9 +34,9 @@ struct LiveEditor : LimbEditor {
   explicit LiveEditor(bool with_weights = true, const glm::ivec2& size = {900, 560}) : LimbEditor(size) {
     if (with_weights) weigh();
     play("key Ctrl+3\nkey Num1\nwait-job");
-    editor->selection.bone = 1;
-    editor->selection.bones = {1};
-    editor->posing.keep_limits = false;
+    editor->selection->bone = 1;
+    editor->selection->bones = {1};
+    editor->posing->keep_limits = false;
   }
   void weigh() {
     Document next = editor->document();
@@ -111,9 +115,9 @@ TEST_CASE("live pose: in every frame of a turn, of a motion and on the way back 
   int frames = 0, behind = 0;
   double worst = 0;
   // Runs once per frame, while the scene is still that of the frame before.
-  test.editor->each_frame.push_back([&](Editor& editor) {
+  test.editor->background->each_frame.push_back([&](Context& editor) {
     const auto& motions = test.scene().posed_from_rest;
-    if (editor.workspace != Workspace::Pose || !test.scene().armature) return true;
+    if (editor.workspace() != Workspace::Pose || !test.scene().armature) return true;
     ++frames;
     behind += seen_pose(editor) != shown_pose(editor);
     const bool at_rest = motions.empty() || glm::angle(motions[1].rotation) < 1e-9;
@@ -128,7 +132,7 @@ TEST_CASE("live pose: in every frame of a turn, of a motion and on the way back 
   CHECK(frames > 60);
   CHECK(behind > 10);  // in these frames the drawn pose was older than the pose that was set
   CHECK(worst < 2);    // mm between the map's rest position and the true one
-  test.editor->each_frame.clear();
+  test.editor->background->each_frame.clear();
 }
 
 TEST_CASE("live pose: handles, and what the pointer meets, stand at the bones that are seen") {
@@ -141,7 +145,7 @@ TEST_CASE("live pose: handles, and what the pointer meets, stand at the bones th
   CHECK(seen_pose(*test.editor) == *test.editor->document().pose);
   const auto seen = body_seen(*test.editor);
   REQUIRE(seen);
-  test.editor->tool = Tool::Move;
+  test.editor->interaction->tool = Tool::Move;
   const auto gizmo = gizmo_in(*test.editor, *seen);
   REQUIRE(gizmo);
   const glm::dvec3 tail = test.editor->document().armature->bones[1].tail;
@@ -168,7 +172,7 @@ TEST_CASE("live pose: what the pointer is over is the voxel at rest, in slices a
   const Grid& grid = test.editor->document().volume->grid;
   test.editor->views->cross_hair = posed;
   test.play("wait-job");
-  const Rect* place = test.editor->layout.place_of(ViewId::Coronal);
+  const Rect* place = test.editor->screen->layout.place_of(ViewId::Coronal);
   REQUIRE(place);
   const glm::vec2 pixel =
       place->low + pixel_of(slice_of(*test.editor->views, ViewId::Coronal).camera, posed, place->size());
@@ -190,14 +194,14 @@ TEST_CASE("live pose: linear blending and dual quaternions are chosen in the too
   test.play("key Return\nwait-job");
   const auto dual = test.scene().pose;
   test.play("click resample.lbs\nwait-job");
-  CHECK(preview_blend(*test.editor) == Blend::Linear);
+  CHECK(preview_blend(test.editor->resampling) == Blend::Linear);
   CHECK(test.scene().pose != dual);
   const std::string kept = editor_state(*test.editor);
   test.play("click resample.dqs\nwait-job");
-  CHECK(preview_blend(*test.editor) == Blend::DualQuaternion);
+  CHECK(preview_blend(test.editor->resampling) == Blend::DualQuaternion);
   CHECK(test.error() < 2);
   restore_editor_state(*test.editor, kept);
-  CHECK(preview_blend(*test.editor) == Blend::Linear);
+  CHECK(preview_blend(test.editor->resampling) == Blend::Linear);
 }
 
 TEST_CASE("live pose: without weights only the bones move") {

@@ -3,10 +3,17 @@
 #include <numbers>
 
 #include "core/rig/joint_limits.h"
+#include "editor/context/interaction.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
 #include "editor/motion/timeline.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/pose/pose_tools.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/small_clip.h"
 #include "tests/editor/small_limb.h"
 
@@ -24,11 +31,11 @@ struct PosingEditor : LimbEditor {
   }
 
   void choose(int bone) {
-    editor->selection = {};
-    editor->selection.bone = bone;
-    editor->selection.bones = {bone};
+    *editor->selection = {};
+    editor->selection->bone = bone;
+    editor->selection->bones = {bone};
   }
-  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  std::string last_edit() const { return editor->history->steps()[editor->history->position()].label; }
   Pose pose() const { return pose_of(editor->document()); }
   // Returns a bone's rotation about an axis, degrees; NaN if it also turns about another axis.
   double degrees(int bone, const glm::dvec3& axis) const {
@@ -37,13 +44,13 @@ struct PosingEditor : LimbEditor {
   }
   glm::dvec2 seen(const glm::dvec3& world) const {
     glm::dvec2 pixel;
-    const Rect* place = editor->layout.place_of(ViewId::Body);
+    const Rect* place = editor->screen->layout.place_of(ViewId::Body);
     REQUIRE(render::project(editor->views->body.camera, world, glm::ivec2(place->size()), pixel));
     return pixel + glm::dvec2(place->low);
   }
   // Moves the pointer to a pixel of the window. Scripts use pixels at scale 1.
   void pointer_to(const glm::dvec2& pixel) {
-    const glm::dvec2 at = pixel / double(editor->look.scale);
+    const glm::dvec2 at = pixel / double(editor->ui->look.scale);
     play("move " + std::to_string(at.x) + " " + std::to_string(at.y));
   }
 };
@@ -58,7 +65,7 @@ TEST_CASE(
       Preferences preferences;
       preferences.scale = scale;
       PosingEditor test({1600, 1000}, preferences);
-      test.editor->posing.keep_limits = false;
+      test.editor->posing->keep_limits = false;
       if (parallel) test.play("key Num5\nwait-idle");
       const glm::dvec2 head = test.seen({0, 0, 0});
       const auto at = [&](double degrees) {
@@ -68,9 +75,9 @@ TEST_CASE(
       test.pointer_to(at(10));
       test.play("key R");
       for (double degrees = 15; degrees <= 50; degrees += 5) test.pointer_to(at(degrees));
-      CHECK(test.editor->modal);
+      CHECK(test.editor->interaction->modal);
       test.play("key Return");
-      CHECK(!test.editor->modal);
+      CHECK(!test.editor->interaction->modal);
       INFO("scale ", scale, ", parallel ", parallel);
       // From the front, the eye is at -y, so a counter-clockwise turn is about -y.
       CHECK(test.degrees(1, {0, -1, 0}) == doctest::Approx(40).epsilon(0.0005));
@@ -118,7 +125,7 @@ TEST_CASE("posing: joints stop at their limits, unless they are told not to") {
 
 TEST_CASE("posing: with Ctrl the angle snaps, and R again turns like a trackball") {
   PosingEditor test;
-  test.editor->posing.keep_limits = false;
+  test.editor->posing->keep_limits = false;
   const glm::dvec2 head = test.seen({0, 0, 0});
   test.pointer_to(head + glm::dvec2(100, 0));
   test.play("key R\nkey-down Ctrl");
@@ -135,7 +142,7 @@ TEST_CASE("posing: with Ctrl the angle snaps, and R again turns like a trackball
 
 TEST_CASE("posing: G lets the end of the bone follow the pointer, and the limb with it") {
   PosingEditor test;
-  test.editor->posing.keep_limits = false;
+  test.editor->posing->keep_limits = false;
   const glm::dvec2 from = test.seen({0, 0, -36}), to = test.seen({20, 0, 10});
   test.pointer_to(from);
   test.play("key G");
@@ -167,16 +174,16 @@ TEST_CASE("posing: a pose is copied, pasted and cleared bone by bone") {
 TEST_CASE("posing: bones are chosen along the rig") {
   PosingEditor test;
   test.play("key [");
-  CHECK(test.editor->selection.bone == 0);
+  CHECK(test.editor->selection->bone == 0);
   test.play("key ]");
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection->bone == 1);
   test.play("key Shift+[");
-  CHECK(test.editor->selection.bones == std::set<int>{0, 1});
+  CHECK(test.editor->selection->bones == std::set<int>{0, 1});
   test.choose(0);
   test.play("key L");
-  CHECK(test.editor->selection.bones == std::set<int>{0, 1});
+  CHECK(test.editor->selection->bones == std::set<int>{0, 1});
   test.play("key Alt+A\nkey A");
-  CHECK(test.editor->selection.bones.size() == 2);
+  CHECK(test.editor->selection->bones.size() == 2);
 }
 
 TEST_CASE("posing: a blend goes right to the next key and left to the one before, and Escape brings the pose back") {
@@ -184,7 +191,7 @@ TEST_CASE("posing: a blend goes right to the next key and left to the one before
     Preferences preferences;
     preferences.scale = scale;
     LimbEditor test(scale > 1 ? glm::ivec2(1800, 1200) : glm::ivec2(900, 600), preferences);
-    test.editor->history.reset(limber::test::bending_limb(), "Open limb");
+    test.editor->history->reset(limber::test::bending_limb(), "Open limb");
     test.play("key Ctrl+3\n wait-idle");
     for (const int frame : {10, 30}) {
       go_to_frame(*test.editor, frame);
@@ -208,7 +215,7 @@ TEST_CASE("posing: a blend goes right to the next key and left to the one before
 TEST_CASE(
     "posing: between two keys a breakdown goes from the one to the other, and without them from rest to the pose") {
   PosingEditor test;
-  test.editor->posing.keep_limits = false;
+  test.editor->posing->keep_limits = false;
   const auto bend = [&](const std::string& angle) {
     return "move \"3D view/view\"\nkey R\nkey X\n" + angle + "key Return\n";
   };
@@ -272,13 +279,13 @@ TEST_CASE("posing: the right button on a bone lists what can be done with it") {
   };
   test.play("click view.xray_display\nwait-idle");
   press_at({0, 0, 18});
-  CHECK(test.editor->shown_popup == "Posed bone");
-  CHECK(test.editor->selection.bone == 0);
+  CHECK(test.editor->menus->shown_popup == "Posed bone");
+  CHECK(test.editor->selection->bone == 0);
   CHECK(test.fact("text:Upper") == "shown");
   test.play("key Escape\nwait-idle\nkey Ctrl+1\nwait-idle");
   press_at({0, 0, -18});
-  CHECK(test.editor->shown_popup == "Bone");
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->menus->shown_popup == "Bone");
+  CHECK(test.editor->selection->bone == 1);
 }
 
 TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides") {
@@ -293,7 +300,7 @@ TEST_CASE("posing: with X-mirror pins and poles come, move and go on both sides"
     rig.bones.push_back({"Fore" + s, above, {side * 20, 4, 8}, {side * 35, 0, 8}, 0, {}});
   }
   next.armature = std::make_shared<const Armature>(rig);
-  test.editor->history.commit("Two arms", next);
+  test.editor->history->commit("Two arms", next);
   test.editor->transform_settings->x_mirror = true;
   test.choose(2);
   test.play("move \"3D view/view\"\n key Shift+P");
@@ -333,7 +340,7 @@ TEST_CASE(
   rig->bones[1].limits.minimum = -1;
   rig->bones[1].limits.maximum = glm::radians(150.0) - 1;
   bent.armature = rig;
-  test.editor->history.reset(bent, "Open bent limb");
+  test.editor->history->reset(bent, "Open bent limb");
   test.choose(1);
   test.play("wait-idle\n expect \"text:57.3\"\n expect \"text:0 to 150\u00b0\"");
   test.play("double-click Bone/Angle\n key Ctrl+A\n type \"0\"\n key Return\n wait-idle");
@@ -342,12 +349,12 @@ TEST_CASE(
   test.play(
       "move \"3D view/view\"\n key R\n key X\n key -\n key 6\n key 0\n wait-idle\n expect \"text:At the joint limit of "
       "Fore (0\u00b0 to 150\u00b0)\"\n expect \"text:Flexion 0.0\u00b0 of 150\u00b0\"");
-  const std::size_t toasts = test.editor->messages.log.size();
+  const std::size_t toasts = test.editor->messages->log.size();
   test.play("key Return\n wait-idle");
-  CHECK(test.editor->messages.log.size() == toasts + 1);
+  CHECK(test.editor->messages->log.size() == toasts + 1);
   CHECK(test.degrees(1, {1, 0, 0}) == doctest::Approx(glm::degrees(-1.0)));
   test.play("key R\n key X\n key 5\n key 4\n wait-idle\n expect \"text:Flexion 54.0\u00b0 of 150\u00b0\"\n key Escape");
-  test.editor->posing.keep_limits = false;
+  test.editor->posing->keep_limits = false;
   test.play(
       "move \"3D view/view\"\n key R\n key X\n key -\n key 2\n key 0\n key Return\n wait-idle\n expect \"text:beyond "
       "0\u00b0 by 20.0\u00b0\"");

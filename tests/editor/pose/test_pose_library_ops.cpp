@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/pose/pose_library.h"
+#include "editor/ui/ui.h"
 
 #include "core/pose/body_poses.h"
 #include "core/project/project_io.h"
@@ -23,8 +24,8 @@ double bend_of_fore(const Pose& pose) {
 
 // Makes a library with a pose whose forearm is bent by 40 degrees. The body is back at rest.
 void fill_library(Stage& s) {
-  s.editor().selection.bone = 1;
-  s.editor().selection.bones = {1};
+  s.editor().selection->bone = 1;
+  s.editor().selection->bones = {1};
   s.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle\n key R\n key X\n key 4\n key 0\n key Return");
   run(s.editor(), "pose.library_add");
   s.play("key Alt+R\n wait-idle");
@@ -37,13 +38,13 @@ TEST_CASE(
     "pose") {
   Stage s;
   fill_library(s);
-  const auto edits = s.editor().history.position();
+  const auto edits = s.editor().history->position();
   s.play("click \"Pose library/Pose\"\n wait-idle");
   CHECK(bend_of_fore(pose_of(s.document())) == doctest::Approx(40));
-  CHECK(s.editor().history.position() == edits + 1);
+  CHECK(s.editor().history->position() == edits + 1);
   s.play("key Ctrl+Z\n wait-idle\n drag \"Pose library/Pose\" 50 0\n wait-idle");
   CHECK(bend_of_fore(pose_of(s.document())) == doctest::Approx(10).epsilon(0.03));
-  CHECK(s.editor().history.position() == edits + 1);
+  CHECK(s.editor().history->position() == edits + 1);
   s.play("key Ctrl+Z\n wait-idle");
   CHECK(bend_of_fore(pose_of(s.document())) < 1e-9);
 
@@ -51,11 +52,11 @@ TEST_CASE(
   CHECK(s.editor().views->preview_pose);
   s.play("key Escape\n release\n wait-idle");
   CHECK_FALSE(s.editor().views->preview_pose);
-  CHECK(s.editor().history.position() == edits);
+  CHECK(s.editor().history->position() == edits);
 
   // A pose is applied to the selected bones only.
-  s.editor().selection.bone = 0;
-  s.editor().selection.bones = {0};
+  s.editor().selection->bone = 0;
+  s.editor().selection->bones = {0};
   s.play("click \"Pose library/Pose\"\n wait-idle");
   CHECK(bend_of_fore(pose_of(s.document())) < 1e-9);
 }
@@ -70,8 +71,8 @@ TEST_CASE(
   next.weights.reset();
   next.pose.reset();
   commit(s.editor(), "Import rig", std::move(next));
-  s.editor().selection.bones.clear();
-  s.editor().open_sections["Pose library"] = true;
+  s.editor().selection->bones.clear();
+  s.editor().ui->open_sections["Pose library"] = true;
   s.play("key Ctrl+3\n wait-idle");
   const PoseLibrary& cards = body_pose_cards(s.editor());
   REQUIRE(cards.size() == body_poses().size());
@@ -79,15 +80,15 @@ TEST_CASE(
   CHECK(cards[0]->picture != cards[1]->picture);
   CHECK(s.document().poses.empty());
 
-  const auto edits = s.editor().history.position();
+  const auto edits = s.editor().history->position();
   s.play("click \"Pose library/Body pose sit\"\n wait-idle");
-  CHECK(s.editor().history.position() == edits + 1);
+  CHECK(s.editor().history->position() == edits + 1);
   std::vector<std::string> warnings;
   const Armature& rig = *s.document().armature;
   CHECK(pose_of(s.document()) == with_request(rig, rest_pose(rig), {"sit", {}}, warnings));
-  CHECK(find_operator(s.editor(), "pose.library_delete")->disabled_reason(s.editor()) ==
+  CHECK(find_operator(s.editor().operators, "pose.library_delete")->disabled_reason(s.editor()) ==
         "This pose is built in and cannot be changed");
-  CHECK(find_operator(s.editor(), "pose.library_apply")->disabled_reason(s.editor()).empty());
+  CHECK(find_operator(s.editor().operators, "pose.library_apply")->disabled_reason(s.editor()).empty());
 
   // A pose of the user with the same name is kept apart from the built-in one.
   run(s.editor(), "pose.library_add");

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves the operators that select and pose bones and compare results.
+#include "editor/context/comparison.h"
+#include "editor/context/menu_state.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/screen.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/overlap_overlay.h"
@@ -14,22 +18,23 @@ namespace {
 
 std::function<void(Stage&)> choose(int bone) {
   return [bone](Stage& s) {
-    s.editor().selection = {};
-    s.editor().selection.bone = bone;
-    s.editor().selection.bones = {bone};
+    *s.editor().selection = {};
+    s.editor().selection->bone = bone;
+    s.editor().selection->bones = {bone};
     s.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
   };
 }
 
 std::function<bool(Stage&, const Seen&)> edit_is(const char* label) {
   return [=](Stage& s, const Seen& b) {
-    return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1;
+    return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
 
 std::function<bool(Stage&, const Seen&)> bones_are(const std::set<int>& bones, int active) {
-  return
-      [=](Stage& s, const Seen&) { return s.editor().selection.bones == bones && s.editor().selection.bone == active; };
+  return [=](Stage& s, const Seen&) {
+    return s.editor().selection->bones == bones && s.editor().selection->bone == active;
+  };
 }
 
 double turn_about_z(Stage& s, int bone) { return pose_of(s.document()).rotation[bone].z; }
@@ -41,7 +46,7 @@ void name_sides(Stage& s) {
   armature.bones[0].name = "LeftHalf";
   armature.bones[1].name = "RightHalf";
   next.armature = std::make_shared<const Armature>(armature);
-  s.editor().history.commit("Name sides", next);
+  s.editor().history->commit("Name sides", next);
   choose(0)(s);
 }
 
@@ -61,7 +66,7 @@ void add_result(Stage& s) {
     if (volume->voxels[static_cast<std::size_t>(i)] != 0) overlap.tissue.push_back(i);
   result->overlap = std::make_shared<const Overlap>(std::move(overlap));
   next.results.push_back(result);
-  s.editor().history.commit("Add result", next);
+  s.editor().history->commit("Add result", next);
   show_result(s.editor(), "Bare");
   s.play("key Ctrl+4\n move \"3D view/view\"\n wait-idle");
 }
@@ -81,8 +86,8 @@ std::vector<Proof> proofs_of_posing() {
        bones_are({0, 1}, 1), Shows::InBody, "", choose(1)},
       {"select.circle", "key C\n press \"3D view/view\"\n release\n key Return", bones_are({0, 1}, 1), Shows::InBody,
        "", choose(1)},
-      {"select.similar", "key Shift+G", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Similar"; },
-       Shows::Nothing, "", choose(1)},
+      {"select.similar", "key Shift+G",
+       [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Similar"; }, Shows::Nothing, "", choose(1)},
       {"select.children", "move \"3D view/view\"\n key Shift+G\n wait-idle\n click \"Similar/Children\"",
        bones_are({0, 1}, 0), Shows::InBody, "", choose(0)},
       {"select.same_length", "click \"Edit/Select/Same length\"", bones_are({0, 1}, 0), Shows::InBody, "", choose(0)},
@@ -90,11 +95,11 @@ std::vector<Proof> proofs_of_posing() {
 
       {"pose.rotate", "key R\n key X\n key 3\n key 0\n key Return", edit_is("Rotate Fore"), Shows::InBody, "",
        choose(1)},
-      {"pose.copy", "key Ctrl+C", [](Stage& s, const Seen&) { return s.editor().posing.copied.contains("Fore"); }},
+      {"pose.copy", "key Ctrl+C", [](Stage& s, const Seen&) { return s.editor().posing->copied.contains("Fore"); }},
       {"pose.clear_rotation", "key Alt+R", edit_is("Clear rotation"), Shows::InBody},
       {"pose.paste", "key Ctrl+V", edit_is("Paste pose"), Shows::InBody},
       {"pose.limits", "click \"Edit/Pose/Keep to joint limits\"",
-       [](Stage& s, const Seen&) { return !s.editor().posing.keep_limits; }},
+       [](Stage& s, const Seen&) { return !s.editor().posing->keep_limits; }},
       {"pose.move", "key G\n key Z\n key 9\n key Return", edit_is("Move body"), Shows::InBody, "", choose(0)},
       {"pose.clear_translation", "key Alt+G", edit_is("Clear translation"), Shows::InBody},
       {"pose.flip", "key Ctrl+M",
@@ -124,7 +129,7 @@ std::vector<Proof> proofs_of_posing() {
          Armature rig = *next.armature;
          rig.bones[1].limits = rig.bones[0].limits;
          next.armature = std::make_shared<const Armature>(rig);
-         s.editor().history.commit("Free", next);
+         s.editor().history->commit("Free", next);
          choose(0)(s);
        }},
       {"select.siblings", "click \"Edit/Select/Siblings\"", bones_are({0, 1}, 0), Shows::InBody, "",
@@ -133,7 +138,7 @@ std::vector<Proof> proofs_of_posing() {
          Armature rig = *next.armature;
          rig.bones[1].parent = -1;
          next.armature = std::make_shared<const Armature>(rig);
-         s.editor().history.commit("Apart", next);
+         s.editor().history->commit("Apart", next);
          choose(0)(s);
        }},
   };
@@ -151,9 +156,11 @@ std::vector<Proof> proofs_of_comparing() {
        [](Stage& s, const Seen&) { return wiping(s.editor()) && s.editor().views->other_scene; }, Shows::Nothing,
        "key-up F\n wait-idle"},
       {"compare.swap", "click \"Edit/Resample/Swap A and B\"",
-       [](Stage& s, const Seen&) { return s.editor().comparison.a == "Bare"; }},
+       [](Stage& s, const Seen&) { return s.editor().comparison->a == "Bare"; }},
       {"compare.side_by_side", "key 3",
-       [](Stage& s, const Seen&) { return side_by_side(s.editor()) && s.editor().layout.view_places.size() == 2; },
+       [](Stage& s, const Seen&) {
+         return side_by_side(s.editor()) && s.editor().screen->layout.view_places.size() == 2;
+       },
        Shows::Nothing, "move \"3D view/view\"\n key 4\n wait-idle"},
       {"compare.difference", "key D\n wait-idle",
        [](Stage& s, const Seen&) {

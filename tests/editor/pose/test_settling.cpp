@@ -11,6 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/project/project_io.h"
+#include "editor/context/comparison.h"
+#include "editor/context/operator.h"
+#include "editor/context/resampling_settings.h"
 #include "editor/files/project_session.h"
 #include "editor/pose/live_preview.h"
 #include "editor/resample/fem_overlay.h"
@@ -37,18 +40,18 @@ struct SolveEditor : PaintEditor {
     Pose pose = rest_pose(*next.armature);
     flex(pose, *next.armature, 1, degrees);
     next.pose = std::make_shared<const Pose>(pose);
-    editor->history.reset(next, "Open posed limb");
-    editor->resampling.method = "fem";
+    editor->history->reset(next, "Open posed limb");
+    editor->resampling->method = "fem";
     // With larger tets, all of such a small bone would count as joint, and no bone would be held.
-    editor->resampling.quality = "normal";
-    editor->resampling.contact = false;
+    editor->resampling->quality = "normal";
+    editor->resampling->contact = false;
     play("key Ctrl+4\nwait-idle");
   }
   void set_worker(const std::string& text) {
     const Path path = folder / "worker";
     std::ofstream(path) << "#!/bin/sh\n" << text;
     std::filesystem::permissions(path, std::filesystem::perms::owner_all);
-    editor->worker_program = path;
+    editor->background->worker_program = path;
   }
   // Sets a worker that reports a step in which the mesh and both bones are turned by `turn`, and then goes on running.
   void set_worker_at(const RigidTransform& turn) {
@@ -135,8 +138,8 @@ TEST_CASE(
 
   // A cancel ends the solve and its worker at once.
   const auto asked = Clock::now();
-  test.editor->jobs.cancel(test.editor->fem->watched);
-  REQUIRE(test.step_until([&] { return !test.editor->jobs.busy(); }));
+  test.editor->jobs->cancel(test.editor->fem->watched);
+  REQUIRE(test.step_until([&] { return !test.editor->jobs->busy(); }));
   const double milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - asked).count();
   MESSAGE("from a cancel to its end: " << milliseconds << " ms");
   CHECK(::kill(test.worker(), 0) != 0);
@@ -174,11 +177,11 @@ TEST_CASE(
   CHECK(test.editor->document().weights == begun.weights);
   CHECK(test.editor->document().pose == posed);
   test.play("key Ctrl+S");
-  REQUIRE(test.step_until([&] { return !test.editor->history.unsaved(); }));
+  REQUIRE(test.step_until([&] { return !test.editor->history->unsaved(); }));
   CHECK(std::filesystem::last_write_time(project) > first_save);
   CHECK(*read_project(project).document.pose == *posed);
   CHECK_FALSE(test.has_result());
-  CHECK(test.editor->jobs.busy());
+  CHECK(test.editor->jobs->busy());
 
   std::ofstream(go) << "go";
   test.play("wait-job");
@@ -200,7 +203,7 @@ TEST_CASE(
 TEST_CASE("settling: a result that was watched to its end is what the views then show, one that was not is not") {
   for (const bool watched : {true, false}) {
     SolveEditor test;
-    test.editor->worker_program = LIMBER_PROGRAM;
+    test.editor->background->worker_program = LIMBER_PROGRAM;
     test.play("key Ctrl+Return");
     if (!watched) run(*test.editor, "result.watch");
     test.play("wait-job");
@@ -213,9 +216,9 @@ TEST_CASE(
     "settling: a result by finite elements becomes stale when weights change, or how stiff tissue is, another one does "
     "not mind stiffness") {
   SolveEditor test;
-  test.editor->worker_program = LIMBER_PROGRAM;
+  test.editor->background->worker_program = LIMBER_PROGRAM;
   test.play("key Ctrl+Return\nwait-job");
-  test.editor->resampling.method = "dqs";
+  test.editor->resampling->method = "dqs";
   test.play("key Ctrl+Return\nwait-job");
   REQUIRE(test.editor->document().results.size() == 2);
   const auto stale = [&](int i) { return stale_reason(test.editor->document(), *test.editor->document().results[i]); };
@@ -242,7 +245,7 @@ TEST_CASE(
     "settling: a worker that is killed amid its solve is one line, and the document and the views are as they were") {
   SolveEditor test(60);
   const Path pid = test.folder / "pid";
-  test.editor->resampling.contact = true;
+  test.editor->resampling->contact = true;
   test.set_worker("echo $$ > " + pid.string() + "\nexec " + LIMBER_PROGRAM + " \"$@\"\n");
   const Document before = test.editor->document();
   test.play("key Ctrl+Return");
@@ -252,8 +255,8 @@ TEST_CASE(
   }));
   REQUIRE(::kill(test.worker(), SIGKILL) == 0);
   test.play("wait-job");
-  CHECK(test.editor->messages.last_failure.find("ended by the system") != std::string::npos);
-  CHECK(test.editor->messages.last_failure.find('\n') == std::string::npos);
+  CHECK(test.editor->messages->last_failure.find("ended by the system") != std::string::npos);
+  CHECK(test.editor->messages->last_failure.find('\n') == std::string::npos);
   CHECK(test.editor->document() == before);
   CHECK(test.fact("posed") == "no");
   CHECK(test.editor->fem->solves.empty());
@@ -262,22 +265,22 @@ TEST_CASE(
 #ifndef LIMBER_ADDRESS_SANITIZER
 TEST_CASE("settling: a solve that may not take the memory it needs ends with a line that says so") {
   SolveEditor test(60);
-  test.editor->worker_program = LIMBER_PROGRAM;
+  test.editor->background->worker_program = LIMBER_PROGRAM;
   const Document before = test.editor->document();
   int failures = 0;
   // With the first limits, memory runs out when the worker starts, reads, meshes or solves. The last one is enough.
   for (const int megabytes : {16, 60, 75, 90, 105, 120, 160}) {
-    test.editor->preferences.worker_memory_mb = megabytes;
-    test.editor->messages.last_failure.clear();
+    test.editor->preferences->worker_memory_mb = megabytes;
+    test.editor->messages->last_failure.clear();
     test.play("key Ctrl+Return\nwait-job");
     if (test.has_result()) {
       run(*test.editor, "edit.undo");
       continue;
     }
-    INFO(megabytes, " MB: ", test.editor->messages.last_failure);
+    INFO(megabytes, " MB: ", test.editor->messages->last_failure);
     ++failures;
-    CHECK(test.editor->messages.last_failure.find("memory") != std::string::npos);
-    CHECK(test.editor->messages.last_failure.find('\n') == std::string::npos);
+    CHECK(test.editor->messages->last_failure.find("memory") != std::string::npos);
+    CHECK(test.editor->messages->last_failure.find('\n') == std::string::npos);
   }
   CHECK(failures >= 2);
   CHECK(test.editor->document() == before);
@@ -286,19 +289,19 @@ TEST_CASE("settling: a solve that may not take the memory it needs ends with a l
 
 TEST_CASE("settling: several solves queue, others wait for none of them, and each comes to its own result") {
   SolveEditor test;
-  test.editor->worker_program = LIMBER_PROGRAM;
+  test.editor->background->worker_program = LIMBER_PROGRAM;
   const Path go = test.folder / "go";
   const std::string real(LIMBER_PROGRAM);
   test.set_worker("case \"$(cat \"$2\")\" in *fem*) while [ ! -e " + go.string() +
                   " ]; do sleep 0.02; done;; esac\nexec " + real + " \"$@\"\n");
   test.play("key Ctrl+Return\nkey Ctrl+Return\nkey Ctrl+Return");
   int running = 0, queued = 0;
-  for (const JobStatus& job : test.editor->jobs.statuses())
+  for (const JobStatus& job : test.editor->jobs->statuses())
     running += job.state == JobState::Running, queued += job.state == JobState::Queued;
   CHECK(running == 1);
   CHECK(queued == 2);
   CHECK(test.editor->fem->solves.size() == 3);
-  test.editor->resampling.method = "lbs";
+  test.editor->resampling->method = "lbs";
   test.play("key Ctrl+Return");
   REQUIRE(test.step_until([&] { return test.has_result(); }));
   CHECK(test.editor->document().results[0]->method == "lbs");
@@ -331,8 +334,8 @@ TEST_CASE(
   CHECK(scene.mesh->V == watched_solve(*test.editor)->feed->seen().mesh.posed);
   CHECK(measure_text_at(*test.editor, {12, 10, 14}) == "det F 1.00");
   CHECK(test.fact("text:Volume ratio, det F") == "shown");
-  test.editor->jobs.cancel(test.editor->fem->watched);
-  REQUIRE(test.step_until([&] { return !test.editor->jobs.busy(); }));
+  test.editor->jobs->cancel(test.editor->fem->watched);
+  REQUIRE(test.step_until([&] { return !test.editor->jobs->busy(); }));
   test.player.settle();
   CHECK_FALSE(scene.weights);
   CHECK_FALSE(scene.mesh);
@@ -349,8 +352,8 @@ TEST_CASE(
     if (glm::length(glm::dvec3(p.x, p.y, std::abs(p.z) - 20)) < 10) volume->voxels[at] = 111;
   }
   two_bones.volume = volume;
-  test.editor->history.reset(two_bones, "Open limb with two bones");
-  test.editor->worker_program = LIMBER_PROGRAM;
+  test.editor->history->reset(two_bones, "Open limb with two bones");
+  test.editor->background->worker_program = LIMBER_PROGRAM;
   test.play("key Ctrl+Return\nwait-job\nwait-idle");
   REQUIRE(test.has_result());
   const auto result = test.editor->document().results[0];
@@ -370,9 +373,9 @@ TEST_CASE(
   CHECK(shown_measure(*test.editor)->most > 0);
 
   // Shows the result on the left of a wipe and the volume at rest on the right, then the other way round.
-  test.editor->comparison.a = result->name;
-  test.editor->comparison.b = "";
-  test.editor->comparison.views = Comparison::Views::Wipe;
+  test.editor->comparison->a = result->name;
+  test.editor->comparison->b = "";
+  test.editor->comparison->views = Comparison::Views::Wipe;
   test.play("wait-idle");
   REQUIRE(test.editor->views->other_scene);
   CHECK(test.editor->views->other_scene->weights);
@@ -389,7 +392,7 @@ TEST_CASE(
 
 TEST_CASE("settling: a result keeps its mesh in the project file, and gives it back bit for bit") {
   SolveEditor test;
-  test.editor->worker_program = LIMBER_PROGRAM;
+  test.editor->background->worker_program = LIMBER_PROGRAM;
   test.play("key Ctrl+Return\nwait-job");
   REQUIRE(test.has_result());
   const Path path = test.folder / "limb.limber";

@@ -1,9 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Compares results with the volume at rest, and selects, renames and deletes them.
+#include "editor/context/comparison.h"
+#include "editor/context/operator.h"
+#include "editor/context/pick_list.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/results.h"
 #include "editor/shown/compare_wipe.h"
 #include "editor/shown/fem_live_view.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/small_limb.h"
 
 using namespace limber;
@@ -36,7 +42,7 @@ struct Compared : LimbEditor {
   Compared() {
     Document next = editor->document();
     next.results = {result(next, "One", 30, 0), result(next, "Two", 20, 6)};
-    editor->history.commit("Results", next);
+    editor->history->commit("Results", next);
     play("key Ctrl+4");
   }
   const std::shared_ptr<const LabelVolume>& shown() const { return editor->views->scene.volume; }
@@ -89,7 +95,7 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   CHECK(test.editor->views->other_scene->volume.get() == test.volume(0));
   CHECK(test.shown().get() == test.volume(1));
   // Left of the wipe line the view shows A, right of it B. 25 mm from the middle only A has tissue.
-  const Rect view = *test.editor->layout.place_of(ViewId::Body);
+  const Rect view = *test.editor->screen->layout.place_of(ViewId::Body);
   const glm::dvec3 right = test.editor->views->body.camera.world_from_view * glm::dvec3(1, 0, 0);
   const auto hovered = [&](double millimetres) {
     glm::dvec2 pixel;
@@ -102,7 +108,7 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
   CHECK_FALSE(hovered(25));
   // The list of tissues under the pointer is that of the pointer's side: four tissues of the body at rest, one of the
   // result "Two".
-  test.editor->comparison.a = "";
+  test.editor->comparison->a = "";
   test.play("wait-idle");
   const auto listed = [&](double millimetres) {
     hovered(millimetres);
@@ -111,19 +117,19 @@ TEST_CASE("results: A and B are shown in turn, held against one another, and wip
     test.player.settle();
     test.host->events.push(KeyChanged{Key::Alt, false});
     test.player.settle();
-    const std::vector<Pickable> below = test.editor->pick_list;
+    const std::vector<Pickable> below = test.editor->pick_list->rows;
     test.play("key Escape");
     return std::count(below.begin(), below.end(), Pickable{std::nullopt, 111});
   };
   CHECK(listed(-4) == 1);
   CHECK(listed(4) == 0);
-  test.editor->comparison.a = "One";
+  test.editor->comparison->a = "One";
   test.play("wait-idle");
   test.play("drag \"3D view/wipe\" 200 0\n wait-idle");
-  CHECK(test.editor->comparison.share > 0.6f);
+  CHECK(test.editor->comparison->share > 0.6f);
   CHECK(hovered(25));
   test.play("double-click \"3D view/wipe\"");
-  CHECK(test.editor->comparison.share == 0.5f);
+  CHECK(test.editor->comparison->share == 0.5f);
   run(*test.editor, "compare.swap");
   test.player.settle();
   CHECK(test.shown().get() == test.volume(0));
@@ -137,7 +143,7 @@ TEST_CASE("results: A and B stand side by side, one camera sees both, and what t
       "click Two/row\n click One/row Shift\n move \"3D view/view\"\n key 3\n wait-idle\n expect \"text:One\"\n expect "
       "\"text:Two\"");
   CHECK(side_by_side(*test.editor));
-  const Layout& layout = test.editor->layout;
+  const Layout& layout = test.editor->screen->layout;
   REQUIRE(layout.view_places.size() == 2);
   const Rect b = *layout.place_of(ViewId::Body), a = layout.view_places[1].rect;
   CHECK(layout.view_places[1].side_a);
@@ -164,19 +170,19 @@ TEST_CASE("results: A and B stand side by side, one camera sees both, and what t
   CHECK(label_at(b, 25) == 0);
 
   test.play("drag \"3D view/divider\" 120 0\n wait-idle");
-  CHECK(test.editor->comparison.share > 0.55f);
+  CHECK(test.editor->comparison->share > 0.55f);
   CHECK(layout.view_places[1].rect.width() > a.width() + 100);
   test.play("drag \"3D view/divider\" 900 0\n wait-idle");
   CHECK(layout.view_places[0].rect.width() > 0.19f * layout.views.width());
   test.play("double-click \"3D view/divider\"");
-  CHECK(test.editor->comparison.share == 0.5f);
+  CHECK(test.editor->comparison->share == 0.5f);
 
   // Slices are shown twice too, and a clip box cuts both sides.
   test.play("key Ctrl+Alt+Q\n wait-idle");
   CHECK(layout.view_places.size() == 8);
   test.play("move \"Axial A/view\"");
   CHECK(test.editor->views->hover.view == ViewId::Axial);
-  CHECK(scene_at_pointer(*test.editor, *layout.view_at(test.editor->input.pointer)).volume.get() == test.volume(0));
+  CHECK(scene_at_pointer(*test.editor, *layout.view_at(test.editor->ui->input.pointer)).volume.get() == test.volume(0));
   run(*test.editor, "view.one");
   test.play("wait-idle\n move \"3D view/view\"\n key Alt+B\n wait-idle");
   CHECK(test.editor->views->scene.clip.box);
@@ -244,9 +250,10 @@ TEST_CASE("results: gates, changes and provenance are read from the report of th
       "volume_change_percent": -10}]})";
   judged->from_pose = std::make_shared<const Pose>(rest_pose(*next.armature));
   next.results[0] = judged;
-  test.editor->history.commit("Report", next);
-  test.editor->open_sections["Provenance"] = true;
-  for (const char* folded : {"Outliner", "Tissues", "Running", "Resample"}) test.editor->open_sections[folded] = false;
+  test.editor->history->commit("Report", next);
+  test.editor->ui->open_sections["Provenance"] = true;
+  for (const char* folded : {"Outliner", "Tissues", "Running", "Resample"})
+    test.editor->ui->open_sections[folded] = false;
   test.play("click One/row\n wait-idle");
   for (const char* text : {"-10.00 %", "0.250 mm", "7 voxels", "not checked", "within", "9.8", "fine", "rig.json",
                            "0123456789abcdef", "3.25 s", "123 MB"}) {
@@ -254,9 +261,9 @@ TEST_CASE("results: gates, changes and provenance are read from the report of th
     CHECK(test.fact(std::string("text:") + text) == "shown");
   }
   test.play("click \"Bone parts rigid\"");
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection->bone == 1);
   test.play("click \"Each tissue within 1 %\"");
-  CHECK(test.editor->selection.tissue == 143);
+  CHECK(test.editor->selection->tissue == 143);
   test.play("click \"Quality gates/fold\"\n wait-idle\n click rig.json");
   CHECK(test.host->clipboard() == "0123456789abcdef0123456789abcdef");
   const std::string text = text_of_report("One", *facts_of(*test.editor, test.editor->document().results[0]));
@@ -280,7 +287,7 @@ TEST_CASE("results: the Resample workspace opens with the result of the current 
   posed_by(0, rest_pose(*next.armature));
   posed_by(1, bent);
   next.pose = std::make_shared<const Pose>(bent);
-  test.editor->history.commit("Pose", next);
+  test.editor->history->commit("Pose", next);
   test.play("click One/row\n wait-idle");
   CHECK(test.shown().get() == test.volume(0));
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
@@ -296,17 +303,17 @@ TEST_CASE("results: the Resample workspace opens with the result of the current 
   auto grown = std::make_shared<Armature>(*stale.armature);
   grown->bones[1].tail.z += 1;
   stale.armature = grown;
-  test.editor->history.commit("Rig", stale);
+  test.editor->history->commit("Rig", stale);
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
   CHECK(test.shown().get() == test.volume(0));
-  test.editor->history.commit("Rig", fresh);
+  test.editor->history->commit("Rig", fresh);
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
   CHECK(test.shown().get() == test.volume(1));
   // If the pose has no result, the user's selection stays.
   next = test.editor->document();
   bent.rotation[0] = glm::angleAxis(0.2, glm::dvec3(1, 0, 0));
   next.pose = std::make_shared<const Pose>(bent);
-  test.editor->history.commit("Pose", next);
+  test.editor->history->commit("Pose", next);
   test.play("key Ctrl+3\n wait-idle\n key Ctrl+4\n wait-idle");
   CHECK(test.shown().get() == test.volume(1));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Resamples a volume to a posed one in the real editor, also with workers that fail.
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <thread>
@@ -9,6 +10,9 @@
 #include "core/resample/glide_joints.h"
 #include "core/resample/posed_voxels.h"
 #include "core/resample/resample.h"
+#include "editor/context/operator.h"
+#include "editor/context/resampling_settings.h"
+#include "editor/context/screen.h"
 #include "editor/files/export.h"
 #include "editor/resample/results.h"
 #include "editor/screen/job_progress.h"
@@ -53,7 +57,7 @@ void bend(LimbEditor& test) {
   )");
 }
 
-std::string next_step(const Editor& editor) {
+std::string next_step(const Context& editor) {
   for (const Step& step : steps(editor))
     if (step.state == StepState::Next) return step.title;
   return "none";
@@ -65,9 +69,9 @@ std::string failure(LimbEditor& test) {
   run(*test.editor, "resample.run");
   test.play("wait-job");
   CHECK(test.editor->document() == before);
-  REQUIRE_FALSE(test.editor->messages.toasts.empty());
-  CHECK(test.editor->messages.toasts.back().severity == Severity::Error);
-  return test.editor->messages.last_failure;
+  REQUIRE_FALSE(test.editor->messages->toasts.empty());
+  CHECK(test.editor->messages->toasts.back().severity == Severity::Error);
+  return test.editor->messages->last_failure;
 }
 
 }  // namespace
@@ -233,15 +237,15 @@ TEST_CASE("resample: a worker that crashes, fails, hangs or eats memory is a mes
   preferences.worker_minutes = 0.01;
   LimbEditor test({1280, 720}, preferences);
   bend(test);
-  test.editor->worker_program = script(folder, "kill -SEGV $$\n");
+  test.editor->background->worker_program = script(folder, "kill -SEGV $$\n");
   CHECK(failure(test).find("crashed") != std::string::npos);
-  test.editor->worker_program = script(folder, "echo 'limber: no room: rig.json: free some' >&2; exit 1\n");
+  test.editor->background->worker_program = script(folder, "echo 'limber: no room: rig.json: free some' >&2; exit 1\n");
   CHECK(failure(test) == "no room: rig.json: free some");
-  test.editor->worker_program = script(folder, "sleep 100\n");
+  test.editor->background->worker_program = script(folder, "sleep 100\n");
   CHECK(failure(test).find("took longer") != std::string::npos);
-  test.editor->worker_program = "/no/such/program";
+  test.editor->background->worker_program = "/no/such/program";
   CHECK(failure(test).find("cannot be started") != std::string::npos);
-  test.editor->worker_program = script(folder, "exit 0\n");  // the worker succeeds, but writes nothing
+  test.editor->background->worker_program = script(folder, "exit 0\n");  // the worker succeeds, but writes nothing
   CHECK_FALSE(failure(test).empty());
 
   // The message can be opened again, and the editor goes on.
@@ -268,7 +272,7 @@ TEST_CASE("resample: a worker killed from outside is a message") {
   LimbEditor test;
   bend(test);
   const Path pid = folder / "pid";
-  test.editor->worker_program = script(folder, "echo $$ > " + pid.string() + "\nsleep 100\n");
+  test.editor->background->worker_program = script(folder, "echo $$ > " + pid.string() + "\nsleep 100\n");
   run(*test.editor, "resample.run");
   const auto killed = [&] {
     std::ifstream in(pid);
@@ -280,7 +284,7 @@ TEST_CASE("resample: a worker killed from outside is a message") {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   test.play("wait-job");
-  CHECK(test.editor->messages.last_failure.find("ended by the system") != std::string::npos);
+  CHECK(test.editor->messages->last_failure.find("ended by the system") != std::string::npos);
   CHECK(test.editor->document().results.empty());
 }
 
@@ -288,15 +292,16 @@ TEST_CASE("jobs: the slot in the status bar opens the list, Cancel stops at once
   const TemporaryFolder folder;
   LimbEditor test;
   bend(test);
-  const Rect views = test.editor->layout.views;
-  test.editor->worker_program = script(folder, "echo '{\"stage\": \"deform\", \"fraction\": 0.5}' >&2\nsleep 100\n");
+  const Rect views = test.editor->screen->layout.views;
+  test.editor->background->worker_program =
+      script(folder, "echo '{\"stage\": \"deform\", \"fraction\": 0.5}' >&2\nsleep 100\n");
   run(*test.editor, "resample.run");
   for (int i = 0; i < 400 && test.fact("text:deform") == "absent"; ++i) {
     test.player.step();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   CHECK(test.fact("text:deform") == "shown");
-  CHECK(test.editor->layout.views == views);
+  CHECK(test.editor->screen->layout.views == views);
   test.play(R"(
     click status/Running
     expect "text:50 %" shown
@@ -305,9 +310,9 @@ TEST_CASE("jobs: the slot in the status bar opens the list, Cancel stops at once
     expect jobs no
     expect widget:status/Running absent
   )");
-  CHECK(test.editor->layout.views == views);
+  CHECK(test.editor->screen->layout.views == views);
   CHECK(test.editor->document().results.empty());
-  CHECK(test.editor->messages.errors.empty());
+  CHECK(test.editor->messages->errors.empty());
 }
 
 TEST_CASE("jobs: time left is rounded") {
@@ -320,9 +325,9 @@ TEST_CASE("jobs: time left is rounded") {
 
 TEST_CASE("console: messages are filtered by kind and words, and copied") {
   SmallEditor test({1280, 720});
-  test.editor->messages.info("First note");
-  test.editor->messages.warn("A warning", "with a detail");
-  test.editor->messages.show_error("it broke: here: mend it");
+  test.editor->messages->info("First note");
+  test.editor->messages->warn("A warning", "with a detail");
+  test.editor->messages->show_error("it broke: here: mend it");
   test.play(R"(
     key Escape
     click Help/Console
@@ -365,13 +370,13 @@ TEST_CASE("resample: finite elements run in the worker as the panel says, and th
     click Quality/list
     click Fine
   )");
-  CHECK(test.editor->resampling.quality == "fine");
-  CHECK(test.editor->resampling.contact);
+  CHECK(test.editor->resampling->quality == "fine");
+  CHECK(test.editor->resampling->contact);
   test.play("click Contact");
-  CHECK_FALSE(test.editor->resampling.contact);
+  CHECK_FALSE(test.editor->resampling->contact);
   run(*test.editor, "resample.run");
   test.play("wait-job");
-  INFO(test.editor->messages.last_failure);
+  INFO(test.editor->messages->last_failure);
   const Document& document = test.editor->document();
   REQUIRE(document.results.size() == 1);
   CHECK(document.results[0]->name == "Fore 30\u00b0, FEM");

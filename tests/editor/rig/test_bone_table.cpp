@@ -104,7 +104,7 @@ TEST_CASE("bone table: the box of choices maps a label, and a bone that gets ano
   // A map that names a missing bone is not used, and a message says so.
   Document next = test.editor->document();
   next.bone_map = std::make_shared<const BoneMap>(BoneMap{{"5", "Tail"}, {"4", "Spine"}});
-  test.editor->history.commit("Wrong map", next);
+  test.editor->history->commit("Wrong map", next);
   test.play("wait-job\nwait-idle");
   CHECK(test.fact("text:1 entry names no tissue or bone") == "shown");
   CHECK(bone_table(*test.editor)->rows[1].bones == std::vector<int>{0});

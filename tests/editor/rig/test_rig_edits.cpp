@@ -3,12 +3,16 @@
 
 #include "core/motion/constraint.h"
 #include "core/rig_io/rig_io.h"
+#include "editor/context/interaction.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
 #include "editor/context/view_projection.h"
 #include "editor/files/import.h"
 #include "editor/rig/joint_gizmo.h"
 #include "editor/rig/rig_check.h"
 #include "editor/rig/rig_edits.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/snap.h"
 #include "tests/editor/small_limb.h"
 #include "tests/support/program.h"
@@ -22,7 +26,7 @@ namespace {
 
 struct RiggingEditor : LimbEditor {
   explicit RiggingEditor(const glm::ivec2& size = {900, 600}, double scale = 1) : LimbEditor(size, at_scale(scale)) {
-    editor->preferences.reduce_motion = true;
+    editor->preferences->reduce_motion = true;
     play("key Ctrl+1\nkey Num1\nkey Num5\nwait-idle");
     choose(1);
   }
@@ -32,12 +36,12 @@ struct RiggingEditor : LimbEditor {
     return preferences;
   }
   void choose(int bone) {
-    editor->selection = {};
-    editor->selection.bone = bone;
-    editor->selection.bones = {bone};
+    *editor->selection = {};
+    editor->selection->bone = bone;
+    editor->selection->bones = {bone};
   }
   ViewProjection view(ViewId id = ViewId::Body) const {
-    return ViewProjection(*editor, {id, *editor->layout.place_of(id)});
+    return ViewProjection(*editor, {id, *editor->screen->layout.place_of(id)});
   }
   void drag(const ViewProjection& view, const glm::dvec3& from, const glm::dvec3& to) {
     pointer_to(view.pixel_of(from).value());
@@ -49,7 +53,7 @@ struct RiggingEditor : LimbEditor {
     player.settle();
   }
   void pointer_to(const glm::dvec2& pixel) {
-    const glm::dvec2 at = pixel / double(editor->look.scale);
+    const glm::dvec2 at = pixel / double(editor->ui->look.scale);
     play("move " + std::to_string(at.x) + " " + std::to_string(at.y));
   }
   const Armature& rig() const { return *editor->document().armature; }
@@ -59,17 +63,17 @@ struct RiggingEditor : LimbEditor {
 
 TEST_CASE("rigging: a joint is dragged in the 3D view and in a slice, and what is connected follows") {
   RiggingEditor test;
-  test.editor->tool = Tool::Move;
-  test.editor->selection = {};
+  test.editor->interaction->tool = Tool::Move;
+  *test.editor->selection = {};
   test.drag(test.view(), {0, 0, -36}, {10, 0, -30});
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection->bone == 1);
   CHECK(test.editor->transform_settings->part == TransformSettings::Part::Tail);
   CHECK(glm::distance(test.rig().bones[1].tail, glm::dvec3(10, 0, -30)) < 0.05);
   test.play("key Ctrl+Z\nclick view.split\nwait-idle");
   test.editor->views->cross_hair = {0, 0, 0};
-  test.editor->selection = {};
+  *test.editor->selection = {};
   test.play("wait-idle");
-  const ViewId slice = test.editor->layout.place_of(ViewId::Coronal) ? ViewId::Coronal : ViewId::Sagittal;
+  const ViewId slice = test.editor->screen->layout.place_of(ViewId::Coronal) ? ViewId::Coronal : ViewId::Sagittal;
   const glm::dvec3 to = slice == ViewId::Coronal ? glm::dvec3(7, 0, 4) : glm::dvec3(0, 7, 4);
   test.drag(test.view(slice), {0, 0, 0}, to);
   CHECK(glm::distance(test.rig().bones[0].tail, to) < 0.1);
@@ -80,19 +84,19 @@ TEST_CASE("rigging: a joint is dragged in the 3D view and in a slice, and what i
 
 TEST_CASE("rigging: Escape leaves the rig as it was, and an extrusion of no length makes no bone") {
   RiggingEditor test;
-  const auto position = test.editor->history.position();
+  const auto position = test.editor->history->position();
   test.play("move \"3D view/view\"\nkey E\nkey Z\nkey 9");
   CHECK(shown_rig(*test.editor)->bones.size() == 3);
   test.play("key Escape\nkey E\nkey Return");
   CHECK(test.rig().bones.size() == 2);
   CHECK(shown_rig(*test.editor)->bones.size() == 2);
-  CHECK(test.editor->history.position() == position);
+  CHECK(test.editor->history->position() == position);
 }
 
 TEST_CASE("rigging: with Ctrl a joint snaps to steps, to another joint, or to the middle of the bone tissue below") {
   RiggingEditor test;
   test.play("move \"3D view/view\"\nkey G\nkey X\nkey-down Ctrl");
-  test.pointer_to(glm::dvec2(test.editor->input.pointer) + glm::dvec2(23, 0));
+  test.pointer_to(glm::dvec2(test.editor->ui->input.pointer) + glm::dvec2(23, 0));
   test.play("key Return\nkey-up Ctrl");
   const double by = test.rig().bones[1].tail.x;
   CHECK(by > 1);
@@ -116,13 +120,13 @@ TEST_CASE("rigging: pose, weights and names follow an edit, and come back with u
   next.pose = std::make_shared<const Pose>(pose);
   next.weights =
       std::make_shared<const SkinWeights>(std::vector<std::string>{"Upper", "Fore"}, TissueVoxels(*next.volume));
-  test.editor->history.commit("Weights", next);
+  test.editor->history->commit("Weights", next);
 
   next.clips = {
       std::make_shared<const Clip>(Clip{.name = "Keys", .keys = {.bones = {{"Fore", {{3, pose.rotation[1]}}}}}})};
   next.poses = {std::make_shared<const NamedPose>(NamedPose{"Bent", {{"Fore", pose.rotation[1]}}})};
   next.anchors = std::make_shared<const Anchors>(Anchors{.pins = {"Fore"}});
-  test.editor->history.commit("Keys", next);
+  test.editor->history->commit("Keys", next);
 
   rename_bone(*test.editor, 1, "Forearm");
   CHECK(test.editor->document().weights->bones()[1] == "Forearm");
@@ -199,9 +203,9 @@ TEST_CASE("rigging: the fit check follows a joint that is dragged out of the tis
     test.play("key Escape\n wait-idle");
     CHECK(rig_check(*test.editor)->bones.empty());
     test.play("key G\n key Z\n key -\n key 3\n key 6\n key Return\n wait-idle");
-    test.editor->selection = {};
+    *test.editor->selection = {};
     test.play("click \"Fit check/Fore/name\"\n wait-idle\n wait 1");
-    CHECK(test.editor->selection.bone == 1);
+    CHECK(test.editor->selection->bone == 1);
     CHECK(test.editor->transform_settings->part == TransformSettings::Part::Tail);
     CHECK(glm::distance(test.editor->views->body.camera.centre, glm::dvec3(0, 0, -72)) < 1e-6);
     test.play("key Ctrl+Z\n wait-idle");
@@ -216,12 +220,12 @@ TEST_CASE(
     for (const ViewId id : {ViewId::Body, ViewId::Coronal}) {
       RiggingEditor test(scale > 1 ? glm::ivec2(1800, 1200) : glm::ivec2(900, 600), scale);
       INFO("scale ", scale, ", view ", name_of(id));
-      test.editor->tool = Tool::Move;
+      test.editor->interaction->tool = Tool::Move;
       test.editor->views->cross_hair = {0, 0, 0};
       if (id != ViewId::Body) test.play("click view.four\nwait-idle");
       const auto snapped = [&](Snap snap, const glm::dvec3& to) {
         test.editor->transform_settings->snap = snap;
-        test.editor->selection = {};
+        *test.editor->selection = {};
         test.pointer_to(test.view(id).pixel_of({0, 0, -36}).value());
         test.host->events.push(ButtonChanged{MouseButton::Left, true});
         test.player.settle();
@@ -255,7 +259,7 @@ void give_two_arms(RiggingEditor& test) {
                {"Arm.L", 0, {4, 0, 0}, {20, 0, 4}, 0, {}},
                {"Arm.R", 0, {-4, 0, 0}, {-20, 0, 4}, 0, {}}};
   next.armature = std::make_shared<const Armature>(rig);
-  test.editor->history.commit("Arms", next);
+  test.editor->history->commit("Arms", next);
   test.choose(1);
   test.play("wait-idle");
 }
@@ -276,7 +280,7 @@ TEST_CASE("rigging: with X-mirror both sides extrude") {
   CHECK(test.rig().bones[4].parent == 2);
   CHECK(glm::distance(test.rig().bones[3].tail, {29, 0, 4}) < 1e-9);
   CHECK(glm::distance(test.rig().bones[4].tail, {-29, 0, 4}) < 1e-9);
-  CHECK(test.editor->selection.bones == std::set<int>{3});
+  CHECK(test.editor->selection->bones == std::set<int>{3});
   test.play("key Ctrl+Z");
   CHECK(test.rig().bones.size() == 3);
 }
@@ -305,7 +309,7 @@ TEST_CASE("rigging: a bone mirrored to the other side keeps its weights and pose
   next.clips = {std::make_shared<const Clip>(Clip{.name = "Keys", .keys = {.bones = {{"Arm.L", {{3, raised}}}}}})};
   next.poses = {std::make_shared<const NamedPose>(NamedPose{"Raised", {{"Arm.L", raised}}})};
   next.anchors = std::make_shared<const Anchors>(Anchors{.pins = {"Arm.L"}, .poles = {{"Arm.L", {7, 8, 9}}}});
-  test.editor->history.commit("Weights and keys", next);
+  test.editor->history->commit("Weights and keys", next);
 
   test.choose(arm);
   test.play("move \"3D view/view\"\n key Ctrl+M");
@@ -323,7 +327,7 @@ TEST_CASE("rigging: a bone mirrored to the other side keeps its weights and pose
   CHECK(document.anchors->pins == std::set<std::string>{"Arm.R"});
   // The pole is mirrored at the trunk, which lies in the middle.
   CHECK(glm::distance(document.anchors->poles.at("Arm.R"), {-7, 8, 9}) < 1e-9);
-  CHECK(test.editor->selection.bones == std::set<int>{arm});
+  CHECK(test.editor->selection->bones == std::set<int>{arm});
 
   // Mirroring again restores the rig.
   test.play("key Ctrl+M");
@@ -341,14 +345,14 @@ TEST_CASE(
   next.clips = {std::make_shared<const Clip>(Clip{.name = "Keys", .keys = {.bones = {{"Arm.L", {{3, raised}}}}}})};
   next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Trunk", "Arm.L", "Arm.R"},
                                                      TissueVoxels(*next.volume));
-  test.editor->history.commit("Keys", next);
+  test.editor->history->commit("Keys", next);
   test.choose(1);
-  test.editor->selection.bones = {1, 2};
+  test.editor->selection->bones = {1, 2};
   test.play("move \"3D view/view\"\n key Ctrl+M");
   CHECK(test.rig().bones[test.rig().find("Arm.L").value()].tail.x > 0);
   CHECK(test.editor->document().clips == next.clips);
   CHECK(test.editor->document().weights->bones()[test.rig().find("Arm.L").value()] == "Arm.L");
-  CHECK(test.editor->selection.bones == std::set<int>{1, 2});
+  CHECK(test.editor->selection->bones == std::set<int>{1, 2});
 }
 
 TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, each on its side") {
@@ -359,7 +363,7 @@ TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, ea
   for (const double side : {1.0, -1.0})
     rig.bones.push_back({side > 0 ? "Hand.L" : "Hand.R", 0, {side * 24, 0, 4}, {side * 30, 0, 4}, 0, {}});
   next.armature = std::make_shared<const Armature>(rig);
-  test.editor->history.commit("Hands", next);
+  test.editor->history->commit("Hands", next);
   test.editor->transform_settings->x_mirror = true;
   const auto parent_of = [&](const std::string& name) {
     const int parent = test.rig().bones[test.rig().find(name).value()].parent;
@@ -368,7 +372,7 @@ TEST_CASE("rigging: with X-mirror both sides change parents, and are deleted, ea
   // Selects a child, and its future parent as the active bone.
   const auto choose_both = [&](const std::string& child, const std::string& parent) {
     test.choose(test.rig().find(parent).value());
-    test.editor->selection.bones.insert(test.rig().find(child).value());
+    test.editor->selection->bones.insert(test.rig().find(child).value());
     test.play("move \"3D view/view\"");
   };
   choose_both("Hand.L", "Arm.L");
@@ -426,7 +430,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
   for (const double scale : {1.0, 2.0}) {
     RiggingEditor test(scale > 1 ? glm::ivec2(1800, 1200) : glm::ivec2(900, 600), scale);
     INFO("scale ", scale);
-    test.editor->tool = Tool::Rotate;
+    test.editor->interaction->tool = Tool::Rotate;
     test.player.settle();
     const ViewProjection view = test.view();
     const glm::dvec3 head = test.rig().bones[1].head, handle = hinge_handle(*test.editor, view).value();
@@ -509,11 +513,11 @@ TEST_CASE("rigging: a bone of no length is refused with a line, typed in the sid
   for (const char* deed : {"double-click Bone/Length\n key Ctrl+A\n type \"0\"\n key Return",
                            "move \"3D view/view\"\n key S\n key 0\n key Return"}) {
     INFO(std::string(deed));
-    const std::size_t lines = test.editor->messages.log.size();
+    const std::size_t lines = test.editor->messages->log.size();
     test.play(deed);
     test.play("wait-idle");
     CHECK(test.rig() == before);
-    CHECK(test.editor->messages.log.size() == lines + 1);
+    CHECK(test.editor->messages->log.size() == lines + 1);
     CHECK_FALSE(test.editor->views->preview_armature);
   }
 }
@@ -523,13 +527,13 @@ TEST_CASE("rigging: undo of a deletion chooses the bones again, and what is symm
   test.play("move \"3D view/view\"\n key X\n wait-idle");
   REQUIRE(test.rig().bones.size() == 1);
   test.play("key Ctrl+Z\n wait-idle");
-  CHECK(test.editor->selection.bone == 1);
-  CHECK(test.editor->selection.bones == std::set<int>{1});
+  CHECK(test.editor->selection->bone == 1);
+  CHECK(test.editor->selection->bones == std::set<int>{1});
   const Armature before = test.rig();
   test.play("move \"3D view/view\"\n key Shift+M\n wait-idle");
   CHECK(test.rig() == before);
-  REQUIRE(test.editor->messages.errors.size() == 1);
-  CHECK(test.editor->messages.errors[0].where == "Fore");
+  REQUIRE(test.editor->messages->errors.size() == 1);
+  CHECK(test.editor->messages->errors[0].where == "Fore");
 }
 
 TEST_CASE(
@@ -542,18 +546,18 @@ TEST_CASE(
     for (int b = 0; b < 40; ++b)
       rig->bones.push_back({"B" + std::to_string(b), b % 10 ? b - 1 : -1, {b, 0, 0}, {b, 0, 5}});
     chain.armature = rig;
-    test.editor->history.reset(chain, "Open chains");
+    test.editor->history->reset(chain, "Open chains");
     test.play("click Steps/fold\n wait-idle");
     for (const int bone : {39, 0, 25}) {
       INFO("bone ", bone, ", scale ", scale);
       test.choose(bone);
       test.play("wait-idle");
-      const Rect& sidebar = test.editor->layout.sidebar;
-      const Widget* row = test.editor->widgets.find("Outliner/bone B" + std::to_string(bone) + "/name");
+      const Rect& sidebar = test.editor->screen->layout.sidebar;
+      const Widget* row = test.editor->ui->widgets.find("Outliner/bone B" + std::to_string(bone) + "/name");
       REQUIRE(row);
       CHECK(row->rect.height() >= 20 * scale);
       for (const char* field : {"Bone/Name", "Bone/Head X", "Bone/Tail Z", "Bone/Length", "Bone/Roll"}) {
-        const Widget* widget = test.editor->widgets.find(field);
+        const Widget* widget = test.editor->ui->widgets.find(field);
         REQUIRE(widget);
         CHECK(sidebar.contains(widget->rect));
         CHECK(widget->rect.height() >= 21 * scale);
@@ -572,10 +576,10 @@ TEST_CASE("rigging: an edit that moves the target bone of a constraint says so, 
                    {.name = "Copy", .kind = ConstraintKind::CopyRotation, .bone = root, .target = child},
                    {.name = "Free", .kind = ConstraintKind::Aim, .bone = child, .place{0, 0, 9}}}});
   document.clips = {std::make_shared<const Clip>(clip)};
-  test.editor->history.reset(document, "Open limb");
+  test.editor->history->reset(document, "Open limb");
   const auto warnings = [&] {
     std::string all;
-    for (const LogLine& line : test.editor->messages.log)
+    for (const LogLine& line : test.editor->messages->log)
       if (line.severity == Severity::Warning) all += line.text + "\n";
     return all;
   };

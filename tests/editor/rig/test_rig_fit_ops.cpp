@@ -5,6 +5,7 @@
 #include "core/motion/constraint.h"
 #include "core/phantom/phantom.h"
 #include "core/rig_io/rig_templates.h"
+#include "editor/context/operator.h"
 #include "editor/rig/auto_rig.h"
 #include "editor/rig/joint_axis_fit.h"
 #include "editor/volume/volume_edits.h"
@@ -33,10 +34,10 @@ void open_bars(Stage& stage) {
   rig.bones[1].limits = {.type = JointLimits::Type::Hinge, .axis = {0, 0, 1}, .minimum = 0, .maximum = 1};
   document.volume = volume;
   document.armature = std::make_shared<const Armature>(rig);
-  stage.editor().history.commit("Bars", document);
-  stage.editor().selection = {};
-  stage.editor().selection.bone = 1;
-  stage.editor().selection.bones = {1};
+  stage.editor().history->commit("Bars", document);
+  *stage.editor().selection = {};
+  stage.editor().selection->bone = 1;
+  stage.editor().selection->bones = {1};
   stage.play("key Ctrl+1\n move \"3D view/view\"\n wait-idle");
 }
 
@@ -102,9 +103,9 @@ TEST_CASE("joint axis: a fit that moves the target bone of a constraint says so"
   clip.constraints = std::make_shared<const Constraints>(Constraints{
       {{.name = "Aim", .kind = ConstraintKind::Aim, .bone = "Fixed", .target = "Turning", .place{0, 0, 9}}}});
   document.clips = {std::make_shared<const Clip>(clip)};
-  stage.editor().history.commit("Aim", document);
+  stage.editor().history->commit("Aim", document);
   stage.play("wait-idle\n key Shift+J\n wait-job\n wait-idle\n click \"3D view/joint axis/rig.take_joint_fit\"");
-  const auto& log = stage.editor().messages.log;
+  const auto& log = stage.editor().messages->log;
   CHECK(std::any_of(log.begin(), log.end(), [](const LogLine& line) {
     return line.severity == Severity::Warning &&
            line.text.find("Fit joint axis of Turning: targets of constraints moved") == 0;
@@ -119,7 +120,7 @@ TEST_CASE("joint axis: a joint without a hinge is fitted as the hinge it bends b
   rig.bones[1].limits = {};
   rig.bones[0].head = {-38, 14, 0};  // not in line, so that the joint has a bending direction
   document.armature = std::make_shared<const Armature>(rig);
-  stage.editor().history.commit("Free", document);
+  stage.editor().history->commit("Free", document);
   stage.play("wait-idle\n key Shift+J\n wait-job\n wait-idle");
   INFO(stage.fact("toast"), ", error ", stage.fact("error"));
   REQUIRE(proposed_joint(stage.editor()));
@@ -164,7 +165,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
   commit(stage.editor(), "Longer", other);
   stage.play("wait-idle");
   CHECK_FALSE(scene.weights);
-  CHECK_FALSE(disabled_reason(stage.editor(), *find_operator(stage.editor(), "rig.take_joint_fit")).empty());
+  CHECK_FALSE(disabled_reason(stage.editor(), *find_operator(stage.editor().operators, "rig.take_joint_fit")).empty());
 }
 
 TEST_CASE(
@@ -178,12 +179,12 @@ TEST_CASE(
   document.armature.reset();
   document.weights.reset();
   document.pose.reset();
-  stage.editor().history.commit("Arm", document);
+  stage.editor().history->commit("Arm", document);
   start_auto_fit(stage.editor(), "arm");
   stage.play("wait-job");
   REQUIRE(stage.document().armature);
   CHECK(stage.is("edit", "Auto-fit skeleton"));
-  const auto& log = stage.editor().messages.log;
+  const auto& log = stage.editor().messages->log;
   CHECK(std::count_if(log.begin(), log.end(), [](const LogLine& line) {
           return line.text.find("found by bone surface") != std::string::npos;
         }) == 22);

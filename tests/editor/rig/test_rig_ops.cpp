@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves the operators that edit the rig at rest.
+#include "editor/context/menu_state.h"
 #include "editor/context/transform_settings.h"
 #include "editor/rig/rig_edits.h"
 #include "tests/editor/operator_proofs.h"
@@ -14,9 +15,9 @@ using Effect = std::function<bool(Stage&, const Seen&)>;
 
 std::function<void(Stage&)> choose(std::set<int> bones, int active) {
   return [=](Stage& s) {
-    s.editor().selection = {};
-    s.editor().selection.bone = active;
-    s.editor().selection.bones = bones;
+    *s.editor().selection = {};
+    s.editor().selection->bone = active;
+    s.editor().selection->bones = bones;
     s.editor().transform_settings->part = TransformSettings::Part::Whole;
     s.play("key Ctrl+1\n move \"3D view/view\"\n wait-idle");
   };
@@ -33,7 +34,7 @@ std::function<void(Stage&)> anew(std::set<int> bones, int active) {
 // The effect is one edit with this label, and a rig that satisfies `made`.
 Effect edited(const std::string& label, std::function<bool(const Armature&)> made) {
   return [=](Stage& s, const Seen& b) {
-    return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1 &&
+    return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1 &&
            made(*s.document().armature);
   };
 }
@@ -69,7 +70,7 @@ std::vector<Proof> proofs_of_rigging() {
        "move \"3D view/view\"\n key F9\n wait-idle\n double-click adjust/X/value\n key Ctrl+A\n type 9\n key Return\n "
        "wait-idle",
        [](Stage& s, const Seen& b) {
-         return s.is("edit", "Move Fore") && static_cast<int>(s.editor().history.position()) == b.position &&
+         return s.is("edit", "Move Fore") && static_cast<int>(s.editor().history->position()) == b.position &&
                 s.document().armature->bones[1].tail == glm::dvec3(9, 0, -36);
        },
        Shows::InBody, "key G\n key X\n key 5\n key Return\n wait-idle", anew({1}, 1)},
@@ -157,7 +158,7 @@ std::vector<Proof> proofs_of_rigging() {
          rig.bones.push_back({"Hip.L", 0, {10, 0, -20}, {20, 0, -30}, 0, {}});
          rig.bones.push_back({"Hip.R", 0, {-10, 0, -20}, {-20, 0, -30}, 0, {}});
          next.armature = std::make_shared<const Armature>(rig);
-         s.editor().history.commit("Name sides", next);
+         s.editor().history->commit("Name sides", next);
          choose({1}, 1)(s);
        }},
       {"rig.mirror", "key Ctrl+M",
@@ -173,7 +174,7 @@ std::vector<Proof> proofs_of_rigging() {
        Shows::Nothing, "", anew({1}, 1)},
       {"rig.next_leaving", "click \"Edit/Rig/Next bone outside tissue\"",
        [](Stage& s, const Seen&) {
-         return s.editor().selection.bone == 1 && s.editor().transform_settings->part == TransformSettings::Part::Tail;
+         return s.editor().selection->bone == 1 && s.editor().transform_settings->part == TransformSettings::Part::Tail;
        },
        Shows::Nothing, "key G\n key Z\n key -\n key 3\n key 0\n key Return\n wait-idle", anew({1}, 1)},
       {"view.rig_check", "click \"View/Overlays/Bones outside tissue\"",
@@ -187,7 +188,7 @@ std::vector<Proof> proofs_of_rigging() {
       {"rig.delete", "key X", edited("Delete Fore", [](const Armature& r) { return r.bones.size() == 1; }),
        Shows::InBody, "", anew({1}, 1)},
       {"rig.snap", "key Shift+Tab", [](Stage& s, const Seen&) { return s.editor().transform_settings->snapping; }},
-      {"rig.snap_pie", "key Shift+S", [](Stage& s, const Seen&) { return s.editor().shown_popup == "Snap"; },
+      {"rig.snap_pie", "key Shift+S", [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Snap"; },
        Shows::Nothing, "move \"3D view/view\""},
       {"snap.voxel", "move \"3D view/view\"\n key Shift+S\n wait-idle\n click \"Snap/Snap to voxels\"",
        snaps(Snap::Voxel)},

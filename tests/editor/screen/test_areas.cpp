@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keys go to the area under the pointer, and the widget under the pointer does not move.
+#include "editor/context/interaction.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/view_projection.h"
 #include "editor/dialogs/confirm_dialog.h"
 #include "editor/motion/timeline.h"
 #include "editor/selection/transform_gizmo.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/small_clip.h"
 
@@ -13,8 +17,8 @@ using namespace limber::test;
 
 namespace {
 
-glm::vec2 place_of(const Editor& editor, const std::string& name) {
-  const Widget* widget = editor.widgets.find(name);
+glm::vec2 place_of(const Context& editor, const std::string& name) {
+  const Widget* widget = editor.ui->widgets.find(name);
   REQUIRE(widget);
   return widget->rect.low;
 }
@@ -45,7 +49,7 @@ TEST_CASE("areas: a view's keys act over the view alone, those of the whole wind
 TEST_CASE("areas: a click in a number field types there, Ctrl+A chooses its text, a drag changes it") {
   LimbEditor test;
   test.play("key Ctrl+3\nclick \"Outliner/bone Fore/name\"\nwait-idle");
-  test.editor->open_sections["Bone"] = true;
+  test.editor->ui->open_sections["Bone"] = true;
   const Pose bent = [&] {
     Pose pose = rest_pose(*test.editor->document().armature);
     pose.rotation[1] = glm::angleAxis(glm::radians(40.0), glm::dvec3(1, 0, 0));
@@ -53,7 +57,7 @@ TEST_CASE("areas: a click in a number field types there, Ctrl+A chooses its text
   }();
   Document next = test.editor->document();
   next.pose = std::make_shared<const Pose>(bent);
-  test.editor->history.commit("Bend", next);
+  test.editor->history->commit("Bend", next);
   const auto armature = test.editor->document().armature;
   test.play("key Ctrl+1\nwait-idle\nclick \"Bone/Length\"");
   test.host->events.push(KeyChanged{Key::Ctrl, true});
@@ -67,7 +71,7 @@ TEST_CASE("areas: a click in a number field types there, Ctrl+A chooses its text
   test.play("drag \"Bone/Length\" 20 0");
   const Bone& longer = test.editor->document().armature->bones[1];
   CHECK(glm::distance(longer.head, longer.tail) > 43);
-  CHECK_FALSE(test.editor->keyboard.typed);
+  CHECK_FALSE(test.editor->ui->keyboard.typed);
 }
 
 TEST_CASE("areas: one Escape closes a menu, wherever it was opened") {
@@ -75,10 +79,10 @@ TEST_CASE("areas: one Escape closes a menu, wherever it was opened") {
   for (const char* open : {"click top/File", "click top/Edit", "right-click \"Outliner/bone Fore/name\""}) {
     INFO(open);
     test.play(open);
-    CHECK(std::any_of(test.editor->widgets.widgets().begin(), test.editor->widgets.widgets().end(),
+    CHECK(std::any_of(test.editor->ui->widgets.widgets().begin(), test.editor->ui->widgets.widgets().end(),
                       [](const Widget& widget) { return widget.region == Region::Popup; }));
     test.play("key Escape");
-    CHECK(std::none_of(test.editor->widgets.widgets().begin(), test.editor->widgets.widgets().end(),
+    CHECK(std::none_of(test.editor->ui->widgets.widgets().begin(), test.editor->ui->widgets.widgets().end(),
                        [](const Widget& widget) { return widget.region == Region::Popup; }));
   }
 }
@@ -89,18 +93,18 @@ TEST_CASE("areas: what is pointed at in the sidebar stays where it is when somet
   const glm::vec2 before = place_of(*test.editor, "Display/fold");
   const float above = place_of(*test.editor, "Outliner/fold").y;
   // Selects a bone, so that the panel of the bone's numbers appears above the panel under the pointer.
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
   test.player.step();
-  CHECK(test.editor->widgets.find("Bone/Length"));
+  CHECK(test.editor->ui->widgets.find("Bone/Length"));
   CHECK(place_of(*test.editor, "Display/fold") == before);
-  test.editor->selection = {};
+  *test.editor->selection = {};
   test.player.step();
   CHECK(place_of(*test.editor, "Display/fold") == before);
   CHECK(place_of(*test.editor, "Outliner/fold").y == above);
   // The sidebar was scrolled for it, so nothing jumps when the pointer leaves.
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
   test.player.step();
   test.play("move \"3D view/view\"\nwait-idle");
   CHECK(place_of(*test.editor, "Display/fold") == before);
@@ -111,7 +115,7 @@ TEST_CASE("areas: each workspace's sidebar is scrolled by itself") {
   test.play("wait-idle\nmove Outliner/volume/name\nwheel Outliner/volume/name -20\nmove \"3D view/view\"");
   const glm::vec2 scrolled = place_of(*test.editor, "History/fold");
   test.play("key Ctrl+3\nwait-idle");
-  CHECK(test.editor->widgets.find("Steps/fold"));
+  CHECK(test.editor->ui->widgets.find("Steps/fold"));
   test.play("key Ctrl+1\nwait-idle");
   CHECK(place_of(*test.editor, "History/fold") == scrolled);
 }
@@ -119,11 +123,11 @@ TEST_CASE("areas: each workspace's sidebar is scrolled by itself") {
 TEST_CASE("areas: messages stand over the 3D view and leave the slices free, and those under the pointer stay") {
   LimbEditor test;
   test.play("key Ctrl+Alt+Q\nwait-idle");
-  for (int i = 0; i < 5; ++i) test.editor->messages.toast_error("It failed " + std::to_string(i));
+  for (int i = 0; i < 5; ++i) test.editor->messages->toast_error("It failed " + std::to_string(i));
   test.player.settle();
-  const Rect body = *test.editor->layout.place_of(ViewId::Body);
+  const Rect body = *test.editor->screen->layout.place_of(ViewId::Body);
   int boxes = 0;
-  for (const Widget& widget : test.editor->widgets.widgets())
+  for (const Widget& widget : test.editor->ui->widgets.widgets())
     if (widget.region == Region::Toast) {
       ++boxes;
       CHECK(body.contains(widget.rect));
@@ -131,8 +135,8 @@ TEST_CASE("areas: messages stand over the 3D view and leave the slices free, and
   CHECK(boxes > 0);
   test.play("move \"toast 0/box\"");
   const glm::vec2 before = place_of(*test.editor, "toast 0/box");
-  test.editor->messages.toast_error("One more");
-  test.editor->messages.info(
+  test.editor->messages->toast_error("One more");
+  test.editor->messages->info(
       "And a long one that takes more than a line of the box, and therefore another height than all of the others "
       "have");
   test.play("wait 10");
@@ -145,17 +149,17 @@ TEST_CASE("areas: messages stand over the 3D view and leave the slices free, and
 TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale bar") {
   const auto covered = [](LimbEditor& test) {
     Editor& editor = *test.editor;
-    editor.messages.toasts.clear();
+    editor.messages->toasts.clear();
     test.play("wait-idle");
-    editor.messages.toast_error("It failed", "and this says why");
+    editor.messages->toast_error("It failed", "and this says why");
     test.player.settle();
-    const Rect toast = editor.widgets.find("toast 0/box")->rect;
-    CHECK(editor.layout.place_of(ViewId::Body)->contains(toast));
+    const Rect toast = editor.ui->widgets.find("toast 0/box")->rect;
+    CHECK(editor.screen->layout.place_of(ViewId::Body)->contains(toast));
     std::string names;
-    for (const Widget& widget : editor.widgets.widgets())
+    for (const Widget& widget : editor.ui->widgets.widgets())
       if ((widget.name == "3D view/legend" || widget.name == "3D view/scale bar") && widget.rect.overlaps(toast))
         names += widget.name + " ";
-    for (const ViewPlace& place : editor.layout.view_places)
+    for (const ViewPlace& place : editor.screen->layout.view_places)
       if (place.id == ViewId::Body)
         if (const auto gizmo = gizmo_rect(editor, ViewProjection(editor, place)); gizmo && gizmo->overlaps(toast))
           names += "gizmo";
@@ -163,11 +167,11 @@ TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale 
   };
   LimbEditor test;
   test.play("key Ctrl+3\nwait-idle");
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
-  test.editor->tool = Tool::Rotate;
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
+  test.editor->interaction->tool = Tool::Rotate;
   test.play("wait-idle");
-  const ViewPlace& body = test.editor->layout.view_places.front();
+  const ViewPlace& body = test.editor->screen->layout.view_places.front();
   REQUIRE(gizmo_rect(*test.editor, ViewProjection(*test.editor, body)));
   CHECK(covered(test) == "");
   // The gizmo at the lower right, where messages usually are.
@@ -180,7 +184,7 @@ TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale 
     CHECK(covered(test) == "");
   }
   test.play("key Ctrl+2\nwait-idle\nclick \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
-  CHECK(test.editor->widgets.find("3D view/legend"));
+  CHECK(test.editor->ui->widgets.find("3D view/legend"));
   CHECK(covered(test) == "");
   test.play("key Ctrl+Alt+Q\nwait-idle");
   CHECK(covered(test) == "");
@@ -188,17 +192,17 @@ TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale 
 
 TEST_CASE("areas: the status bar's hints are those of the timeline while the pointer is over it") {
   LimbEditor test;
-  test.editor->history.reset(bending_limb(), "Open bending limb");
+  test.editor->history->reset(bending_limb(), "Open bending limb");
   test.play("key Ctrl+3\nwait-idle\nmove \"3D view/view\"\nexpect text:Scrub absent");
-  const glm::vec2 over = test.editor->timeline_area.centre();
+  const glm::vec2 over = test.editor->screen->timeline_area.centre();
   test.play("move " + std::to_string(over.x) + " " + std::to_string(over.y) + "\nexpect text:Scrub shown");
 }
 
 TEST_CASE("areas: after a click or a key no tool tip is shown until the pointer moves") {
   LimbEditor test;
   const auto tip_shown = [&] {
-    const auto& tip = test.editor->tip;
-    return !tip.widget.empty() && tip.since + test.editor->tooltip_delay <= test.editor->now;
+    const auto& tip = test.editor->ui->tip;
+    return !tip.widget.empty() && tip.since + test.editor->ui->tooltip_delay <= test.editor->ui->now;
   };
   test.play("key Ctrl+1\nwait-idle\nmove top/Skin\nwait 2");
   CHECK(tip_shown());
@@ -235,7 +239,7 @@ TEST_CASE("areas: the status bar tells a tissue's label once, and the Prepare st
   for (Tissue& tissue : tissues->tissues)
     if (tissue.label != 65) tissue.name.clear();
   next.tissues = tissues;
-  test.editor->history.reset(next, "Open without names");
+  test.editor->history->reset(next, "Open without names");
   test.play("move \"3D view/view\"\nwait-idle\nexpect \"text:4 tissues\" shown");
   const editor::Hover& hover = test.editor->views->hover;
   REQUIRE(hover.inside);
@@ -252,14 +256,14 @@ TEST_CASE("areas: a word in a section's head is whole where the title leaves roo
   Armature armature = *next.armature;
   armature.bones[1].name = name;
   next.armature = std::make_shared<const Armature>(armature);
-  test.editor->history.reset(next, "Open");
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
+  test.editor->history->reset(next, "Open");
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
   test.play("key Ctrl+1\nwait-idle");
-  const Widget* fold = test.editor->widgets.find("Bone/fold");
+  const Widget* fold = test.editor->ui->widgets.find("Bone/fold");
   REQUIRE(fold);
   // Pointing at a text that is cut off shows all of it.
   test.play("move " + std::to_string(fold->rect.high.x + 20) + " " + std::to_string(fold->rect.centre().y) +
             "\nwait 2");
-  CHECK(test.editor->tip.title != name);
+  CHECK(test.editor->ui->tip.title != name);
 }

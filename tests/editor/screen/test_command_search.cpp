@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
 #include "editor/screen/command_search.h"
 
 #include "tests/editor/small_editor.h"

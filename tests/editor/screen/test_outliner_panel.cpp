@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/comparison.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/sitting.h"
 #include "tests/editor/small_limb.h"
@@ -35,7 +39,7 @@ Document body_with_bones() {
 
 struct Tree : SmallEditor {
   Tree() : SmallEditor({1600, 900}) {
-    editor->history.reset(body_with_bones(), "Open");
+    editor->history->reset(body_with_bones(), "Open");
     player.settle();
   }
 };
@@ -63,7 +67,7 @@ TEST_CASE("outliner: rows fold, eyes hide and show, Ctrl with a click leaves one
     click "Outliner/result First/eye"
   )");
   CHECK_FALSE(test.editor->views->bones);
-  CHECK(test.editor->comparison.b == "First");
+  CHECK(test.editor->comparison->b == "First");
 }
 
 TEST_CASE(
@@ -130,11 +134,11 @@ TEST_CASE(
     key Space
     expect hidden 0
   )");
-  CHECK(test.editor->list_focus.list.empty());
+  CHECK(test.editor->ui->list_focus.list.empty());
   test.play("click Outliner/volume/name");
-  CHECK_FALSE(test.editor->list_focus.list.empty());
+  CHECK_FALSE(test.editor->ui->list_focus.list.empty());
   test.play("move \"3D view/view\"");
-  CHECK(test.editor->list_focus.list.empty());
+  CHECK(test.editor->ui->list_focus.list.empty());
 }
 
 TEST_CASE("outliner: the search keeps parents, and finds nothing with a way back") {
@@ -154,7 +158,7 @@ TEST_CASE("outliner: the search keeps parents, and finds nothing with a way back
     click "Outliner/Clear search"
     expect "widget:Outliner/volume/name"
   )");
-  CHECK(test.editor->selection.bone == 2);
+  CHECK(test.editor->selection->bone == 2);
 }
 
 namespace {
@@ -179,38 +183,37 @@ Document body_with_many_bones(const std::string& last) {
 
 TEST_CASE("outliner: what is found below the fold of the list is scrolled to, and Return goes to it") {
   SmallEditor test({1280, 720});
-  test.editor->history.reset(body_with_many_bones("Fingertip"), "Open");
+  test.editor->history->reset(body_with_many_bones("Fingertip"), "Open");
   test.play("key Ctrl+1\n wait-idle\n move \"3D view/view\"\n key Ctrl+F\n type \"finger\"\n wait-idle");
-  const Widget* found = test.editor->widgets.find("Outliner/bone Fingertip/name");
+  const Widget* found = test.editor->ui->widgets.find("Outliner/bone Fingertip/name");
   REQUIRE(found);
-  CHECK(found->rect.height() > 10 * test.editor->look.scale);
-  CHECK(found->rect.high.y <= test.editor->layout.sidebar.high.y);
+  CHECK(found->rect.height() > 10 * test.editor->ui->look.scale);
+  CHECK(found->rect.high.y <= test.editor->screen->layout.sidebar.high.y);
   test.play("key Return\n wait-idle");
-  REQUIRE(test.editor->selection.bone);
-  CHECK(*test.editor->selection.bone == 59);
+  REQUIRE(test.editor->selection->bone);
+  CHECK(*test.editor->selection->bone == 59);
 }
 
 TEST_CASE("outliner: a bone found by its name stays in sight when the sections above show it") {
   for (const std::string workspace : {"key Ctrl+3", "key Ctrl+1"}) {
     CAPTURE(workspace);
     SmallEditor test({1280, 640});
-    test.editor->history.reset(body_with_bones(), "Open");
-    test.play(workspace + "\nwait-idle\nmove \"3D view/view\"\nkey Ctrl+F\n" +
-              "type \"Bone 2\"\nwait-idle");
-    const Widget* found = test.editor->widgets.find("Outliner/bone Bone 2/name");
+    test.editor->history->reset(body_with_bones(), "Open");
+    test.play(workspace + "\nwait-idle\nmove \"3D view/view\"\nkey Ctrl+F\n" + "type \"Bone 2\"\nwait-idle");
+    const Widget* found = test.editor->ui->widgets.find("Outliner/bone Bone 2/name");
     REQUIRE(found);
     const glm::vec2 before = found->rect.low;
     press_key(*test.host, Key::Return);
     for (int frame = 0; frame < 5; ++frame) {
       test.player.step();
-      const Widget* row = test.editor->widgets.find("Outliner/bone Bone 2/name");
+      const Widget* row = test.editor->ui->widgets.find("Outliner/bone Bone 2/name");
       REQUIRE(row);
       CHECK(row->rect.low == before);
     }
-    CHECK(test.editor->selection.bone == 2);
+    CHECK(test.editor->selection->bone == 2);
     test.player.settle();
-    REQUIRE(test.editor->widgets.find("Outliner/bone Bone 2/name"));
-    CHECK(test.editor->widgets.find("Outliner/bone Bone 2/name")->rect.low == before);
+    REQUIRE(test.editor->ui->widgets.find("Outliner/bone Bone 2/name"));
+    CHECK(test.editor->ui->widgets.find("Outliner/bone Bone 2/name")->rect.low == before);
   }
 }
 
@@ -225,24 +228,24 @@ TEST_CASE("outliner: a thousand tissues cost no more than what is seen of them")
     tissues->tissues.push_back(tissue);
   }
   document.tissues = tissues;
-  test.editor->history.reset(document, "Open");
+  test.editor->history->reset(document, "Open");
   test.play("click Outliner/tissues/fold");
-  CHECK(test.editor->widgets.widgets().size() < 400);
+  CHECK(test.editor->ui->widgets.widgets().size() < 400);
   test.play("click Outliner/tissues/name\n key End\n wait 0.1");
-  CHECK(test.editor->widgets.find("Outliner/tissue 2999/name"));
-  CHECK(test.editor->selection.tissue == Label{2999});
+  CHECK(test.editor->ui->widgets.find("Outliner/tissue 2999/name"));
+  CHECK(test.editor->selection->tissue == Label{2999});
 }
 
 TEST_CASE("outliner: the search goes to a bone rather than to a heading, and scrolls where the list has no fold") {
   SmallEditor test({1280, 720});
-  test.editor->history.reset(body_with_many_bones("LeftArm"), "Open");
+  test.editor->history->reset(body_with_many_bones("LeftArm"), "Open");
   test.play("key Ctrl+3\n wait-idle\n move \"3D view/view\"\n key Ctrl+F\n type \"arm\"\n wait-idle");
-  const Widget* found = test.editor->widgets.find("Outliner/bone LeftArm/name");
+  const Widget* found = test.editor->ui->widgets.find("Outliner/bone LeftArm/name");
   REQUIRE(found);
-  CHECK(found->rect.low.y >= test.editor->layout.sidebar.low.y);
-  CHECK(found->rect.high.y <= test.editor->layout.sidebar.high.y);
-  CHECK(found->rect.height() > 10 * test.editor->look.scale);
+  CHECK(found->rect.low.y >= test.editor->screen->layout.sidebar.low.y);
+  CHECK(found->rect.high.y <= test.editor->screen->layout.sidebar.high.y);
+  CHECK(found->rect.height() > 10 * test.editor->ui->look.scale);
   test.play("key Return\n wait-idle");
-  REQUIRE(test.editor->selection.bone);
-  CHECK(*test.editor->selection.bone == 59);
+  REQUIRE(test.editor->selection->bone);
+  CHECK(*test.editor->selection->bone == 59);
 }

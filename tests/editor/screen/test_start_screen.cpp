@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <fstream>
 
+#include "editor/context/screen.h"
+#include "editor/context/start_screen_state.h"
 #include "editor/files/tour.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/sitting.h"
 
 using namespace limber;
@@ -15,13 +18,13 @@ TEST_CASE(
   std::filesystem::copy_file(home / "scans/ball.nrrd", home / "other.nrrd");
   {
     Sitting sitting(home.folder.path(), {home / "other.nrrd"});
-    CHECK_FALSE(sitting.editor().start_screen);
+    CHECK_FALSE(sitting.editor().start_screen->shown);
   }
   std::filesystem::rename(home / "scans/ball.nrrd", home / "scans/moved.nrrd");
   Sitting sitting(home.folder.path());
-  CHECK(sitting.editor().start_screen);
-  CHECK(sitting.editor().recent_facts.at(home / "other.nrrd").picture);
-  CHECK(sitting.editor().recent_facts.at(home / "scans/ball.nrrd").missing);
+  CHECK(sitting.editor().start_screen->shown);
+  CHECK(sitting.editor().start_screen->facts.at(home / "other.nrrd").picture);
+  CHECK(sitting.editor().start_screen->facts.at(home / "scans/ball.nrrd").missing);
   sitting.play(R"(
     expect text:Samples
     expect "text:moved or deleted"
@@ -34,8 +37,8 @@ TEST_CASE(
     expect volume yes
     expect name moved
   )");
-  CHECK_FALSE(sitting.editor().start_screen);
-  CHECK(sitting.editor().recent_files.recents.size() == 2);
+  CHECK_FALSE(sitting.editor().start_screen->shown);
+  CHECK(sitting.editor().recent_files->recents.size() == 2);
 }
 
 TEST_CASE("start screen: arrows and Return choose a recent file, the menu lists them too") {
@@ -54,12 +57,12 @@ TEST_CASE("start screen: a key that is a command closes it and runs, Escape clos
   {
     Sitting sitting(home.folder.path());
     sitting.play("key Ctrl+3\n expect workspace pose");
-    CHECK_FALSE(sitting.editor().start_screen);
+    CHECK_FALSE(sitting.editor().start_screen->shown);
     sitting.play("key Ctrl+Shift+O\n expect text:Samples\n key Escape\n expect text:Samples absent");
     sitting.play("key Ctrl+Shift+O\n click \"Show at start\"");
   }
   Sitting sitting(home.folder.path());
-  CHECK_FALSE(sitting.editor().start_screen);
+  CHECK_FALSE(sitting.editor().start_screen->shown);
 }
 
 TEST_CASE("start screen: nothing covers anything, in a large window, a small one and at scale 2") {
@@ -68,7 +71,7 @@ TEST_CASE("start screen: nothing covers anything, in a large window, a small one
   for (const glm::ivec2 size : {glm::ivec2(1600, 900), glm::ivec2(1024, 640), glm::ivec2(800, 520)}) {
     Sitting sitting(home.folder.path(), {}, size);
     sitting.play("wait-idle");
-    const auto& widgets = sitting.editor().widgets.widgets();
+    const auto& widgets = sitting.editor().ui->widgets.widgets();
     int found = 0;
     for (std::size_t i = 0; i < widgets.size(); ++i) {
       if (widgets[i].region != editor::Region::Start) continue;
@@ -103,7 +106,7 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     )");
   }
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
-  CHECK(sitting.editor().recent_files.tour_step == 3);
+  CHECK(sitting.editor().recent_files->tour_step == 3);
   sitting.play(R"(
     click Help/Tour
     expect "text:Hide a tissue"
@@ -132,7 +135,7 @@ TEST_CASE("tour: it makes the sample, each step ends when it is done, and it goe
     click top/Resample
     expect "toast" "The tour is finished"
   )");
-  CHECK(sitting.editor().recent_files.tour_step == 0);
+  CHECK(sitting.editor().recent_files->tour_step == 0);
 }
 
 TEST_CASE("tour: toasts leave its bubble free, and the bubble leaves the middle of a small view free") {
@@ -140,12 +143,12 @@ TEST_CASE("tour: toasts leave its bubble free, and the bubble leaves the middle 
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
   sitting.play("click Help/Tour\n wait-idle\n click view.four\n wait-idle");
   const auto rect_of = [&](const char* name) -> editor::Rect {
-    const editor::Widget* widget = sitting.editor().widgets.find(name);
+    const editor::Widget* widget = sitting.editor().ui->widgets.find(name);
     REQUIRE_MESSAGE(widget, name);
     return widget ? widget->rect : editor::Rect{};
   };
   CHECK(!rect_of("tour/box").contains(rect_of("3D view/view").centre()));
-  for (int message = 0; message < 3; ++message) sitting.editor().messages.info("A message " + std::to_string(message));
+  for (int message = 0; message < 3; ++message) sitting.editor().messages->info("A message " + std::to_string(message));
   sitting.play("wait 0.5");
   CHECK(!rect_of("tour/box").overlaps(rect_of("toast 0/box")));
   CHECK(rect_of("3D view/view").contains(rect_of("toast 0/box").centre()));
@@ -155,12 +158,12 @@ TEST_CASE("tour: the bubble is beside the sidebar and below the header, and hide
   const Home home;
   Sitting sitting(home.folder.path(), {home / "scans/ball.nrrd"}, {1280, 720});
   sitting.play("click Help/Tour\n wait-idle");
-  const editor::Layout& layout = sitting.editor().layout;
+  const editor::Layout& layout = sitting.editor().screen->layout;
   int in_sidebar = 0, in_header = 0;
   for (int step = 0; step < std::ssize(editor::tour_steps()); ++step) {
-    sitting.editor().tour.step = step;
+    sitting.editor().tour->step = step;
     sitting.play("wait 1");
-    const editor::WidgetRegistry& widgets = sitting.editor().widgets;
+    const editor::WidgetRegistry& widgets = sitting.editor().ui->widgets;
     const editor::Widget *target = widgets.find(editor::tour_steps()[step].widget), *bubble = widgets.find("tour/box");
     INFO(editor::tour_steps()[step].widget);
     REQUIRE(bubble);

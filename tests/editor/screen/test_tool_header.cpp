@@ -2,6 +2,9 @@
 // The tool header of a window that gets narrower.
 #include <doctest/doctest.h>
 
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/small_editor.h"
 #include "tests/editor/small_limb.h"
 
@@ -14,11 +17,11 @@ TEST_CASE("tool header: as a window gets narrower, groups of the Resample worksp
   for (int width = 1700; width >= 1180; width -= 40) {
     LimbEditor test({width, 760});
     test.play("key Ctrl+4\nwait-idle");
-    const Rect& header = test.editor->layout.tool_header;
+    const Rect& header = test.editor->screen->layout.tool_header;
     std::size_t labelled = 0;
     for (const char* id : {"compare.side_by_side", "result.overlap", "fem.tets", "report.open", "file.export"}) {
-      const Operator* op = find_operator(*test.editor, id);
-      for (const Widget& widget : test.editor->widgets.widgets())
+      const Operator* op = find_operator(test.editor->operators, id);
+      for (const Widget& widget : test.editor->ui->widgets.widgets())
         if (widget.region == Region::ToolHeader && widget.name.ends_with(id)) {
           CHECK(widget.rect.high.x <= header.high.x);
           labelled += widget.rect.width() > 44;

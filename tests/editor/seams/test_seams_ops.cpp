@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/project/project_io.h"
+#include "editor/context/screen.h"
 #include "editor/resample/results.h"
 #include "tests/editor/glued_editor.h"
 #include "tests/editor/operator_proofs.h"
@@ -16,7 +17,7 @@ void make_arm(Stage& s) {
   rig.bones[1].name = "LeftForearm";
   next.armature = std::make_shared<const Armature>(rig);
   next.weights = nullptr;
-  s.editor().history.commit("Make arm", next);
+  s.editor().history->commit("Make arm", next);
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
 
@@ -25,7 +26,7 @@ void cut_once(Stage& s) {
   Seams seams(next.volume->grid.size);
   seams.cut({12, 10, 20}, 0);
   next.seams = std::make_shared<const Seams>(seams);
-  s.editor().history.commit("Cut", next);
+  s.editor().history->commit("Cut", next);
   s.play("wait-idle");
 }
 
@@ -129,7 +130,7 @@ TEST_CASE("seams: a stroke in a slice cuts to both sides of it, and what was cut
   test.editor->views->cross_hair = {-30, 0, 200};
   test.play("wait-idle");
   const ViewPlace* axial = nullptr;
-  for (const ViewPlace& place : test.editor->layout.view_places)
+  for (const ViewPlace& place : test.editor->screen->layout.view_places)
     if (place.id == ViewId::Axial) axial = &place;
   REQUIRE(axial);
   const ViewProjection seen(*test.editor, *axial);
@@ -176,7 +177,7 @@ TEST_CASE("seams: those by hand go to weights, and to the worker that resamples"
   Document next = test.editor->document();
   // Without seams, the arm stays connected to the trunk.
   next.seams = std::make_shared<const Seams>(next.volume->grid.size);
-  test.editor->history.commit("Remove seams", next);
+  test.editor->history->commit("Remove seams", next);
   test.play("click \"Edit/Weights/Heat diffusion\"\nwait-job\nwait-idle");
   REQUIRE(test.editor->document().weights);
   const SkinWeights grown = *test.editor->document().weights;
@@ -194,7 +195,7 @@ TEST_CASE("seams: those by hand go to weights, and to the worker that resamples"
   Pose pose = rest_pose(*cut.armature);
   pose.rotation[1] = glm::angleAxis(glm::radians(-30.0), glm::dvec3(0, 1, 0));
   cut.pose = std::make_shared<const Pose>(pose);
-  test.editor->history.commit("Keep seams", cut);
+  test.editor->history->commit("Keep seams", cut);
   test.play("key Ctrl+4\nwait-idle\nkey Ctrl+Return\nwait-job\nwait-idle");
   REQUIRE(test.editor->document().results.size() == 1);
   const auto result = test.editor->document().results[0];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/context/operator.h"
+#include "editor/context/selection.h"
 #include "tests/editor/small_editor.h"
 
 using namespace limber;
@@ -22,8 +23,8 @@ TEST_CASE("select: a chain holds the descendants of every selected bone, also of
   next.armature = std::make_shared<const Armature>(armature);
   commit(*test.editor, "Add a rig", std::move(next));
   test.player.settle();
-  test.editor->selection.bones = {1, 4};
-  test.editor->selection.bone = 4;
+  test.editor->selection->bones = {1, 4};
+  test.editor->selection->bone = 4;
   run(*test.editor, "select.chain");
-  CHECK(test.editor->selection.bones == std::set<int>{1, 3, 4});
+  CHECK(test.editor->selection->bones == std::set<int>{1, 3, 4});
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves the operators of workspaces, layouts, displays, overlays, cameras and slices.
+#include "editor/context/outliner_state.h"
+#include "editor/context/screen.h"
 #include "tests/editor/operator_proofs.h"
 
 namespace limber::test {
@@ -45,15 +47,21 @@ std::vector<Proof> proofs_of_views() {
       {"workspace.rig", "move \"3D view/view\"\n key Ctrl+Tab\n click Workspaces/Rig", becomes("workspace", "rig")},
 
       {"view.split", "click \"View/3D and slices\"",
-       [](Stage& s, const Seen&) { return s.is("layout", "split") && s.editor().layout.view_places.size() == 3; }},
+       [](Stage& s, const Seen&) {
+         return s.is("layout", "split") && s.editor().screen->layout.view_places.size() == 3;
+       }},
       {"view.four", "key Ctrl+Alt+Q",
-       [](Stage& s, const Seen&) { return s.is("layout", "four") && s.editor().layout.view_places.size() == 4; }},
+       [](Stage& s, const Seen&) {
+         return s.is("layout", "four") && s.editor().screen->layout.view_places.size() == 4;
+       }},
       {"view.maximize", "key Ctrl+Space",
-       [](Stage& s, const Seen&) { return s.is("maximized", "Coronal") && s.editor().layout.view_places.size() == 1; },
+       [](Stage& s, const Seen&) {
+         return s.is("maximized", "Coronal") && s.editor().screen->layout.view_places.size() == 1;
+       },
        Shows::Nothing, "move Coronal/view"},
       {"view.one", "click view.one",
        [](Stage& s, const Seen&) {
-         return s.is("layout", "one") && s.editor().layout.place_of(ViewId::Body) && s.is("maximized", "no");
+         return s.is("layout", "one") && s.editor().screen->layout.place_of(ViewId::Body) && s.is("maximized", "no");
        }},
 
       {"view.xray_display", "click view.xray_display", becomes("display", "xray"), Shows::InBody},
@@ -84,7 +92,7 @@ std::vector<Proof> proofs_of_views() {
       {"view.cross_hair", "click View/Overlays/Cross-hair", goes(&Views::show_cross_hair)},
 
       {"view.find", "key F3\n type \"search the project\"\n key Return",
-       [](Stage& s, const Seen&) { return s.editor().outliner.searching; }},
+       [](Stage& s, const Seen&) { return s.editor().outliner->searching; }},
       {"view.sidebar", "key N",
        [](Stage& s, const Seen&) { return s.is("sidebar", "no") && s.is("text:Steps", "absent"); }},
       {"view.tool_strip", "key T", becomes("strip", "no")},

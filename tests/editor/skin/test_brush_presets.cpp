@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Brush presets are kept between sessions and used from the panel. A damaged file neither loses nor adds presets.
+#include "editor/context/dialogs.h"
+#include "editor/context/operator.h"
+#include "editor/context/preferences_state.h"
 #include "editor/skin/brush_presets.h"
 
 #include <doctest/doctest.h>
@@ -25,7 +28,7 @@ TEST_CASE("brush presets: one that is saved is there in the next sitting with ev
   BrushPreset wanted;
   {
     PaintEditor test;
-    test.editor->preferences_path = preferences;
+    test.editor->preferences_state->path = preferences;
     Painting& brush = brush_of(test);
     brush.kind = BrushKind::Smooth;
     brush.radius = 1.0 / 3;
@@ -38,7 +41,7 @@ TEST_CASE("brush presets: one that is saved is there in the next sitting with ev
     wanted = brush_presets(*test.editor)[0];
   }
   PaintEditor next;
-  next.editor->preferences_path = preferences;
+  next.editor->preferences_state->path = preferences;
   REQUIRE(brush_presets(*next.editor).size() == 1);
   CHECK(brush_presets(*next.editor)[0] == wanted);
   use_brush_preset(*next.editor, wanted.name);
@@ -90,18 +93,19 @@ TEST_CASE("brush presets: a damaged file is said to be so, and wrong numbers nev
   const TemporaryFolder folder;
   write_file_atomically(folder / "brushes.json", "no JSON");
   PaintEditor test;
-  test.editor->preferences_path = folder / "preferences.json";
+  test.editor->preferences_state->path = folder / "preferences.json";
   CHECK(brush_presets(*test.editor).empty());
-  REQUIRE(!test.editor->messages.toasts.empty());
-  CHECK(test.editor->messages.toasts.back().line == "The brush presets could not be read");
+  REQUIRE(!test.editor->messages->toasts.empty());
+  CHECK(test.editor->messages->toasts.back().line == "The brush presets could not be read");
 }
 
 TEST_CASE("brush presets: what another program has saved, and what this one does not understand, is kept") {
   const TemporaryFolder folder;
   const Path file = folder / "brushes.json";
   PaintEditor one;
-  one.editor->preferences_path = folder / "preferences.json";
-  CHECK(disabled_reason(*one.editor, *find_operator(*one.editor, "skin.preset_use")) == "Save a brush preset first");
+  one.editor->preferences_state->path = folder / "preferences.json";
+  CHECK(disabled_reason(*one.editor, *find_operator(one.editor->operators, "skin.preset_use")) ==
+        "Save a brush preset first");
   CHECK(brush_presets(*one.editor).empty());
   // The presets as another running program knows them: it read the file before it was changed.
   auto of_other = std::make_shared<BrushPresets>();
@@ -116,7 +120,7 @@ TEST_CASE("brush presets: what another program has saved, and what this one does
   other();
   save_brush_preset(*one.editor, "Third");
   delete_brush_preset(other(), "One");
-  CHECK(disabled_reason(*one.editor, *find_operator(*one.editor, "skin.preset_use")).empty());
+  CHECK(disabled_reason(*one.editor, *find_operator(one.editor->operators, "skin.preset_use")).empty());
   const std::string text = read_file(file);
   for (const char* kept : {"Of tomorrow", "one that this program lacks", "\"later\": 3", "\"Other\"", "\"Third\""})
     CHECK_MESSAGE(text.find(kept) != std::string::npos, kept);
@@ -133,7 +137,7 @@ TEST_CASE("brush presets: what another program has saved, and what this one does
 TEST_CASE("brush presets: the joint capsule brush keeps its blend, and names that cannot be are refused") {
   const TemporaryFolder folder;
   PaintEditor test;
-  test.editor->preferences_path = folder / "preferences.json";
+  test.editor->preferences_state->path = folder / "preferences.json";
   brush_of(test).kind = BrushKind::JointCapsule;
   brush_of(test).blend_mm = 71;
   save_brush_preset(*test.editor, "Knee");
@@ -151,7 +155,7 @@ TEST_CASE("brush presets: the joint capsule brush keeps its blend, and names tha
   CHECK_THROWS_WITH_AS(require_preset_name(full, "new"), doctest::Contains("too many"), Error);
   test.play("key N\nwait-idle\nclick Brush/Preset/skin.preset_save\nwait-idle\nkey Ctrl+A\ntype \"" +
             std::string(101, 'n') + "\"\nwait-idle\nkey Return\nwait-idle");
-  CHECK(test.editor->dialog);
+  CHECK(test.editor->dialogs->shown);
   CHECK(brush_presets(*test.editor).size() == 1);
 }
 
@@ -161,7 +165,7 @@ TEST_CASE("brush presets: the one in use is not shown as such while the seam bru
   test.play("key N\nwait-idle");
   CHECK(test.fact("text:Wide") == "shown");
   test.editor->seams->brush = true;
-  test.editor->touch();
+  test.editor->ui->touch();
   test.play("wait-idle");
   CHECK(test.fact("text:Custom") == "shown");
   use_brush_preset(*test.editor, "Wide");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
 #include "editor/skin/joint_repair.h"
 
 #include <cmath>
@@ -49,15 +50,15 @@ double change_of(const Document& document, Blend blend) {
   return sum;
 }
 
-void choose_forearm(Editor& editor) {
+void choose_forearm(Context& editor) {
   const int bone = require_bone(*editor.document().armature, "Forearm");
-  editor.selection = {};
-  editor.selection.bone = bone;
-  editor.selection.bones = {bone};
+  *editor.selection = {};
+  editor.selection->bone = bone;
+  editor.selection->bones = {bone};
 }
 
 void open_arm(Stage& s) {
-  s.editor().history.reset(weighted_arm(), "Open arm");
+  s.editor().history->reset(weighted_arm(), "Open arm");
   choose_forearm(s.editor());
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
@@ -81,11 +82,11 @@ TEST_CASE(
     "joint repair: the button in the sidebar puts weights that keep more volume on a layer of their own, undo takes "
     "them away, redo brings them back") {
   SmallEditor test({1280, 900}, {}, false);
-  test.editor->history.reset(weighted_arm(), "Open arm");
+  test.editor->history->reset(weighted_arm(), "Open arm");
   frame_all(*test.editor, false);
   choose_forearm(*test.editor);
-  for (const char* folded : {"Bones", "Layers", "Brush"}) test.editor->open_sections[folded] = false;
-  test.editor->open_sections["Joint"] = true;
+  for (const char* folded : {"Bones", "Layers", "Brush"}) test.editor->ui->open_sections[folded] = false;
+  test.editor->ui->open_sections["Joint"] = true;
   test.play("key N\nkey Ctrl+2\nwait-idle");
   const Document before = test.editor->document();
   test.play("click \"sidebar/sections/Joint/skin.repair_joint\"\nwait-job\nwait-idle");
@@ -94,7 +95,7 @@ TEST_CASE(
   CHECK(after.layers->layers.back()->name == "Joint of Forearm");
   CHECK(after.layers->base == before.weights);
   CHECK(composed(*after.layers) == *after.weights);
-  const Blend blend = preview_blend(*test.editor);
+  const Blend blend = preview_blend(test.editor->resampling);
   CHECK(change_of(after, blend) < change_of(before, blend));
   const auto told = test.editor->skin->painting->repaired_joint;
   REQUIRE(told);
@@ -110,22 +111,22 @@ TEST_CASE(
 
 TEST_CASE("joint repair: a bone without a parent is refused with the reason, and a cancelled repair changes nothing") {
   SmallEditor test({1280, 900}, {}, false);
-  test.editor->history.reset(weighted_arm(), "Open arm");
+  test.editor->history->reset(weighted_arm(), "Open arm");
   test.play("key Ctrl+2\nwait-idle");
-  test.editor->selection.bone = 0;
-  test.editor->selection.bones = {0};
-  const Operator* repair = find_operator(*test.editor, "skin.repair_joint");
+  test.editor->selection->bone = 0;
+  test.editor->selection->bones = {0};
+  const Operator* repair = find_operator(test.editor->operators, "skin.repair_joint");
   REQUIRE(repair);
   CHECK(disabled_reason(*test.editor, *repair) == "This bone has no joint: select a bone with a parent");
   choose_forearm(*test.editor);
   CHECK(disabled_reason(*test.editor, *repair).empty());
   const Document before = test.editor->document();
   start_repairing_joint(*test.editor);
-  CHECK(repairs_joint(*test.editor));
+  CHECK(repairs_joint(test.editor->jobs));
   CHECK(disabled_reason(*test.editor, *repair) == "A joint is being repaired");
-  test.editor->jobs.cancel_all();
+  test.editor->jobs->cancel_all();
   test.play("wait-job\nwait-idle");
-  CHECK_FALSE(repairs_joint(*test.editor));
+  CHECK_FALSE(repairs_joint(test.editor->jobs));
   CHECK(test.editor->document().weights == before.weights);
   CHECK(test.editor->document().layers == before.layers);
 }

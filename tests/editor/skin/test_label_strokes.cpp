@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/skin/label_strokes.h"
+#include "editor/ui/ui.h"
 
 #include "core/project/project_io.h"
 #include "editor/context/view_projection.h"
@@ -17,15 +20,15 @@ using namespace editor;
 
 namespace {
 
-LabelBrush& brush_of(Editor& editor) { return *editor.skin->painting->labels; }
+LabelBrush& brush_of(Context& editor) { return *editor.skin->painting->labels; }
 
-void select(Editor& editor, Label label) {
-  editor.selection.tissue = label;
-  editor.selection.tissues = {label};
+void select(Context& editor, Label label) {
+  editor.selection->tissue = label;
+  editor.selection->tissues = {label};
 }
 
 // Shows a grey image on the ball's grid: 1000 in its left half, 0 in the other.
-void show_halves(Editor& editor) {
+void show_halves(Context& editor) {
   const Grid& grid = editor.document().volume->grid;
   std::vector<float> values(static_cast<std::size_t>(grid.voxel_count()));
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<int>(i) % grid.size.x < 12 ? 1000.0f : 0.0f;
@@ -42,9 +45,10 @@ struct LabelEditor : LimbEditor {
   }
   // Returns the position of a world point in a view, as scripts write it.
   std::string at(ViewId id, const glm::dvec3& point) {
-    for (const ViewPlace& place : editor->layout.view_places)
+    for (const ViewPlace& place : editor->screen->layout.view_places)
       if (place.id == id) {
-        const glm::dvec2 pixel = ViewProjection(*editor, place).pixel_of(point).value() / double(editor->look.scale);
+        const glm::dvec2 pixel =
+            ViewProjection(*editor, place).pixel_of(point).value() / double(editor->ui->look.scale);
         char line[80];
         std::snprintf(line, sizeof line, "move %.4f %.4f\n", pixel.x, pixel.y);
         return line;
@@ -101,7 +105,7 @@ std::vector<Proof> proofs_of_label_brush() {
        [](Stage& s, const Seen&) { return brush_of(s.editor()).in_range; }, Shows::Nothing, "",
        [](Stage& s) { show_halves(s.editor()); }},
       {"labels.pick", "move Axial/view\n wait-idle\n key Shift+X\n wait-idle",
-       [](Stage& s, const Seen&) { return s.editor().selection.tissue == Label(111); }, Shows::Nothing, "",
+       [](Stage& s, const Seen&) { return s.editor().selection->tissue == Label(111); }, Shows::Nothing, "",
        [](Stage& s) { select(s.editor(), 143); }},
   };
 }
@@ -115,10 +119,10 @@ TEST_CASE("label brush: a stroke in a slice paints a capsule, and is one step th
   LabelEditor test;
   const double z = test.plane_of(ViewId::Axial);
   const glm::dvec3 from(-20, -10, z), to(15, 12, z);
-  const auto position = test.editor->history.position();
+  const auto position = test.editor->history->position();
   const int uploads = test.editor->views->renderer.resources().uploads();
   test.stroke(ViewId::Axial, from, to);
-  CHECK(test.editor->history.position() == position + 1);
+  CHECK(test.editor->history->position() == position + 1);
   CHECK(test.fact("edit") == "Paint Cortical bone");
   std::int64_t painted = 0;
   test.for_each([&](const glm::ivec3& v, const glm::dvec3& p) {
@@ -133,7 +137,7 @@ TEST_CASE("label brush: a stroke in a slice paints a capsule, and is one step th
   // Only the changed part of the textures was updated; nothing was uploaded again.
   CHECK(test.editor->views->renderer.resources().uploads() == uploads);
   CHECK(test.volume().voxels == test.before.volume->voxels);
-  CHECK(test.editor->history.position() == position);
+  CHECK(test.editor->history->position() == position);
   test.play("key Ctrl+Shift+Z\nwait-idle");
   CHECK(test.volume().voxels == after.voxels);
 }
@@ -141,7 +145,7 @@ TEST_CASE("label brush: a stroke in a slice paints a capsule, and is one step th
 TEST_CASE("label brush: with Ctrl it erases to the surroundings or to air, Escape drops a stroke") {
   LabelEditor test;
   const double z = test.plane_of(ViewId::Axial);
-  const auto position = test.editor->history.position();
+  const auto position = test.editor->history->position();
   test.stroke(ViewId::Axial, {9, 0, z}, {20, 0, z}, "Ctrl");
   CHECK(test.fact("edit") == "Erase Cortical bone");
   std::int64_t erased = 0;
@@ -164,7 +168,7 @@ TEST_CASE("label brush: with Ctrl it erases to the surroundings or to air, Escap
 
   test.play(test.at(ViewId::Axial, {0, 20, z}) +
             "wait-idle\npress\nwait-idle\nkey Escape\nwait-idle\nrelease\nwait-idle");
-  CHECK(test.editor->history.position() == position);
+  CHECK(test.editor->history->position() == position);
   CHECK(test.volume().voxels == test.before.volume->voxels);
   CHECK(test.editor->views->scene.volume == test.editor->document().volume);
 }
@@ -247,7 +251,7 @@ TEST_CASE("label brush: a bare image is painted from nothing, with a new tissue"
   empty.volume = air;
   empty.tissues = std::make_shared<const TissueTable>();
   empty.volume_type = std::make_shared<const FileType>();
-  test.editor->history.reset(empty, "Bare");
+  test.editor->history->reset(empty, "Bare");
   test.play(
       "key Ctrl+2\nkey Ctrl+Alt+Q\nwait-idle\nclick strip/labels.brush\nwait-idle\n"
       "click \"Edit/Prepare volume/Labels/New tissue\"\nmove Axial/view\nwait-idle\npress\nwait-idle\nrelease\n"
@@ -263,7 +267,7 @@ TEST_CASE("label brush: what was painted is in the project's file, with the new 
   const double z = test.plane_of(ViewId::Axial);
   run(*test.editor, "labels.new_tissue");
   test.stroke(ViewId::Axial, {0, 0, z}, {10, 5, z});
-  const Label label = *test.editor->selection.tissue;
+  const Label label = *test.editor->selection->tissue;
   CHECK(std::count(test.volume().voxels.begin(), test.volume().voxels.end(), label) > 50);
   const Path path = folder / "painted.limber";
   DocumentWriter writer;
@@ -281,13 +285,13 @@ TEST_CASE("label brush: run from another workspace it leads to the Skin workspac
   LimbEditor test({1120, 620});
   select(*test.editor, 111);
   test.play("key Ctrl+1\nwait-idle\nkey F3\nwait-idle\ntype \"label brush\"\nwait-idle\nkey Return\nwait-idle");
-  CHECK(test.editor->workspace == Workspace::Skin);
+  CHECK(test.editor->workspace() == Workspace::Skin);
   CHECK(brush_of(*test.editor).on);
   test.play("key Ctrl+3\nwait-idle");
-  CHECK_FALSE(find_operator(*test.editor, "labels.brush")->checked(*test.editor));
+  CHECK_FALSE(find_operator(test.editor->operators, "labels.brush")->checked(*test.editor));
   // The brush is on but not visible in this workspace, so the command shows it instead of switching it off.
   run(*test.editor, "labels.brush");
-  CHECK(test.editor->workspace == Workspace::Skin);
+  CHECK(test.editor->workspace() == Workspace::Skin);
   CHECK(brush_of(*test.editor).on);
   run(*test.editor, "labels.brush");
   CHECK_FALSE(brush_of(*test.editor).on);
@@ -295,9 +299,9 @@ TEST_CASE("label brush: run from another workspace it leads to the Skin workspac
 
 TEST_CASE("label brush: without a tissue it says what to do, and other brushes take over from it") {
   LabelEditor test;
-  test.editor->selection = {};
+  *test.editor->selection = {};
   test.play("move Axial/view\nwait-idle\npress\nrelease\nwait-idle");
-  CHECK(test.editor->messages.toasts.back().detail.find("Select a tissue") != std::string::npos);
+  CHECK(test.editor->messages->toasts.back().detail.find("Select a tissue") != std::string::npos);
   run(*test.editor, "skin.seam_brush");
   test.play("wait-idle");
   CHECK_FALSE(brush_of(*test.editor).on);
@@ -315,14 +319,14 @@ TEST_CASE(
   LabelEditor test;
   Document next = test.editor->document();
   next.weights = half_weights(*next.volume);
-  test.editor->history.commit("Weigh", next);
+  test.editor->history->commit("Weigh", next);
   const double z = test.plane_of(ViewId::Axial);
   test.stroke(ViewId::Axial, {0, 0, z}, {10, 0, z});  // paints bone over muscle
   CHECK(test.editor->document().weights == next.weights);
   run(*test.editor, "labels.erase_to_air");
   test.stroke(ViewId::Axial, {0, 0, z}, {5, 0, z}, "Ctrl");
   CHECK_FALSE(test.editor->document().weights);
-  CHECK(test.editor->messages.toasts.back().detail.find("weights") != std::string::npos);
+  CHECK(test.editor->messages->toasts.back().detail.find("weights") != std::string::npos);
   test.play("key Ctrl+Z\nwait-idle");
   CHECK(test.editor->document().weights == next.weights);
 }

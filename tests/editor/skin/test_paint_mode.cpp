@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/skin/painting.h"
 
 #include <cmath>
@@ -62,7 +65,7 @@ TEST_CASE(
       weights.set_chunk(brick, chunk);
     }
     blended.weights = std::make_shared<const SkinWeights>(std::move(weights));
-    test.editor->history.reset(blended, "Open blended limb");
+    test.editor->history->reset(blended, "Open blended limb");
     test.play("wait-idle");
     test.editor->skin->painting->kind = kind;
     test.editor->skin->painting->value = 0.5;
@@ -173,7 +176,7 @@ TEST_CASE(
               Visibility visibility = next.visibility ? *next.visibility : Visibility{};
               visibility.clip_plane = {.enabled = true, .point = {0, 0, 0}, .normal = {1, 0, 0}};
               next.visibility = std::make_shared<const Visibility>(visibility);
-              t.editor->history.commit("Clip", next);
+              t.editor->history->commit("Clip", next);
               t.play("wait-idle");
             },
             [](PaintEditor& t) { t.stroke(t.at(-4, 20), t.at(-4, 20)); })
@@ -201,7 +204,7 @@ TEST_CASE(
   CHECK(test.steps() == steps);
   test.stroke("300 90", "310 90");  // the stroke misses the body
   CHECK(test.steps() == steps);
-  CHECK(test.editor->messages.toasts.empty());
+  CHECK(test.editor->messages->toasts.empty());
 }
 
 TEST_CASE("painting: where a lock is in the way nothing changes by one bit, it is named, and one click undoes it") {
@@ -212,9 +215,9 @@ TEST_CASE("painting: where a lock is in the way nothing changes by one bit, it i
   test.stroke(test.at(0, 20), test.at(10, 20));
   CHECK(test.editor->document().weights == before);
   CHECK(test.steps() == steps);
-  REQUIRE(test.editor->messages.toasts.size() == 1);
-  CHECK(test.editor->messages.toasts[0].line == "Upper is locked");
-  CHECK(test.editor->messages.toasts[0].action == "skin.unlock_all");
+  REQUIRE(test.editor->messages->toasts.size() == 1);
+  CHECK(test.editor->messages->toasts[0].line == "Upper is locked");
+  CHECK(test.editor->messages->toasts[0].action == "skin.unlock_all");
   run(*test.editor, "skin.unlock_all");
   test.stroke(test.at(0, 20), test.at(10, 20));
   CHECK(test.editor->document().weights != before);
@@ -276,7 +279,7 @@ TEST_CASE("painting: in a slice the brush is the ball that the circle shows, and
   test.editor->skin->painting->distance = BrushDistance::Euclidean;
   test.play("click \"header/view.four\"\nwait-idle");
   std::optional<ViewPlace> slice;
-  for (const ViewPlace& place : test.editor->layout.view_places)
+  for (const ViewPlace& place : test.editor->screen->layout.view_places)
     if (place.id != ViewId::Body && axis_of(place.id) == render::SliceAxis::Axial) slice = place;
   REQUIRE(slice);
   test.editor->views->cross_hair = {0, 0, 15};
@@ -307,14 +310,14 @@ TEST_CASE("painting: radius, strength and value are set with the pointer, typed,
   PaintEditor test;
   Painting& painting = *test.editor->skin->painting;
   test.play("move " + test.at(0, 10) + "\nwait-idle\nkey F");
-  REQUIRE(test.editor->modal);
+  REQUIRE(test.editor->interaction->modal);
   test.play("key 2\nkey 5\nkey Return");
-  CHECK(!test.editor->modal);
+  CHECK(!test.editor->interaction->modal);
   CHECK(painting.radius == 25);
   // While F sets the radius, the pointer moves away from the brush's centre by 10 mm, so the radius grows by 10 mm.
   const double millimetres = body_seen(*test.editor)->millimetres_per_pixel({0, -38.7, 10});
   test.play("key F");
-  const glm::vec2 from = test.editor->input.pointer;
+  const glm::vec2 from = test.editor->ui->input.pointer;
   char line[80];
   std::snprintf(line, sizeof line, "move %.3f %.3f", from.x + 10 / millimetres, from.y);
   test.play(line);
@@ -338,7 +341,7 @@ TEST_CASE("painting: radius, strength and value are set with the pointer, typed,
 TEST_CASE("painting: only the tissue that the filter lets through changes") {
   PaintEditor test;
   test.editor->skin->painting->tissue = PaintedTissue::Chosen;
-  test.editor->selection.tissues = {143};
+  test.editor->selection->tissues = {143};
   test.stroke(test.at(0, 20), test.at(5, 20));
   int skin = 0, others = 0;
   const Document& document = test.editor->document();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves the operators that choose and set brushes, and paints with them.
+#include "editor/context/menu_state.h"
 #include "editor/skin/brush_presets.h"
 #include "editor/skin/brush_settings.h"
 #include "editor/skin/weight_display.h"
@@ -16,15 +17,15 @@ namespace {
 void weigh(Stage& s) {
   Document next = s.document();
   next.weights = test::half_weights(*next.volume);
-  s.editor().history.commit("Weigh", next);
-  s.editor().selection.bone = 1;
-  s.editor().selection.bones = {1};
+  s.editor().history->commit("Weigh", next);
+  s.editor().selection->bone = 1;
+  s.editor().selection->bones = {1};
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
 
 std::function<bool(Stage&, const Seen&)> edit_is(const char* label) {
   return [=](Stage& s, const Seen& b) {
-    return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1;
+    return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
 
@@ -54,7 +55,7 @@ std::vector<Proof> proofs_of_painting() {
       {"skin.brush_capsule", "key 9", is(&Painting::kind, BrushKind::JointCapsule)},
       {"skin.brush_add", "click \"strip/skin.brush_add\"", is(&Painting::kind, BrushKind::Add)},
       {"skin.brush_pie", at_middle + "key W",
-       [](Stage& s, const Seen&) { return s.editor().shown_popup == "Brushes"; }},
+       [](Stage& s, const Seen&) { return s.editor().menus->shown_popup == "Brushes"; }},
       {"skin.preset_save",
        "click Edit/Brush/Presets/\"Save brush preset...\"\n wait-idle\n type Wide\n key Return\n wait-idle",
        [](Stage& s, const Seen&) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Proves the operators that show skin weights, select their bones, and lock them.
 #include "core/skin/skin_weights.h"
+#include "editor/context/menu_state.h"
 #include "editor/context/views.h"
 #include "editor/files/project_session.h"
 #include "editor/skin/painting.h"
@@ -32,13 +33,13 @@ std::shared_ptr<const SkinWeights> blended_weights(const Document& document) {
   return std::make_shared<const SkinWeights>(weights);
 }
 
-void weigh(Editor& editor) {
+void weigh(Context& editor) {
   Document next = editor.document();
   next.weights = blended_weights(next);
-  editor.history.commit("Weights", next);
-  editor.selection = {};
-  editor.selection.bone = 1;
-  editor.selection.bones = {1};
+  editor.history->commit("Weights", next);
+  *editor.selection = {};
+  editor.selection->bone = 1;
+  editor.selection->bones = {1};
 }
 
 // Opens the Skin workspace with weights, and moves the pointer over the body's upper half.
@@ -52,8 +53,8 @@ void choose_other(Stage& s) {
   s.editor().skin->searching = false;
   ready(s);
   const auto over = s.document().armature->find(s.editor().views->hover.weights.at(0).bone);
-  s.editor().selection.bone = 1 - *over;
-  s.editor().selection.bones = {1 - *over};
+  s.editor().selection->bone = 1 - *over;
+  s.editor().selection->bones = {1 - *over};
 }
 
 Effect shows(const char* display) {
@@ -62,11 +63,11 @@ Effect shows(const char* display) {
 Effect locked(std::set<std::string> bones, const char* edit) {
   return [=](Stage& s, const Seen& before) {
     return (s.document().locks ? s.document().locks->bones : std::set<std::string>{}) == bones && s.is("edit", edit) &&
-           static_cast<int>(s.editor().history.position()) == before.position + 1;
+           static_cast<int>(s.editor().history->position()) == before.position + 1;
   };
 }
 Effect popup(const char* name) {
-  return [=](Stage& s, const Seen&) { return s.editor().shown_popup == name; };
+  return [=](Stage& s, const Seen&) { return s.editor().menus->shown_popup == name; };
 }
 Effect hidden(std::set<std::string> bones) {
   return [=](Stage& s, const Seen&) { return s.editor().skin->hidden == bones; };
@@ -109,13 +110,13 @@ std::vector<Proof> proofs_of_skin() {
        Shows::Nothing, "", [](Stage& s) { s.editor().skin->hidden.clear(); }},
       {"skin.pick_bone", "click \"3D view/view\" Alt",
        [](Stage& s, const Seen& before) {
-         return before.selection.bone && s.editor().selection.bone &&
+         return before.selection.bone && s.editor().selection->bone &&
                 s.is("bone", s.editor().views->hover.weights.empty() ? "" : s.editor().views->hover.weights[0].bone);
        },
        Shows::Nothing, "", choose_other},
       {"skin.add_bone", "click \"3D view/view\" Shift Alt",
        [](Stage& s, const Seen&) {
-         return s.editor().selection.bones == std::set<int>{0, 1};
+         return s.editor().selection->bones == std::set<int>{0, 1};
        },
        Shows::Nothing, "", choose_other},
   };
@@ -178,7 +179,7 @@ TEST_CASE("skin: shares follow weights that change in some bricks alone") {
   for (Influence& influence : chunk) influence = rigid_influence(1);
   changed.set_chunk(3, chunk);
   next.weights = std::make_shared<const SkinWeights>(changed);
-  test.editor->history.commit("Paint", next);
+  test.editor->history->commit("Paint", next);
   test.play("wait-idle");
   double sum = 0;
   for (std::int64_t b = 0; b < changed.chunk_count(); ++b)
@@ -233,10 +234,10 @@ TEST_CASE("skin: Alt and a click take the bone that has most of the place, Shift
     const std::string over = test.editor->views->hover.weights.at(0).bone, other = over == "Upper" ? "Fore" : "Upper";
     test.play("click Bones/" + other + "/name\n wait-idle\n click \"" + view + "\" Alt\n wait-idle");
     CHECK(test.fact("bone") == over);
-    CHECK(test.editor->selection.bones.size() == 1);
+    CHECK(test.editor->selection->bones.size() == 1);
     test.play("click Bones/" + other + "/name\n wait-idle\n click \"" + view + "\" Shift Alt\n wait-idle");
     CHECK(test.fact("bone") == over);
-    CHECK(test.editor->selection.bones.size() == 2);
+    CHECK(test.editor->selection->bones.size() == 2);
   }
 }
 
@@ -263,7 +264,7 @@ TEST_CASE("skin: an isolated region is all that rays, slices and the pointer fin
     SkinWeights::Influences chunk(other.chunk(0).size(), rigid_influence(other.chunk(0)[0].bone[0] == 1 ? 0 : 1));
     other.set_chunk(0, chunk);
     next.weights = std::make_shared<const SkinWeights>(other);
-    test.editor->history.commit("One brick", next);
+    test.editor->history->commit("One brick", next);
     test.play("wait-idle");
     std::int64_t count = 0;
     for (std::int64_t b = 0; b < other.chunk_count(); ++b)

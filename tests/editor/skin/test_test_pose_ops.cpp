@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/screen.h"
 #include "editor/shown/test_pose.h"
 
 #include "editor/pose/live_preview.h"
@@ -18,15 +19,15 @@ void weigh(Stage& s) {
   Pose pose = rest_pose(*next.armature);
   flex(pose, *next.armature, 1, 40);
   next.pose = std::make_shared<const Pose>(pose);
-  s.editor().history.commit("Weigh", next);
-  s.editor().selection.bone = 1;
-  s.editor().selection.bones = {1};
+  s.editor().history->commit("Weigh", next);
+  s.editor().selection->bone = 1;
+  s.editor().selection->bones = {1};
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
 
 std::function<bool(Stage&, const Seen&)> bent(double degrees) {
   return [=](Stage& s, const Seen& b) {
-    return bend(s.editor()) == degrees && static_cast<int>(s.editor().history.position()) == b.position;
+    return bend(s.editor()) == degrees && static_cast<int>(s.editor().history->position()) == b.position;
   };
 }
 
@@ -75,7 +76,7 @@ TEST_CASE("test pose: a joint is bent on trial, the project's pose stays, and an
   CHECK(test.editor->trial->degrees == 60);
   CHECK(shows_pose(*test.editor));
   // The sidebar shows the bend and a button to undo it.
-  for (const char* folded : {"Steps", "Bones", "Layers"}) test.editor->open_sections[folded] = false;
+  for (const char* folded : {"Steps", "Bones", "Layers"}) test.editor->ui->open_sections[folded] = false;
   test.play("key N\nwait-idle\nclick \"sidebar/sections/Brush/skin.unbend\"\nwait-idle");
   CHECK_FALSE(shows_pose(*test.editor));
   CHECK(!test.editor->views->scene.pose);
@@ -105,15 +106,16 @@ TEST_CASE(
     std::string pixel;
     if (slice) {
       std::optional<ViewPlace> place;
-      for (const ViewPlace& view : test.editor->layout.view_places)
+      for (const ViewPlace& view : test.editor->screen->layout.view_places)
         if (view.id != ViewId::Body) place = view;
       REQUIRE(place);
       SliceState& shown = slice_of(*test.editor->views, place->id);
       shown.camera.centre = test.editor->views->cross_hair = seen;
-      test.editor->touch();
+      test.editor->ui->touch();
       test.play("wait-idle");
       const glm::vec2 at = place->rect.low + pixel_of(shown.camera, seen, place->rect.size());
-      pixel = std::to_string(at.x / test.editor->look.scale) + " " + std::to_string(at.y / test.editor->look.scale);
+      pixel =
+          std::to_string(at.x / test.editor->ui->look.scale) + " " + std::to_string(at.y / test.editor->ui->look.scale);
     } else {
       pixel = test.pixel_of(seen);
     }

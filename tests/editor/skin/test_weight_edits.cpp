@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
 #include "editor/skin/weight_edits.h"
+#include "editor/ui/ui.h"
 
 #include "core/rig/mirror.h"
 #include "editor/context/transform_settings.h"
@@ -23,8 +26,8 @@ struct EditEditor : LimbEditor {
   EditEditor() : LimbEditor({1000, 600}) {
     Document next = editor->document();
     next.weights = test::half_weights(*next.volume);
-    editor->history.reset(next, "Open weighted limb");
-    editor->preferences.reduce_motion = true;
+    editor->history->reset(next, "Open weighted limb");
+    editor->preferences->reduce_motion = true;
     play("key N\nkey Ctrl+2\nmove \"3D view/view\"\nkey Num1\nwait-idle");
     choose(1);
     painting().strength = 1;
@@ -33,18 +36,18 @@ struct EditEditor : LimbEditor {
 
   Painting& painting() { return *editor->skin->painting; }
   void choose(int bone) {
-    editor->selection = {};
-    editor->selection.bone = bone;
-    editor->selection.bones = {bone};
+    *editor->selection = {};
+    editor->selection->bone = bone;
+    editor->selection->bones = {bone};
     play("wait-idle");
   }
   const SkinWeights& weights() const { return *editor->document().weights; }
-  int steps() const { return static_cast<int>(editor->history.position()); }
-  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  int steps() const { return static_cast<int>(editor->history->position()); }
+  std::string last_edit() const { return editor->history->steps()[editor->history->position()].label; }
   std::string last_toast() const {
-    return editor->messages.toasts.empty()
+    return editor->messages->toasts.empty()
                ? ""
-               : editor->messages.toasts.back().line + ": " + editor->messages.toasts.back().detail;
+               : editor->messages->toasts.back().line + ": " + editor->messages->toasts.back().detail;
   }
   template <class Body>
   void for_each(const Body& body) const {
@@ -108,8 +111,8 @@ TEST_CASE(
   CHECK(test.last_toast() == "Flood: No tissue is selected: select one in the list, or paint all tissue");
   test.play("key Shift+X\nwait-idle");
 
-  test.editor->selection.tissues = {kBlood};
-  test.editor->selection.tissue = kBlood;
+  test.editor->selection->tissues = {kBlood};
+  test.editor->selection->tissue = kBlood;
   test.play("key Ctrl+X\nwait-idle");
   CHECK(test.steps() == steps + 1);
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kBlood ? 1 : before(p); }) == 0);
@@ -120,7 +123,7 @@ TEST_CASE(
   cut.clip_plane = {true, {0, 0, 15}, {0, 0, 1}};
   Document next = test.editor->document();
   next.visibility = std::make_shared<const Visibility>(cut);
-  test.editor->history.commit("Clip", next);
+  test.editor->history->commit("Clip", next);
   test.play("key Ctrl+X\nwait-idle");
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label != kBone && p.z <= 15 ? 1 : before(p); }) == 0);
   test.play("key Ctrl+Z");
@@ -149,7 +152,7 @@ TEST_CASE("weight editing: the part under the pointer, or all of a tissue, follo
   CHECK(test.wrong([](const glm::dvec3&, Label) { return 1; }) == 0);
   test.play("key Ctrl+Z");
 
-  test.editor->selection.tissues = {kBone, kMuscle};
+  test.editor->selection->tissues = {kBone, kMuscle};
   test.play("key Shift+L\nwait-idle");
   CHECK(test.last_edit() == "Assign 2 tissues to Fore");
   CHECK(test.wrong(
@@ -181,7 +184,7 @@ TEST_CASE(
   run(*test.editor, "skin.flood");
   Document next = test.editor->document();
   next.weights = test::half_weights(*next.volume);
-  test.editor->history.commit("Meanwhile", next);
+  test.editor->history->commit("Meanwhile", next);
   test.play("wait-job\nwait-idle");
   CHECK(test.last_edit() == "Meanwhile");
   CHECK(test.last_toast().find("changed meanwhile") != std::string::npos);
@@ -207,7 +210,7 @@ TEST_CASE(
   test.play("move " + at({0, 0, -20}) + "\nkey Escape\nwait-idle");
   button(false);
   CHECK(test.steps() == steps);
-  CHECK(!test.editor->modal);
+  CHECK(!test.editor->interaction->modal);
 
   test.play("key Shift+A\nmove " + at({0, 0, 20}));
   button(true);
@@ -328,7 +331,7 @@ TEST_CASE("weight editing: a mirror tells what it found no match for, and that c
   REQUIRE(cut > 0);
   next.volume = volume;
   next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Arm.L", "Arm.R"}, TissueVoxels(*volume));
-  test.editor->history.commit("Lopsided", next);
+  test.editor->history->commit("Lopsided", next);
   test.choose(0);
   test.play("key Ctrl+M\nwait-idle");
   CHECK(test.last_edit() == "Mirror weights to the right");
@@ -352,13 +355,13 @@ TEST_CASE("brush ring: it lies on the skin of a ball, and is flat where the ball
   BrushPlace place;
   place.seen = place.rest = {0, -40, 0};
   place.normal = {0, -1, 0};
-  for (const RingPoint& point : ring_on_body(*test.editor, place, 20, 64)) {
+  for (const RingPoint& point : ring_on_body(test.editor->views, place, 20, 64)) {
     CHECK(point.on_body);
     CHECK(std::abs(glm::length(point.at) - 40) < 4);  // mm; voxels are 4 x 5 x 3 mm
     CHECK(std::hypot(point.at.x, point.at.z) == doctest::Approx(20));
   }
   int lost = 0;
-  for (const RingPoint& point : ring_on_body(*test.editor, place, 50, 64)) {
+  for (const RingPoint& point : ring_on_body(test.editor->views, place, 50, 64)) {
     lost += !point.on_body;
     if (!point.on_body) CHECK(point.at.y == doctest::Approx(-40));
   }
@@ -382,7 +385,7 @@ TEST_CASE("painting: below the bone a brush changes nothing where other bones ha
     weights.set_chunk(brick, chunk);
   }
   next.weights = std::make_shared<const SkinWeights>(weights);
-  test.editor->history.commit("Three bones", next);
+  test.editor->history->commit("Three bones", next);
   test.choose(1);
   test.painting().value = 1;
   test.painting().subtree = true;
@@ -397,7 +400,7 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   LimbEditor test;
   Document next = test.editor->document();
   next.weights = test::half_weights(*next.volume);
-  test.editor->history.reset(next, "Open weighted limb");
+  test.editor->history->reset(next, "Open weighted limb");
   test.play("key Ctrl+2\nwait-idle");
   Painting& painting = *test.editor->skin->painting;
   const Falloff smooth = falloff_of(painting);
@@ -405,7 +408,7 @@ TEST_CASE("brush: its own falloff is a curve whose points are dragged, added and
   REQUIRE(painting.falloff_curve.size() == 5);
   CHECK(std::abs(falloff_of(painting)(0.5f) - smooth(0.5f)) < 1e-3);
   // Drags the curve's middle point, at half the height of the box, down to the bottom.
-  const Rect box = test.editor->widgets.find("Brush/curve")->rect;
+  const Rect box = test.editor->ui->widgets.find("Brush/curve")->rect;
   const auto drag = [&](const glm::vec2& from, const glm::vec2& to) {
     test.host->events.push(PointerMoved{from});
     test.player.settle();
@@ -443,7 +446,7 @@ TEST_CASE("painting: with X-mirror a stroke paints the bone of the other side th
   next.armature = std::make_shared<const Armature>(rig);
   next.weights = std::make_shared<const SkinWeights>(std::vector<std::string>{"Trunk", "Arm.L", "Arm.R"},
                                                      TissueVoxels(*next.volume));
-  test.editor->history.commit("Two arms", next);
+  test.editor->history->commit("Two arms", next);
   test.choose(1);
   test.editor->transform_settings->x_mirror = true;
   test.painting().kind = BrushKind::Add;
@@ -475,9 +478,9 @@ TEST_CASE("painting: with X-mirror a stroke paints the bone of the other side th
 
 TEST_CASE("weight editing: choosing a bone leaves the chosen tissues, which brushes may be kept to") {
   EditEditor test;
-  test.editor->selection.tissues = {kMuscle};
-  test.editor->selection.tissue = kMuscle;
+  test.editor->selection->tissues = {kMuscle};
+  test.editor->selection->tissue = kMuscle;
   test.play("key N\nwait-idle\nclick Bones/Upper/name\nwait-idle");
-  CHECK(test.editor->selection.bone == 0);
-  CHECK(test.editor->selection.tissues == std::set<Label>{kMuscle});
+  CHECK(test.editor->selection->bone == 0);
+  CHECK(test.editor->selection->tissues == std::set<Label>{kMuscle});
 }

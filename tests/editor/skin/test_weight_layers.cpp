@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
 #include "editor/skin/weight_layers.h"
 
 #include "core/project/project_io.h"
@@ -33,9 +34,9 @@ void stroke_as_shown(PaintEditor& test, const std::string& at) {
 void layer(Stage& s) {
   Document next = s.document();
   next.weights = half_weights(*next.volume);
-  s.editor().history.commit("Weigh", next);
-  s.editor().selection.bone = 1;
-  s.editor().selection.bones = {1};
+  s.editor().history->commit("Weigh", next);
+  s.editor().selection->bone = 1;
+  s.editor().selection->bones = {1};
   s.editor().skin->painting->radius = 25;
   s.editor().skin->painting->strength = 1;
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
@@ -46,7 +47,7 @@ std::function<bool(Stage&, const Seen&)> layers_are(std::vector<std::string> nam
     std::vector<std::string> now;
     if (s.document().layers)
       for (const auto& layer : s.document().layers->layers) now.push_back(layer->name);
-    return now == names && s.is("edit", edit) && static_cast<int>(s.editor().history.position()) == b.position + 1;
+    return now == names && s.is("edit", edit) && static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
 
@@ -158,12 +159,12 @@ TEST_CASE(
   test.choose(1);
   stroke(test, dab(test));
   CHECK(test.steps() == steps);
-  REQUIRE(test.editor->messages.toasts.size() == 1);
-  CHECK(test.editor->messages.toasts[0].line == "The layer's weights here already sum to 1");
+  REQUIRE(test.editor->messages->toasts.size() == 1);
+  CHECK(test.editor->messages->toasts[0].line == "The layer's weights here already sum to 1");
   // The base has nothing below it, so weights are normalized at once.
   choose_layer(*test.editor, std::nullopt);
   CHECK(normalize_of(*test.editor) == Normalize::Unlocked);
-  CHECK(!disabled_reason(*test.editor, *find_operator(*test.editor, "skin.normalize_off")).empty());
+  CHECK(!disabled_reason(*test.editor, *find_operator(test.editor->operators, "skin.normalize_off")).empty());
 }
 
 TEST_CASE("layers: the base is painted below a layer, which keeps what it covers") {
@@ -240,7 +241,7 @@ TEST_CASE("layers: they are in the project when it is opened again, and go on be
   create_project({.document = test.editor->document()}, folder / "a.limber", writer);
   const Document back = read_project(folder / "a.limber").document;
   CHECK(same_contents(back, test.editor->document()));
-  test.editor->history.reset(back, "Open");
+  test.editor->history->reset(back, "Open");
   choose_layer(*test.editor, 0);
   const auto mask = layers(test).layers[0]->mask;
   stroke(test, test.at(0, 30));

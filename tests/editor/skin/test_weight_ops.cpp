@@ -20,16 +20,16 @@ void weigh(Stage& s) {
   Document next = s.document();
   next.armature = small_limb().armature;
   next.weights = test::half_weights(*next.volume);
-  s.editor().history.commit("Weigh", next);
-  s.editor().selection = {};
-  s.editor().selection.bone = 1;
-  s.editor().selection.bones = {1};
+  s.editor().history->commit("Weigh", next);
+  *s.editor().selection = {};
+  s.editor().selection->bone = 1;
+  s.editor().selection->bones = {1};
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
 
 Effect edit_is(const char* label) {
   return [=](Stage& s, const Seen& b) {
-    return s.is("edit", label) && static_cast<int>(s.editor().history.position()) == b.position + 1;
+    return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
 
@@ -48,7 +48,7 @@ void weigh_by_four(Stage& s) {
     weights.set_chunk(brick, SkinWeights::Influences(weights.chunk(brick).size(),
                                                      limber::quantize({{0, 0.97}, {1, 0.01}, {2, 0.01}, {3, 0.01}})));
   next.weights = std::make_shared<const SkinWeights>(weights);
-  s.editor().history.commit("Weigh by four", next);
+  s.editor().history->commit("Weigh by four", next);
   s.play("wait-idle");
 }
 int most_influences(Stage& s) {
@@ -81,10 +81,10 @@ void weigh_left(Stage& s) {
   next.armature = std::make_shared<const Armature>(rig);
   SkinWeights weights({"Arm.L", "Arm.R"}, TissueVoxels(*next.volume));
   next.weights = std::make_shared<const SkinWeights>(weights);
-  s.editor().history.commit("Weigh left", next);
-  s.editor().selection = {};
-  s.editor().selection.bone = 0;
-  s.editor().selection.bones = {0};
+  s.editor().history->commit("Weigh left", next);
+  *s.editor().selection = {};
+  s.editor().selection->bone = 0;
+  s.editor().selection->bones = {0};
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
 

@@ -29,7 +29,7 @@ std::shared_ptr<const SkinWeights> bad_weights(const LabelVolume& volume) {
 void weigh(Stage& s) {
   Document next = s.document();
   next.weights = bad_weights(*next.volume);
-  s.editor().history.commit("Weigh", next);
+  s.editor().history->commit("Weigh", next);
   s.play("key Ctrl+2\n move \"3D view/view\"\n key Num1\n wait-idle");
 }
 
@@ -47,7 +47,7 @@ std::vector<Proof> proofs_of_weight_problems() {
          return at(s) == static_cast<int>(s.editor().skin->painting->problems->problems.size()) - 1;
        }},
       {"skin.repair_problem", "click \"Edit weights/Problems/Repair problem\"\n wait-job\n wait-idle",
-       [](Stage& s, const Seen& b) { return static_cast<int>(s.editor().history.position()) == b.position + 1; },
+       [](Stage& s, const Seen& b) { return static_cast<int>(s.editor().history->position()) == b.position + 1; },
        Shows::Nothing, "move \"3D view/view\"\n key J\n wait-idle"},
   };
 }
@@ -61,11 +61,11 @@ TEST_CASE("weight problems: a step says which problem the views show, in the pla
   REQUIRE(problems.size() >= 2);
   const std::string of = " of " + std::to_string(problems.size());
   const auto said = [&](const std::string& line) {
-    const auto& toasts = stage.editor().messages.toasts;
+    const auto& toasts = stage.editor().messages->toasts;
     return std::count_if(toasts.begin(), toasts.end(), [&](const Toast& toast) { return toast.line == line; });
   };
   CHECK(said("Problem 1" + of) == 1);
-  CHECK(stage.editor().messages.toasts.back().detail == describe(problems[0], *stage.document().armature));
+  CHECK(stage.editor().messages->toasts.back().detail == describe(problems[0], *stage.document().armature));
   stage.play("key J\n wait-idle");
   CHECK(said("Problem 1" + of) == 0);
   CHECK(said("Problem 2" + of) == 1);
@@ -83,9 +83,9 @@ TEST_CASE(
   PaintEditor test;
   Document next = test.editor->document();
   next.weights = bad_weights(*next.volume);
-  test.editor->history.commit("Weigh", next);
-  test.editor->open_sections["Problems"] = test.editor->open_sections["Bones"] = true;
-  for (const char* folded : {"Bones", "Layers", "Brush"}) test.editor->open_sections[folded] = false;
+  test.editor->history->commit("Weigh", next);
+  test.editor->ui->open_sections["Problems"] = test.editor->ui->open_sections["Bones"] = true;
+  for (const char* folded : {"Bones", "Layers", "Brush"}) test.editor->ui->open_sections[folded] = false;
   test.play("key N\nmove \"3D view/view\"\nkey J\nwait-job\nwait-idle");
   auto found = test.editor->skin->painting->problems;
   REQUIRE(found);
@@ -99,7 +99,7 @@ TEST_CASE(
   test.choose(0);
   const std::string row = "\"sidebar/sections/Problems/problem " + std::to_string(island - problems.begin()) + "/";
   test.play("click " + row + "name\"\nwait-idle");
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection->bone == 1);
   CHECK(glm::distance(test.editor->views->body.camera.centre, island->place) < 1e-9);
   CHECK(glm::distance(test.editor->views->cross_hair, island->place) < 1e-9);
   const int steps = test.steps();
@@ -122,10 +122,10 @@ TEST_CASE(
   // A message names the locked bone.
   toggle_lock(*test.editor, 0);
   test.play("click \"sidebar/sections/Problems/skin.find_problems\"\nwait-job\nwait-idle");
-  test.editor->messages.toasts.clear();
+  test.editor->messages->toasts.clear();
   test.play("click " + row + "Repair\"\nwait-job\nwait-idle");
-  REQUIRE(test.editor->messages.toasts.size() == 1);
-  CHECK(test.editor->messages.toasts[0].line == "Upper is locked");
+  REQUIRE(test.editor->messages->toasts.size() == 1);
+  CHECK(test.editor->messages->toasts[0].line == "Upper is locked");
 }
 
 }  // namespace limber::test

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/screen.h"
 #include "editor/shown/frame_all.h"
 #include "render/passes/pass_resources.h"
 #include "tests/editor/small_limb.h"
@@ -22,8 +23,8 @@ struct LargeEditor : LimbEditor {
         for (int x = 2; x < 138; ++x) volume->at({x, y, z}) = 17;
     next.volume = volume;
     next.weights = weights_of(*volume, 450);
-    editor->history.reset(next, "Open block");
-    editor->preferences.reduce_motion = true;
+    editor->history->reset(next, "Open block");
+    editor->preferences->reduce_motion = true;
     draw_finely();
     frame_all(*editor, false);
     play("key N\nkey Ctrl+2\nkey Num1\nwait-idle");
@@ -58,7 +59,7 @@ struct LargeEditor : LimbEditor {
   void looks_as_anew() {
     render::Renderer fresh;
     int slices = 0;
-    for (const ViewPlace& place : editor->layout.view_places) {
+    for (const ViewPlace& place : editor->screen->layout.view_places) {
       const glm::ivec2 size(place.rect.size());
       if (place.id == ViewId::Body) {
         render::View3D anew(fresh);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keyboard input belongs to a text field from the moment the field is requested until the user leaves it, whatever
 // windows or messages appear meanwhile and however slow the frames are.
+#include "editor/context/screen.h"
 #include "tests/editor/keyboard.h"
 #include "tests/editor/sitting.h"
 #include "tests/editor/small_limb.h"
@@ -11,7 +12,7 @@ using namespace limber::test;
 
 namespace {
 
-std::string name_of_bone(const Editor& editor, int bone) { return editor.document().armature->bones[bone].name; }
+std::string name_of_bone(const Context& editor, int bone) { return editor.document().armature->bones[bone].name; }
 
 // An editor in which the user is typing a bone's new name. The first letters are in the field.
 struct RenamedBone : LimbEditor {
@@ -36,7 +37,7 @@ struct RenamedBone : LimbEditor {
 
 TEST_CASE("keyboard: a message that appears while a name is typed takes no letter of it") {
   RenamedBone test;
-  test.editor->messages.ok("Weights computed");
+  test.editor->messages->ok("Weights computed");
   test.player.settle();
   test.finish();
 }
@@ -45,10 +46,10 @@ TEST_CASE("keyboard: a job that ends or fails while a name is typed takes no let
   RenamedBone test;
   bool ended = false;
   start_task(*test.editor, "Counting", [&](Progress&) -> Finish {
-    return [&](Editor& e) {
+    return [&](Context& c) {
       ended = true;
-      e.messages.ok("Counted");
-      e.arrangement().console = true;
+      c.messages->ok("Counted");
+      c.screen->arrangement().console = true;
     };
   });
   start_task(*test.editor, "Reading",

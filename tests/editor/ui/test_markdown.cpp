@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
+#include "editor/input/keymap.h"
 #include "editor/ui/markdown.h"
 
 #include <filesystem>
@@ -72,8 +74,8 @@ TEST_CASE("user guide: it names only operators that exist and have a key") {
   for (const std::string& name : documents())
     parse_markdown(with_tables(read_file(asset(name))), [&](const std::string& id) {
       INFO(name, ": ", id);
-      CHECK(find_operator(*test.editor, id));
-      CHECK(test.editor->keymap.chord_of(id));
+      CHECK(find_operator(test.editor->operators, id));
+      CHECK(test.editor->keymap->chord_of(id));
       return id;
     });
 }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/screen.h"
 #include "editor/ui/messages.h"
+#include "editor/ui/ui.h"
 
 #include "tests/editor/small_editor.h"
 
@@ -14,7 +16,7 @@ TEST_CASE("messages: an error's line falls into title, place and advice, and the
   CHECK(message.what_to_do == "Copy it again");
 
   SmallEditor test;
-  test.editor->messages.show_error("the file ends too early: leg.mha: slice 12: copy it again", "Open leg.mha");
+  test.editor->messages->show_error("the file ends too early: leg.mha: slice 12: copy it again", "Open leg.mha");
   test.play(R"(
     expect "text:The file ends too early"
     expect "text:Nothing was changed"
@@ -32,9 +34,9 @@ TEST_CASE("messages: an error's line falls into title, place and advice, and the
 
 TEST_CASE("messages: notes fade, warnings later, errors stay until they are closed") {
   SmallEditor test;
-  test.editor->messages.info("A note");
-  test.editor->messages.warn("A warning");
-  test.editor->messages.toast_failure("the job broke: in the middle: mend it", "Job");
+  test.editor->messages->info("A note");
+  test.editor->messages->warn("A warning");
+  test.editor->messages->toast_failure("the job broke: in the middle: mend it", "Job");
   test.play(
       "move 10 300\n expect \"text:A note\"\n wait 5\n expect \"text:A note\" absent\n expect \"text:A warning\"\n "
       "wait 4\n expect \"text:A warning\" absent");
@@ -54,7 +56,7 @@ TEST_CASE("messages: notes fade, warnings later, errors stay until they are clos
 
 TEST_CASE("messages: three are seen, the older ones are counted and kept in the console") {
   SmallEditor test;
-  for (int i = 1; i <= 5; ++i) test.editor->messages.toast_error("Error " + std::to_string(i));
+  for (int i = 1; i <= 5; ++i) test.editor->messages->toast_error("Error " + std::to_string(i));
   test.play(R"(
     expect "text:Error 5"
     expect "text:Error 3"
@@ -70,30 +72,30 @@ TEST_CASE("messages: three are seen, the older ones are counted and kept in the 
 
 TEST_CASE("messages: long ones take more lines and stay whole, within the window") {
   SmallEditor test;
-  test.editor->messages.warn("Resampled in two hundred and twelve seconds by dual quaternions",
-                             std::string(60, 'x') + " " + std::string(60, 'y'));
+  test.editor->messages->warn("Resampled in two hundred and twelve seconds by dual quaternions",
+                              std::string(60, 'x') + " " + std::string(60, 'y'));
   test.play("expect \"text:dual quaternions\"");
-  const Widget* close = test.editor->widgets.find("Close message");
+  const Widget* close = test.editor->ui->widgets.find("Close message");
   REQUIRE(close);
-  CHECK(test.editor->layout.views.contains(close->rect));
-  test.editor->messages.show_error(std::string(2000, 'w') + ": " + std::string(2000, 'v') + ": " +
-                                   std::string(2000, 'u'));
+  CHECK(test.editor->screen->layout.views.contains(close->rect));
+  test.editor->messages->show_error(std::string(2000, 'w') + ": " + std::string(2000, 'v') + ": " +
+                                    std::string(2000, 'u'));
   test.play("click Details");
   for (const char* name : {"Copy message", "dialog/Details"}) {
-    const Widget* widget = test.editor->widgets.find(name);
+    const Widget* widget = test.editor->ui->widgets.find(name);
     REQUIRE(widget);
-    CHECK(test.editor->layout.window.contains(widget->rect));
+    CHECK(test.editor->screen->layout.window.contains(widget->rect));
   }
 }
 
 TEST_CASE("messages: in a small window neither they nor the console lie under or over the sidebar") {
   SmallEditor test({1024, 640});
   test.play("key N\nclick Help/Console");
-  test.editor->messages.warn("A warning");
+  test.editor->messages->warn("A warning");
   test.play("wait 0.1");
   for (const char* name : {"Close message", "Close console"}) {
-    const Widget* widget = test.editor->widgets.find(name);
+    const Widget* widget = test.editor->ui->widgets.find(name);
     REQUIRE(widget);
-    CHECK_FALSE(widget->rect.overlaps(test.editor->layout.sidebar));
+    CHECK_FALSE(widget->rect.overlaps(test.editor->screen->layout.sidebar));
   }
 }

@@ -80,11 +80,11 @@ TEST_CASE("replay: clip box and plane are moved by number, one edit each") {
   )");
   const Grid& grid = test.editor->document().volume->grid;
   CHECK((world_from_voxel(grid) * glm::dvec3(0, 0, box_of(test).high.z)).z == doctest::Approx(15));
-  const auto steps = test.editor->history.steps().size();
+  const auto steps = test.editor->history->steps().size();
   test.play("move \"3D view/view\"\n key Shift+Alt+B");
   const ClipPlane plane = test.editor->document().visibility->clip_plane;
   test.play("double-click Clipping/Plane\n type \"12.5\"\n key Return\n expect edit \"Move clip plane\"");
-  CHECK(test.editor->history.steps().size() == steps + 2);
+  CHECK(test.editor->history->steps().size() == steps + 2);
   const ClipPlane& moved = test.editor->document().visibility->clip_plane;
   const glm::dvec3 middle = world_from_voxel(grid) * ((glm::dvec3(grid.size) - 1.0) * 0.5);
   CHECK(glm::dot(moved.point - middle, plane.normal) == doctest::Approx(12.5));
@@ -101,7 +101,7 @@ TEST_CASE("replay: a turntable never replaces pictures unasked") {
   CHECK(std::filesystem::file_size(folder / "turn-0001.png") == 4);
   export_turntable(*test.editor, folder / "turn.png", 3);
   test.play("click dialog/Replace");
-  for (int i = 0; i < 200 && test.editor->jobs.busy(); ++i) test.player.step();
+  for (int i = 0; i < 200 && test.editor->jobs->busy(); ++i) test.player.step();
   test.play("wait-job");
   for (const char* name : {"turn-0000.png", "turn-0001.png", "turn-0002.png"})
     CHECK(std::filesystem::file_size(folder / name) > 500);

@@ -3,9 +3,18 @@
 #include <numbers>
 
 #include "core/rig/joint_limits.h"
+#include "editor/context/interaction.h"
+#include "editor/context/modal_tool.h"
+#include "editor/context/operator.h"
+#include "editor/context/pick_list.h"
+#include "editor/context/pose_editing.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
 #include "editor/context/transform_settings.h"
+#include "editor/context/view_projection.h"
 #include "editor/pose/pose_edits.h"
 #include "editor/selection/transform_gizmo.h"
+#include "editor/ui/ui.h"
 #include "editor/viewport/gizmo_draw.h"
 #include "tests/editor/small_limb.h"
 
@@ -26,15 +35,15 @@ struct GizmoEditor : LimbEditor {
     volume->voxels.assign(volume->voxels.size(), 0);
     volume->at({12, 10, 15}) = 111;
     bare.volume = volume;
-    editor->history.reset(bare, "Open bare limb");
-    editor->preferences.reduce_motion = true;
+    editor->history->reset(bare, "Open bare limb");
+    editor->preferences->reduce_motion = true;
     play("key N\nkey Ctrl+3\nkey Num1\nwait-idle");
     if (parallel) play("key Num5\nwait-idle");
     // The view is oblique, so that no ring is seen edge-on.
     editor->views->body.camera = render::orbited(editor->views->body.camera, {60, 35});
-    editor->selection.bone = 1;
-    editor->selection.bones = {1};
-    editor->posing.keep_limits = false;
+    editor->selection->bone = 1;
+    editor->selection->bones = {1};
+    editor->posing->keep_limits = false;
     play("wait-idle");
   }
   static Preferences preferences_of(float scale) {
@@ -51,14 +60,14 @@ struct GizmoEditor : LimbEditor {
   }
   // Returns the pixel of the point at `angle` on the ring about `axis`. The ring's radius is 86 pixels.
   glm::dvec2 on_ring(int axis, double angle) const { return view().pixel_of(ring(axis).at(angle)).value(); }
-  Ring ring(int axis) const { return ring_of(view(), editor->look.scale, gizmo().centre, gizmo().axes[axis], 86); }
+  Ring ring(int axis) const { return ring_of(view(), editor->ui->look.scale, gizmo().centre, gizmo().axes[axis], 86); }
   // Returns the angle on the ring about `axis` at which the ring is nearest to the eye.
   double front(int axis) const {
     const auto [begin, by] = ring(axis).front(view());
     return begin + by / 2;
   }
   void pointer_to(const glm::dvec2& pixel) {
-    const glm::dvec2 at = pixel / double(editor->look.scale);
+    const glm::dvec2 at = pixel / double(editor->ui->look.scale);
     char line[80];
     std::snprintf(line, sizeof line, "move %.6f %.6f", at.x, at.y);
     play(line);
@@ -74,7 +83,7 @@ struct GizmoEditor : LimbEditor {
     const SwingTwist parts = swing_twist(pose().rotation[bone], axis);
     return glm::length(parts.swing) < 1e-6 ? glm::degrees(parts.twist) : NAN;
   }
-  std::string last_edit() const { return editor->history.steps()[editor->history.position()].label; }
+  std::string last_edit() const { return editor->history->steps()[editor->history->position()].label; }
 };
 
 }  // namespace
@@ -109,15 +118,15 @@ TEST_CASE(
         for (int i = 0; i <= 3; ++i) path.push_back(test.on_ring(axis, begin + i * 32.0 * kPi / 180));
         test.pointer_to(path[0]);
         test.press();
-        CHECK(test.editor->modal);
+        CHECK(test.editor->interaction->modal);
         for (const glm::dvec2& pixel : path) test.pointer_to(pixel);
-        const auto position = test.editor->history.position();
+        const auto position = test.editor->history->position();
         test.release();
-        CHECK(!test.editor->modal);
+        CHECK(!test.editor->interaction->modal);
         glm::dvec3 world(0);
         world[axis] = 1;
         CHECK(std::abs(test.degrees(1, world) - 96) < 0.1);
-        CHECK(test.editor->history.position() == position + 1);
+        CHECK(test.editor->history->position() == position + 1);
         test.play("key Ctrl+Z");
         CHECK(test.pose() == rest_pose(*test.editor->document().armature));
       }
@@ -131,8 +140,8 @@ TEST_CASE("gizmos: a hinge that lies askew has a ring of its own, and turns by t
     Armature armature = *next.armature;
     armature.bones[1].limits.axis = glm::normalize(glm::dvec3(1, -0.9, 0));
     next.armature = std::make_shared<const Armature>(armature);
-    test.editor->history.commit("Hinge", next);
-    test.editor->posing.keep_limits = true;
+    test.editor->history->commit("Hinge", next);
+    test.editor->posing->keep_limits = true;
     test.editor->transform_settings->space = local ? Space::Local : Space::Global;
     test.play("click \"strip/tool.rotate\"\nwait-idle");
     int along = -1;
@@ -144,7 +153,7 @@ TEST_CASE("gizmos: a hinge that lies askew has a ring of its own, and turns by t
     test.pointer_to(test.on_ring(along, begin));
     test.press();
     for (int i = 1; i <= 4; ++i) test.pointer_to(test.on_ring(along, begin + sense * glm::radians(47.8) * i / 4));
-    CHECK(test.editor->modal->title().find("about the hinge") != std::string::npos);
+    CHECK(test.editor->interaction->modal->title().find("about the hinge") != std::string::npos);
     test.release();
     CHECK(std::abs(test.degrees(1, armature.bones[1].limits.axis) - 47.8) < 0.1);
   }
@@ -153,7 +162,7 @@ TEST_CASE("gizmos: a hinge that lies askew has a ring of its own, and turns by t
 TEST_CASE("gizmos: the ring about the line of sight turns like the pointer goes round the joint") {
   for (const bool parallel : {false, true}) {
     GizmoEditor test(1, parallel);
-    test.editor->tool = Tool::Rotate;
+    test.editor->interaction->tool = Tool::Rotate;
     const glm::dvec2 centre = test.view().pixel_of(test.gizmo().centre).value();
     const auto at = [&](double degrees) {
       return centre + 108.0 * glm::dvec2(std::cos(glm::radians(degrees)), -std::sin(glm::radians(degrees)));
@@ -171,7 +180,7 @@ TEST_CASE("gizmos: the ring about the line of sight turns like the pointer goes 
 TEST_CASE(
     "gizmos: what the pointer takes hold of is the ring nearest to the eye, then the view's ring, then the ball") {
   GizmoEditor test;
-  test.editor->tool = Tool::Rotate;
+  test.editor->interaction->tool = Tool::Rotate;
   const auto at = [&](const glm::dvec2& pixel) { return part_at(test.gizmo(), test.view(), 1, pixel); };
   const glm::dvec2 centre = test.view().pixel_of(test.gizmo().centre).value();
   for (int axis = 0; axis < 3; ++axis) {
@@ -201,7 +210,7 @@ TEST_CASE(
 TEST_CASE("gizmos: a ring seen edge on is not taken hold of") {
   GizmoEditor test(1, true);
   test.play("key Num1\nwait-idle");
-  test.editor->tool = Tool::Rotate;
+  test.editor->interaction->tool = Tool::Rotate;
   // From the front, the rings about x and z are seen as lines across the ball.
   const glm::dvec2 centre = test.view().pixel_of(test.gizmo().centre).value();
   CHECK(part_at(test.gizmo(), test.view(), 1, centre + glm::dvec2(0, 40)) == GizmoPart{GizmoPart::Kind::Trackball});
@@ -211,7 +220,7 @@ TEST_CASE("gizmos: a ring seen edge on is not taken hold of") {
 
 TEST_CASE("gizmos: during a drag Ctrl snaps, Shift goes slowly, digits are typed and Escape drops") {
   GizmoEditor test;
-  test.editor->tool = Tool::Rotate;
+  test.editor->interaction->tool = Tool::Rotate;
   const double begin = test.front(0);
   const auto to = [&](double degrees) { return test.on_ring(0, begin + glm::radians(degrees)); };
   const glm::dvec2 from = to(0), far = to(33);
@@ -243,34 +252,34 @@ TEST_CASE("gizmos: during a drag Ctrl snaps, Shift goes slowly, digits are typed
   CHECK(std::abs(test.degrees(1, {1, 0, 0}) - 12.5) < 1e-6);
   test.play("key Ctrl+Z");
 
-  const std::size_t steps = test.editor->history.steps().size();
+  const std::size_t steps = test.editor->history->steps().size();
   test.pointer_to(from);
   test.press();
   test.pointer_to(far);
   test.play("key Escape");
-  CHECK(!test.editor->modal);
+  CHECK(!test.editor->interaction->modal);
   test.release();
   CHECK(test.pose() == rest_pose(*test.editor->document().armature));
-  CHECK(test.editor->history.steps().size() == steps);
+  CHECK(test.editor->history->steps().size() == steps);
   CHECK(test.editor->views->preview_pose == nullptr);
 }
 
 TEST_CASE("gizmos: a click in the ball picks what lies below it, and changes nothing") {
   GizmoEditor test;
-  test.editor->tool = Tool::Rotate;
+  test.editor->interaction->tool = Tool::Rotate;
   const glm::dvec2 upper = test.view().pixel_of({0, 0, 12}).value();
   REQUIRE(part_at(test.gizmo(), test.view(), 1, upper));
-  const std::size_t steps = test.editor->history.steps().size();
+  const std::size_t steps = test.editor->history->steps().size();
   test.pointer_to(upper);
   test.press();
   test.release();
-  CHECK(test.editor->selection.bone == 0);
-  CHECK(test.editor->history.steps().size() == steps);
+  CHECK(test.editor->selection->bone == 0);
+  CHECK(test.editor->history->steps().size() == steps);
 }
 
 TEST_CASE("gizmos: rings and locks go by the chosen space") {
   GizmoEditor test;
-  test.editor->tool = Tool::Rotate;
+  test.editor->interaction->tool = Tool::Rotate;
   test.play("move \"3D view/view\"\nkey R\nkey Z\nkey 3\nkey 0\nkey Return");
   const auto posed = posed_from_rest(*test.editor->document().armature, test.pose());
   test.editor->transform_settings->space = Space::Local;
@@ -290,15 +299,15 @@ TEST_CASE("gizmos: rings and locks go by the chosen space") {
 TEST_CASE("gizmos: an arrow moves the body along its axis, a square in its plane") {
   for (const bool parallel : {false, true}) {
     GizmoEditor test(1, parallel);
-    test.editor->tool = Tool::Move;
-    test.editor->selection.bone = 0;
-    test.editor->selection.bones = {0};
+    test.editor->interaction->tool = Tool::Move;
+    test.editor->selection->bone = 0;
+    test.editor->selection->bones = {0};
     const double unit = test.view().millimetres_per_pixel(test.gizmo().centre);
     const auto drag = [&](const glm::dvec3& from, const glm::dvec3& by) {
       const glm::dvec2 begin = test.view().pixel_of(from).value(), end = test.view().pixel_of(from + by).value();
       test.pointer_to(begin);
       test.press();
-      REQUIRE(test.editor->modal);
+      REQUIRE(test.editor->interaction->modal);
       test.pointer_to((begin + end) / 2.0);
       test.pointer_to(end);
       test.release();
@@ -319,13 +328,13 @@ TEST_CASE("gizmos: an arrow moves the body along its axis, a square in its plane
 TEST_CASE("gizmos: any joint is dragged with the reach tool, and pinned ones stay") {
   GizmoEditor test;
   test.play("click \"strip/tool.reach\"\nwait-idle");
-  test.editor->selection = {};
+  *test.editor->selection = {};
   const glm::dvec2 from = test.view().pixel_of({0, 0, -36}).value(), to = test.view().pixel_of({20, 0, 10}).value();
   test.pointer_to(from);
   test.press();
   for (int i = 1; i <= 4; ++i) test.pointer_to(from + (to - from) * (i / 4.0));
   test.release();
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection->bone == 1);
   CHECK(test.last_edit() == "Reach with Fore");
   const auto tip = [&] {
     return posed_from_rest(*test.editor->document().armature, test.pose())[1] * glm::dvec3(0, 0, -36);
@@ -336,8 +345,8 @@ TEST_CASE("gizmos: any joint is dragged with the reach tool, and pinned ones sta
   const glm::dvec3 before = tip();
   test.play("move \"3D view/view\"\nkey Shift+P");
   CHECK(test.last_edit() == "Pin Fore");
-  test.editor->selection.bone = 0;
-  test.editor->selection.bones = {0};
+  test.editor->selection->bone = 0;
+  test.editor->selection->bones = {0};
   test.play("key G\nkey Z\nkey -\nkey 6\nkey Return");
   CHECK(std::abs(test.pose().root_translation.z + 6) < 1e-9);
   CHECK(glm::distance(tip(), before) < 0.1);
@@ -352,9 +361,9 @@ TEST_CASE("gizmos: a pole is dragged as one edit with the limb that turns to it,
   Pose bent = rest_pose(armature);
   bent.rotation[1] = glm::angleAxis(1.0, glm::dvec3(1, 0, 0));
   straight.pose = std::make_shared<const Pose>(bent);
-  test.editor->history.commit("Bend", straight);
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
+  test.editor->history->commit("Bend", straight);
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
   test.play("move \"3D view/view\"\nclick \"Edit/IK/IK pole\"\nclick \"strip/tool.select\"\nwait-idle");
   CHECK(test.last_edit() == "Add pole to Fore");
   const auto pole = [&] { return anchors_of(test.editor->document()).poles.at("Fore"); };
@@ -384,7 +393,7 @@ TEST_CASE("gizmos: in X-ray a bone behind the volume is picked") {
   CHECK(test.editor->views->hover.inside);
   for (const bool down : {true, false}) test.host->events.push(ButtonChanged{MouseButton::Left, down});
   test.player.settle();
-  CHECK(test.editor->selection.bone == 1);
+  CHECK(test.editor->selection->bone == 1);
 }
 
 TEST_CASE("gizmos: with X-mirror the other side does the same") {
@@ -394,9 +403,9 @@ TEST_CASE("gizmos: with X-mirror the other side does the same") {
   for (const double side : {1.0, -1.0})
     armature.bones.push_back({side > 0 ? "Arm.L" : "Arm.R", -1, {side * 10, 0, 0}, {side * 30, 0, 0}});
   next.armature = std::make_shared<const Armature>(armature);
-  test.editor->history.commit("Two arms", next);
-  test.editor->selection.bone = 0;
-  test.editor->selection.bones = {0};
+  test.editor->history->commit("Two arms", next);
+  test.editor->selection->bone = 0;
+  test.editor->selection->bones = {0};
   test.editor->transform_settings->x_mirror = true;
   test.play("move \"3D view/view\"\nkey R\nkey Y\nkey 3\nkey 0\nkey Return");
   const auto posed = posed_from_rest(armature, test.pose());
@@ -420,28 +429,28 @@ TEST_CASE("gizmos: bones' names stand clear of the gizmo and of one another, at 
             {"Spoke " + std::to_string(i), 0, {0, 0, 0}, {90 * std::cos(angle), 0, 90 * std::sin(angle)}});
       }
       fan.armature = rig;
-      test.editor->history.reset(fan, "Open fan");
+      test.editor->history->reset(fan, "Open fan");
       test.editor->views->bone_names = true;
       test.play(std::string(tool) + "\n wait-idle");
-      test.editor->selection.bone = 1;
-      test.editor->selection.bones = {1};
+      test.editor->selection->bone = 1;
+      test.editor->selection->bones = {1};
       test.play("wait-idle");
       const glm::vec2 centre(test.view().pixel_of(test.gizmo().centre).value());
       const double reach = test.gizmo().tool == Tool::Rotate ? 108 : 92;
       std::vector<Rect> names;
-      for (const Widget& widget : test.editor->widgets.widgets()) {
+      for (const Widget& widget : test.editor->ui->widgets.widgets()) {
         const auto found = widget.name.find("bone name ");
         if (found == std::string::npos) continue;
         INFO(widget.name);
         CHECK(glm::distance(glm::clamp(centre, widget.rect.low, widget.rect.high), centre) >=
-              reach * test.editor->look.scale);
+              reach * test.editor->ui->look.scale);
         for (const Rect& other : names) CHECK_FALSE(widget.rect.overlaps(other));
-        CHECK(test.editor->layout.place_of(ViewId::Body)->contains(widget.rect));
-        CHECK(widget.rect.height() >= 15 * test.editor->look.scale);
+        CHECK(test.editor->screen->layout.place_of(ViewId::Body)->contains(widget.rect));
+        CHECK(widget.rect.height() >= 15 * test.editor->ui->look.scale);
         names.push_back(widget.rect);
       }
       CHECK(names.size() >= 3);
-      CHECK(test.editor->widgets.find("bone name Fore"));
+      CHECK(test.editor->ui->widgets.find("bone name Fore"));
     }
 }
 
@@ -454,16 +463,16 @@ TEST_CASE("gizmos: what lies under the pointer is listed nearest first, bones am
   run(*test.editor, "select.pick_list");
   test.player.settle();
   const std::vector<Pickable> expected = {{std::nullopt, 143}, {std::nullopt, 17}, {0}};
-  CHECK(test.editor->pick_list == expected);
-  CHECK(test.editor->selection.bone == 0);
+  CHECK(test.editor->pick_list->rows == expected);
+  CHECK(test.editor->selection->bone == 0);
   test.play("click pick/Muscle");
-  CHECK(test.editor->selection.tissue == Label{17});
+  CHECK(test.editor->selection->tissue == Label{17});
   test.play("move " + std::to_string(pixel.x) + " " + std::to_string(pixel.y) + "\n wait-idle");
   run(*test.editor, "select.pick_list");
   test.player.settle();
   test.play("click \"pick/bone Upper\"");
-  CHECK(test.editor->selection.bone == 0);
-  CHECK_FALSE(test.editor->selection.tissue);
+  CHECK(test.editor->selection->bone == 0);
+  CHECK_FALSE(test.editor->selection->tissue);
 }
 
 TEST_CASE(
@@ -473,11 +482,11 @@ TEST_CASE(
   Pose bent = rest_pose(*test.editor->document().armature);
   bent.rotation[0] = glm::angleAxis(0.5, glm::dvec3(1, 0, 0));
   commit_pose(*test.editor, "Bend", bent);
-  test.editor->posing.keep_limits = false;
+  test.editor->posing->keep_limits = false;
   test.editor->views->cross_hair = {0, 0, 0};
   for (SliceState& slice : test.editor->views->slices) slice.camera.centre = {0, 0, 0};
   test.play("wait-idle");
-  const ViewPlace sagittal{ViewId::Sagittal, *test.editor->layout.place_of(ViewId::Sagittal)};
+  const ViewPlace sagittal{ViewId::Sagittal, *test.editor->screen->layout.place_of(ViewId::Sagittal)};
   const ViewProjection view(*test.editor, sagittal);
   const auto posed = posed_from_rest(*test.editor->document().armature, bent);
   const auto point_at = [&](const glm::dvec2& pixel) {
@@ -488,13 +497,13 @@ TEST_CASE(
   CHECK(bone_at_pointer(*test.editor) == 1);
   point_at(view.pixel_of(glm::dvec3(0, 0, -30)).value());
   CHECK_FALSE(bone_at_pointer(*test.editor));
-  test.editor->selection.bone = 1;
-  test.editor->selection.bones = {1};
+  test.editor->selection->bone = 1;
+  test.editor->selection->bones = {1};
   const auto gizmo = gizmo_in(*test.editor, view);
   REQUIRE(gizmo);
   CHECK(glm::distance(gizmo->centre, posed[1] * glm::dvec3(0, 0, 0)) < 1e-9);
   // The pointer is on the ring that is parallel to the slice.
-  const Ring ring = ring_of(view, test.editor->look.scale, gizmo->centre, gizmo->axes[0], 86);
+  const Ring ring = ring_of(view, test.editor->ui->look.scale, gizmo->centre, gizmo->axes[0], 86);
   point_at(view.pixel_of(ring.at(0.3)).value());
   test.host->events.push(ButtonChanged{MouseButton::Left, true});
   test.player.settle();

@@ -2,6 +2,11 @@
 // Tests navigation in the 3D view: orbiting about a point, a trackpad, and walking. Also tests that the position of the
 // window is restored at the next start.
 #include "editor/context/cursor_wrap.h"
+#include "editor/context/interaction.h"
+#include "editor/context/preferences_state.h"
+#include "editor/context/screen.h"
+#include "editor/context/selection.h"
+#include "editor/ui/ui.h"
 #include "tests/editor/small_limb.h"
 
 using namespace limber;
@@ -14,8 +19,8 @@ const render::Camera& camera_of(const SmallEditor& test) { return test.editor->v
 
 glm::vec2 place_in_view(const SmallEditor& test, const glm::dvec3& point) {
   glm::dvec2 pixel;
-  REQUIRE(
-      render::project(camera_of(test), point, glm::ivec2(test.editor->layout.place_of(ViewId::Body)->size()), pixel));
+  REQUIRE(render::project(camera_of(test), point,
+                          glm::ivec2(test.editor->screen->layout.place_of(ViewId::Body)->size()), pixel));
   return glm::vec2(pixel);
 }
 
@@ -61,7 +66,7 @@ TEST_CASE("replay: a drag longer than the view turns as far as the hand goes") {
 TEST_CASE("replay: Escape brings back the view as it was before a drag") {
   SmallEditor test;
   const render::Camera before = camera_of(test);
-  test.host->events.push(PointerMoved{test.editor->widgets.find("3D view/view")->rect.centre()});
+  test.host->events.push(PointerMoved{test.editor->ui->widgets.find("3D view/view")->rect.centre()});
   test.host->events.push(ButtonChanged{MouseButton::Middle, true});
   test.player.settle();
   test.play("move 500 200\n expect \"text:Cancel the drag\"");
@@ -73,7 +78,7 @@ TEST_CASE("replay: Escape brings back the view as it was before a drag") {
 TEST_CASE("replay: the wheel zooms about the pointer, and with Shift, Ctrl or two fingers it shifts the view") {
   SmallEditor test;
   const glm::dvec3 point = camera_of(test).centre + camera_of(test).world_from_view * glm::dvec3(20, 10, 0);
-  const glm::vec2 pixel = place_in_view(test, point), corner = test.editor->layout.place_of(ViewId::Body)->low;
+  const glm::vec2 pixel = place_in_view(test, point), corner = test.editor->screen->layout.place_of(ViewId::Body)->low;
   test.host->events.push(PointerMoved{corner + pixel});
   for (int i = 0; i < 5; ++i) {
     test.host->events.push(Wheeled{1});
@@ -131,8 +136,8 @@ TEST_CASE("replay: what is chosen fills the view: several tissues, or a bone") {
   const double blood = camera_of(test).distance;
   test.play("click Skin/143/name Ctrl\n key Num.\n wait 0.3");
   CHECK(camera_of(test).distance > blood * 1.5);
-  test.editor->selection = {};
-  test.editor->selection.bones = {1};
+  *test.editor->selection = {};
+  test.editor->selection->bones = {1};
   test.play("key Num.\n wait 0.3");
   CHECK(glm::distance(camera_of(test).centre, glm::dvec3(0, 0, -18)) < 1e-9);
 }
@@ -183,7 +188,7 @@ TEST_CASE("replay: walking goes by keys, looks by the mouse, changes speed by th
       "click View/Navigate/Walk\n key-down D\n wait 0.1\n key-up D\n click \"3D view/view\"\n expect \"text:Walking\" "
       "absent");
   CHECK_FALSE(camera_of(test) == stayed);
-  CHECK_FALSE(test.editor->modal);
+  CHECK_FALSE(test.editor->interaction->modal);
 }
 
 TEST_CASE("replay: hints follow the modifiers that are held") {
@@ -233,7 +238,7 @@ TEST_CASE("preferences: the window is found as it was left: splitters, layouts, 
   Arrangements left;
   {
     SmallEditor test({1280, 720});
-    test.editor->preferences_path = file;
+    test.editor->preferences_state->path = file;
     test.play(R"(
       drag "splitter sidebar/grip" -60 0
       click view.four
@@ -245,13 +250,13 @@ TEST_CASE("preferences: the window is found as it was left: splitters, layouts, 
       key Ctrl+Space
       expect maximized Axial
     )");
-    left = test.editor->arrangements;
+    left = test.editor->screen->arrangements;
   }
   std::string problem;
   const Preferences kept = read_preferences(file, problem);
   CHECK(problem.empty());
   CHECK(kept.arrangements == left);
   SmallEditor next({1280, 720}, kept);
-  CHECK(next.editor->arrangements == left);
+  CHECK(next.editor->screen->arrangements == left);
   next.play("expect layout four\n expect strip no\n key Ctrl+2\n expect maximized Axial");
 }

@@ -13,9 +13,9 @@ namespace {
 using Effect = std::function<bool(Stage&, const Seen&)>;
 
 void choose_fore(Stage& s) {
-  s.editor().selection = {};
-  s.editor().selection.bone = 1;
-  s.editor().selection.bones = {1};
+  *s.editor().selection = {};
+  s.editor().selection->bone = 1;
+  s.editor().selection->bones = {1};
   s.play("key Ctrl+3\n move \"3D view/view\"\n wait-idle");
 }
 
@@ -31,7 +31,7 @@ Effect space_is(Space space) {
 Effect bent(const char* edit, double degrees) {
   return [=](Stage& s, const Seen& before) {
     const double angle = glm::degrees(glm::angle(pose_of(s.document()).rotation[1]));
-    return s.is("edit", edit) && static_cast<int>(s.editor().history.position()) == before.position + 1 &&
+    return s.is("edit", edit) && static_cast<int>(s.editor().history->position()) == before.position + 1 &&
            std::abs(angle - degrees) < 0.01;
   };
 }

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/comparison.h"
+#include "editor/context/interaction.h"
+#include "editor/context/operator.h"
+#include "editor/context/resampling_settings.h"
+#include "editor/ui/ui.h"
 #include "editor/volume/shown_image.h"
 
 #include <cmath>
@@ -35,9 +40,9 @@ struct Scan : Home {
   Scan() { write_grey_volume(scan(), *this / "ct.nrrd"); }
 };
 
-const render::ShownGrey& image_of(editor::Editor& e) {
-  REQUIRE(e.views->image);
-  return *e.views->image;
+const render::ShownGrey& image_of(editor::Context& c) {
+  REQUIRE(c.views->image);
+  return *c.views->image;
 }
 
 std::function<bool(Stage&, const Seen&)> has_window(double level, double width) {
@@ -59,12 +64,12 @@ void add_posed_scan(Stage& stage) {
   result->name = "Posed";
   result->volume = std::make_shared<const LabelVolume>(*next.volume);
   next.results.push_back(result);
-  stage.editor().history.commit("Result", next);
+  stage.editor().history->commit("Result", next);
   keep_posed_image(*stage.editor().views, {.result = result->volume,
                                            .levels = image_of(stage.editor()).image,
                                            .folder = nullptr,
                                            .file = stage.home / "ct.nrrd"});
-  stage.editor().project_path = stage.home / "limb.limber";
+  stage.editor().project->path = stage.home / "limb.limber";
 }
 
 }  // namespace
@@ -81,7 +86,7 @@ std::vector<Proof> proofs_of_images() {
        .ready =
            [](Stage& s) {
              write_grey_volume(scan(), s.home / "ct.nrrd");
-             s.editor().project_path = s.home / "limb.limber";
+             s.editor().project->path = s.home / "limb.limber";
            }},
       {"image.window_bone", "click View/Display/\"Image settings\"/\"Bone window\"", has_window(480, 2500),
        Shows::InSlice, four},
@@ -174,12 +179,12 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
 TEST_CASE("image: in a bare CT a slice tells position, voxel and value, and is measured from point to point") {
   const Scan files;
   Sitting sitting(files.folder.path(), {files / "ct.nrrd"}, {1280, 900});
-  editor::Editor& e = sitting.editor();
+  editor::Context& c = sitting.editor();
   sitting.play("wait-idle\n key Ctrl+Alt+Q\n wait-idle\n move Axial/view\n wait-idle");
-  const editor::Hover& hover = e.views->hover;
+  const editor::Hover& hover = c.views->hover;
   REQUIRE(hover.view == editor::ViewId::Axial);
   REQUIRE_FALSE(hover.inside);
-  const auto value = editor::image_value_at_pointer(e);
+  const auto value = editor::image_value_at_pointer(c.views);
   REQUIRE(value);
   const GreyVolume image = scan();
   const glm::ivec3 voxel(glm::floor(voxel_from_world(image.grid) * hover.point + 0.5));
@@ -189,7 +194,7 @@ TEST_CASE("image: in a bare CT a slice tells position, voxel and value, and is m
   char place[64];
   std::snprintf(place, sizeof place, "%.1f %.1f %.1f mm", hover.point.x, hover.point.y, hover.point.z);
   CHECK(sitting.test.fact("text:" + std::string(place)) == "shown");
-  CHECK(sitting.test.fact("text:No label \u00b7 " + editor::text_of_image_value(e, *value)) == "shown");
+  CHECK(sitting.test.fact("text:No label \u00b7 " + editor::text_of_image_value(c.views, *value)) == "shown");
   CHECK(sitting.test.fact("text:Outside") == "absent");
 
   sitting.play("click View/Overlays/Measure/\"Measure distance\"\n wait-idle\n move Axial/view\n wait-idle");
@@ -199,42 +204,42 @@ TEST_CASE("image: in a bare CT a slice tells position, voxel and value, and is m
       sitting.test.player.settle();
     }
   };
-  const glm::vec2 from = e.input.pointer;
+  const glm::vec2 from = c.ui->input.pointer;
   const glm::dvec3 first = hover.point;
   click();
   sitting.play("move " + std::to_string(from.x + 30) + " " + std::to_string(from.y) + "\n wait-idle");
   const glm::dvec3 second = hover.point;
   click();
   sitting.play("key Escape\n wait-idle\n expect error none");
-  REQUIRE(e.document().measurements);
-  REQUIRE(e.document().measurements->size() == 1);
-  const Measurement& one = e.document().measurements->front();
+  REQUIRE(c.document().measurements);
+  REQUIRE(c.document().measurements->size() == 1);
+  const Measurement& one = c.document().measurements->front();
   CHECK(glm::distance(first, second) > 1);
   CHECK(measure(one.kind, one.points) == doctest::Approx(glm::distance(first, second)));
 
   sitting.play("click View/Overlays/Measure/\"Measure girth\"\n wait-idle\n move Axial/view\n wait-idle");
   click();
   sitting.play("wait-idle\n expect \"text:needs labels\" shown\n key Escape\n wait-idle");
-  CHECK(e.document().measurements->size() == 1);
+  CHECK(c.document().measurements->size() == 1);
 }
 
 TEST_CASE("image: dragging the window of a CT leaves whole Hounsfield units, and loses no small movement") {
   const Scan files;
   Sitting sitting(files.folder.path(), {files / "ct.nrrd"}, {1280, 900});
-  editor::Editor& e = sitting.editor();
+  editor::Context& c = sitting.editor();
   sitting.play("wait-idle\n key Ctrl+Alt+Q\n wait-idle\n move Axial/view\n wait-idle");
-  editor::run(e, "image.drag_window");
-  REQUIRE(e.drag);
-  for (int i = 0; i < 40; ++i) e.drag->moved(e, {0.25f, 0.25f});
-  const render::ShownGrey& image = image_of(e);
+  editor::run(c, "image.drag_window");
+  REQUIRE(c.interaction->drag);
+  for (int i = 0; i < 40; ++i) c.interaction->drag->moved(c, {0.25f, 0.25f});
+  const render::ShownGrey& image = image_of(c);
   CHECK(image.level == std::round(image.level));
   CHECK(image.width == std::round(image.width));
   // Forty steps of a quarter of a pixel are ten pixels. The width grows by e^(2/300) for each pixel.
   CHECK(image.width == std::round(400 * std::exp(20.0 / 300)));
   CHECK(image.level < 40 - 10);
-  e.drag->cancelled(e);
-  CHECK(image_of(e).width == 400);
-  e.drag.reset();
+  c.interaction->drag->cancelled(c);
+  CHECK(image_of(c).width == 400);
+  c.interaction->drag.reset();
 }
 
 TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and keeps the tools that need no tissue") {
@@ -245,7 +250,7 @@ TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and kee
   mr.type = {"NRRD", "float", true};
   write_grey_volume(mr, home / "mr.nrrd");
   Sitting sitting(home.folder.path(), {home / "mr.nrrd"});
-  sitting.editor().preferences.advanced_steps = true;
+  sitting.editor().preferences->advanced_steps = true;
   sitting.play("wait-idle\n expect error none\n expect dialog no");
   for (const char* tool : {"labels.new_tissue", "prepare.regrid", "prepare.pad", "prepare.orient"})
     CHECK_MESSAGE(sitting.test.fact(std::string("widget:Steps/Prepare more/") + tool) == "shown", tool);
@@ -294,28 +299,28 @@ TEST_CASE("image: resampling poses it, to the voxel as the command line does, an
 
   Sitting sitting(home.folder.path(),
                   {home / "arm/volume.nrrd", home / "arm/tissues.json", home / "arm/rig.json", home / "w.nrrd"});
-  editor::Editor& e = sitting.editor();
-  e.worker_program = LIMBER_PROGRAM;
-  e.workers_yield = false;
+  editor::Context& c = sitting.editor();
+  c.background->worker_program = LIMBER_PROGRAM;
+  c.background->workers_yield = false;
   sitting.play("wait-job\n wait-job\n wait-job\n wait-job\n wait-idle\n expect error none");
-  editor::open_image(e, home / "ct.nrrd");
+  editor::open_image(c, home / "ct.nrrd");
   sitting.play("wait-job\n wait-idle\n expect error none");
-  Document bent = e.document();
+  Document bent = c.document();
   Pose pose = rest_pose(*bent.armature);
   flex(pose, *bent.armature, require_bone(*bent.armature, "Forearm"), 70);
   bent.pose = std::make_shared<const Pose>(pose);
-  commit(e, "Bend", std::move(bent));
-  e.resampling.method = "dqs";
-  editor::start_resampling(e);
+  commit(c, "Bend", std::move(bent));
+  c.resampling->method = "dqs";
+  editor::start_resampling(c);
   sitting.play("key Ctrl+4\n wait-job\n wait-idle\n expect error none");
-  REQUIRE(e.document().results.size() == 1);
-  const auto result = e.document().results.back();
-  const editor::PosedImage* kept = editor::posed_image_of(*e.views, result->volume);
+  REQUIRE(c.document().results.size() == 1);
+  const auto result = c.document().results.back();
+  const editor::PosedImage* kept = editor::posed_image_of(*c.views, result->volume);
   REQUIRE(kept);
-  editor::export_posed_image(e, result, home / "from-editor.nrrd");
+  editor::export_posed_image(c, result, home / "from-editor.nrrd");
   sitting.play("wait-job\n wait-idle\n expect error none");
 
-  write_pose(pose, *e.document().armature, home / "pose.json");
+  write_pose(pose, *c.document().armature, home / "pose.json");
   REQUIRE(run_limber({"resample", at("arm/volume.nrrd"), "--tissues", at("arm/tissues.json"), "--rig",
                       at("arm/rig.json"), "--weights", at("w.nrrd"), "--pose", at("pose.json"), "--method", "dqs",
                       "--with", at("ct.nrrd") + "=" + at("from-command.nrrd"), "-o", at("posed.nrrd")})
@@ -327,15 +332,15 @@ TEST_CASE("image: resampling poses it, to the voxel as the command line does, an
   CHECK(kept->levels->grid == theirs.grid);
 
   // For a result with a posed image the views show that image. For a result without one they show none.
-  e.comparison.b = result->name;
+  c.comparison->b = result->name;
   sitting.play("key 2\n wait-idle");
-  REQUIRE(e.views->scene.volume == result->volume);
-  REQUIRE(e.views->scene.grey);
-  CHECK(e.views->scene.grey->image == kept->levels);
-  e.views->posed_images.clear();
-  e.touch();
+  REQUIRE(c.views->scene.volume == result->volume);
+  REQUIRE(c.views->scene.grey);
+  CHECK(c.views->scene.grey->image == kept->levels);
+  c.views->posed_images.clear();
+  c.ui->touch();
   sitting.play("wait-idle");
-  CHECK_FALSE(e.views->scene.grey);
+  CHECK_FALSE(c.views->scene.grey);
 }
 
 TEST_CASE("image: importing one asks before unsaved work on an empty body is replaced") {
@@ -362,11 +367,11 @@ TEST_CASE("image: its form says so when the image is closed under it, and anothe
   sitting.play("wait-idle\n expect dialog yes\n key Escape\n wait-idle");
   sitting.editor().views->image = image;
   sitting.play(form);
-  sitting.editor().jobs.set_at_once(0);  // the job runs only after the other body is open
+  sitting.editor().jobs->set_at_once(0);  // the job runs only after the other body is open
   sitting.play("click \"Make labels\"");
   const Document other = small_body();
-  sitting.editor().history.reset(other, "Open ball");
-  sitting.editor().jobs.set_at_once(2);
+  sitting.editor().history->reset(other, "Open ball");
+  sitting.editor().jobs->set_at_once(2);
   sitting.play("wait-job\n wait-idle");
   CHECK(sitting.editor().document() == other);
 }

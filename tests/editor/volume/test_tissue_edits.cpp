@@ -8,12 +8,12 @@ using namespace limber::test;
 
 TEST_CASE("tissue panel: a kind is chosen from the list, takes its usual material with it, and undo brings it back") {
   SmallEditor test({1280, 1000});
-  editor::Editor& e = *test.editor;
-  const auto muscle = [&] { return *e.document().tissues->find(17); };
+  editor::Context& c = *test.editor;
+  const auto muscle = [&] { return *c.document().tissues->find(17); };
   Tissue own = muscle();
   own.young_modulus = 77;  // as if the user had set it
-  editor::set_tissue(e, "Stiffness of Muscle", own);
-  editor::select_tissue(e, 17, false);
+  editor::set_tissue(c, "Stiffness of Muscle", own);
+  editor::select_tissue(c, 17, false);
   test.play(
       "wait-idle\n click \"sidebar/sections/Outliner/fold\"\n wait-idle\n click \"Tissue/Kind/list\"\n wait-idle");
   test.play("click \"Tissue/Kind/Cartilage\"\n wait-idle\n expect edit \"Kind of Muscle\"");
@@ -28,7 +28,7 @@ TEST_CASE("tissue panel: a kind is chosen from the list, takes its usual materia
   test.play("key Ctrl+Z\n wait-idle");
   CHECK(muscle().kind == TissueKind::Muscle);
   CHECK(muscle().poisson_ratio == own.poisson_ratio);
-  const auto edits = e.history.position();
-  editor::set_kind(e, 17, TissueKind::Muscle);  // the tissue already has this kind
-  CHECK(e.history.position() == edits);
+  const auto edits = c.history->position();
+  editor::set_kind(c, 17, TissueKind::Muscle);  // the tissue already has this kind
+  CHECK(c.history->position() == edits);
 }

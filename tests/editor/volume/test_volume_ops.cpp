@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "editor/context/operator.h"
 #include "editor/volume/volume_edits.h"
 
 #include <fstream>
@@ -42,7 +43,7 @@ TEST_CASE("prepare: each command is a job and one edit, undone bit for bit") {
     expect edit "Orient to RPS"
   )--");
   CHECK(test.fact("document") != before);
-  while (test.editor->history.can_undo()) run(*test.editor, "edit.undo");
+  while (test.editor->history->can_undo()) run(*test.editor, "edit.undo");
   CHECK(test.fact("document") == before);
 }
 
@@ -80,16 +81,16 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
   )--");
   CHECK(test.editor->document().weights == weights);
   CHECK_FALSE(test.editor->document().tissues->find(65));
-  CHECK(test.editor->messages.toasts.back().severity == Severity::Ok);
+  CHECK(test.editor->messages->toasts.back().severity == Severity::Ok);
 
   run(*test.editor, "prepare.crop");
   test.play("wait-job");
   CHECK_FALSE(test.editor->document().weights);
   CHECK(test.editor->document().armature);
-  CHECK(test.editor->messages.toasts.back().detail.find("weights") != std::string::npos);
-  CHECK(test.editor->messages.toasts.back().severity == Severity::Warning);
+  CHECK(test.editor->messages->toasts.back().detail.find("weights") != std::string::npos);
+  CHECK(test.editor->messages->toasts.back().severity == Severity::Warning);
 
-  while (test.editor->history.can_undo()) run(*test.editor, "edit.undo");
+  while (test.editor->history->can_undo()) run(*test.editor, "edit.undo");
   run(*test.editor, "prepare.flip_y");
   test.play("wait-job");
   CHECK_FALSE(test.editor->document().armature);
@@ -97,7 +98,8 @@ TEST_CASE("prepare: weights and rig stay only while they fit, and it is said") {
 
 TEST_CASE("prepare: crop to the clip box keeps what is seen, a form says what is wrong and waits") {
   LimbEditor test;
-  CHECK_FALSE(disabled_reason(*test.editor, *find_operator(*test.editor, "prepare.crop_to_clip_box")).empty());
+  CHECK_FALSE(
+      disabled_reason(*test.editor, *find_operator(test.editor->operators, "prepare.crop_to_clip_box")).empty());
   run(*test.editor, "view.clip_box");
   const ClipBox box = test.editor->document().visibility->clip_box;
   const LabelVolume expected =
@@ -150,7 +152,7 @@ TEST_CASE("prepare: a volume that was changed meanwhile is not overwritten") {
   start_preparation(*test.editor, {"Slow", [](const LabelVolume& v, Progress&) { return pad(v, 2); }});
   Document other = test.editor->document();
   other.volume = std::make_shared<const LabelVolume>(pad(*other.volume, 1));
-  test.editor->history.commit("Other", other);
+  test.editor->history->commit("Other", other);
   test.play("wait-job");
   CHECK(test.editor->document().volume == other.volume);
   CHECK(test.fact("toast") == "The volume was changed meanwhile");

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+namespace limber::editor {
+
+// A reference to a part of the editor's state. Its owner may set it later. Who gets a constant Context cannot change
+// the part either. T may be an incomplete type; only who uses the part includes its header.
+template <class T>
+class ContextPart {
+ public:
+  ContextPart() = default;
+  ContextPart(const ContextPart&) = delete;
+  ContextPart& operator=(const ContextPart&) = delete;
+
+  void refer_to(T* part) { part_ = part; }  // null: there is no such part now
+
+  explicit operator bool() const { return part_ != nullptr; }
+  T* operator->() { return part_; }
+  const T* operator->() const { return part_; }
+  T& operator*() { return *part_; }
+  const T& operator*() const { return *part_; }
+  // A function that takes one part gets it as `context.ui`.
+  operator T&() { return *part_; }
+  operator const T&() const { return *part_; }
+
+ private:
+  T* part_ = nullptr;
+};
+
+}  // namespace limber::editor

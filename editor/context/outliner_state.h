@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <string>
+
+namespace limber::editor {
+
+struct OutlinerState {
+  std::string search;
+  bool searching = false, focus_search = false;
+  std::map<std::string, bool> open;  // true: the user unfolded a row, false: folded it; by the row's id
+  std::string tissue_search;         // what the list of tissues is searched for
+};
+
+}  // namespace limber::editor
