@@ -2,8 +2,9 @@
 // Separates the bone tissue of a volume into bones. All bones of a limb are often one connected blob of one label,
 // because joints are thinner than a voxel. First, bones that touch in a joint or side by side are cut apart
 // (core/bones/joint_cuts.h). Then a watershed splits the blob; it grows from the marrow cores or, without marrow, from
-// the deepest points of the bone. Each part follows the rig bone that it surrounds. The plane borders of Bender's skin
-// map (skin/weights_io.h) are not used: a cut along them would assign 1004 voxels of the paper's arm to the wrong bone.
+// the deepest points of the bone. Each part follows the rig bone that it surrounds. Bender's weight files
+// (skin/weights_io.h) separate bones by planes. These planes are not used here: on Bender's sample arm they would assign
+// 1004 voxels to the wrong bone.
 //
 // A label whose name says which bone it is has precedence over shape (core/bones/bone_identity.h). A label of several
 // bones ("Wrists and hand bones") is split by shape among the rig bones that its name allows.

@@ -175,9 +175,10 @@ void add_fk(CLI::App& app) {
       ->required();
   auto* json =
       command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");
-  command->add_flag("--angles", options->angles,
-                    "print the clinical angles of every joint, from the anatomical position; with --json "
-                    "{\"angles\": {joint: {motion: degrees}}}, which is a pose file");
+  command->add_flag(
+      "--angles", options->angles,
+      "print the clinical angles of every joint, measured from the anatomical position; with --json as a pose "
+      "file: {\"angles\": {joint: {motion: degrees}}}");
   add_pose_options(*command, options->pose);
   command
       ->add_flag("--all-frames", options->all_frames,

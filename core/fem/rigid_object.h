@@ -16,7 +16,7 @@ namespace limber {
 
 // The rigid objects that press on the body in a solve.
 struct RigidObjects {
-  NodePositions rest;             // #N: positions far away from the body, mm
+  NodePositions rest;             // #N: positions at rest, mm; so far away that no object touches the body
   Eigen::MatrixX3i F;             // triangles, as rows of indices into `rest`; counter-clockwise seen from outside
   std::vector<int> object;        // #N: the index of the object to which each node belongs
   std::vector<std::string> name;  // names by object, for messages

@@ -201,7 +201,7 @@ glm::dvec3 middle_along(const LabelVolume& volume, const glm::dvec3& surface, co
   const double step = 0.5 * std::min({volume.grid.spacing.x, volume.grid.spacing.y, volume.grid.spacing.z});
   const double most = glm::length(glm::dvec3(volume.grid.size) * volume.grid.spacing);
   const glm::dvec3 way = step * glm::normalize(direction);
-  double first = 0, last = 0;  // number of steps from the surface at which tissue begins and ends
+  double first = 0, last = 0;  // where along the line tissue begins and ends, in steps from `surface`
   for (double n = 0; n * step < most; ++n) {
     const bool is_in = tissue_share(volume, to_voxel * (surface + n * way), is_tissue) >= 0.5;
     if (is_in) {

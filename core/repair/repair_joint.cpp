@@ -193,7 +193,8 @@ class Repairer {
   }
 
  private:
-  // Starts the correction from the best capsule, or from the present weights if they have a smaller total.
+  // Starts the correction from the weights of the joint capsule that changes the tissues' volumes least, or from the
+  // present weights if these change them less.
   void start() {
     CapsuleStart capsule = best_capsule(capsule_, model_, progress_);
     widths_ = capsule.widths;

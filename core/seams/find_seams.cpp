@@ -431,8 +431,9 @@ class SeamFinder {
   std::vector<std::optional<LimbName>> named_;  // limb that the name of each label contains
   std::vector<std::optional<LimbName>> limb_of_bone_;
   AffineTransform world_;
-  ZeroedVector<std::uint16_t> held_by_, bone_;  // rig bone of each tissue voxel; held_by_: kSoft outside bone tissue
-  ZeroedVector<std::int32_t> node_of_;          // 1 + index in its band of each tissue voxel; 0: in no band
+  ZeroedVector<std::uint16_t> held_by_;  // rig bone of each voxel of bone tissue; kSoft: another tissue
+  ZeroedVector<std::uint16_t> bone_;     // rig bone that each tissue voxel follows
+  ZeroedVector<std::int32_t> node_of_;   // 1 + index in its band of each tissue voxel; 0: in no band
   std::vector<Border> borders_;
   bool has_skin_ = false;
   TissueSet inside_;                          // bones, and the tissue connected to them without crossing skin

@@ -38,7 +38,7 @@ std::vector<TissueVoxels::Brick> bricks_of_layer(const LabelVolume& volume, int 
   constexpr int kBrick = TissueVoxels::kBrick;
   const glm::ivec3 size = volume.grid.size;
   std::vector<TissueVoxels::Brick> bricks;
-  // Masks of one row of bricks along x.
+  // Bit masks of the tissue voxels of one row of bricks along x: for each brick, a word for each slice (Brick::mask).
   std::vector<std::array<std::uint64_t, kBrick>> masks((size.x + (kBrick - 1)) / kBrick);
   for (int by = 0; by * kBrick < size.y; ++by) {
     std::fill(masks.begin(), masks.end(), std::array<std::uint64_t, kBrick>{});

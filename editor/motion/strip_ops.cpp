@@ -177,7 +177,7 @@ void ask_strip(Context& context) {
         number_of("Start", "The frame at which the strip begins.", shown_frame(context), -100'000, 1e6, "%.0f")},
        [=](const Context& c, const std::vector<FormField>& fields) {
          if (!shown_clip(c.document()) || (has_strips && !shown_strips(c)))
-           throw Error("there are no strips any more", "strip", "open this again");
+           throw Error("the strips were deleted meanwhile", "strip", "open the dialog again");
          const Clip& clip = *sources[static_cast<std::size_t>(fields[0].chosen)];
          const int frames = std::max(clip.range_start, clip.range_end) - clip.range_start + 1;
          return grouped(frames) + (frames == 1 ? " frame." : " frames of the clip.") +

@@ -179,7 +179,7 @@ std::vector<Menu> menus() {
         "> Bones", "view.bones_octahedron", "view.bones_stick", "view.bones_cylinder", "-", "view.bone_names",
         "view.bone_axes", "view.bones_in_front", "<",
         "-", "view.find", "view.sidebar", "view.tool_strip",
-        "> Below the views", "view.timeline", "view.results", "view.console", "<",
+        "> Bottom panel", "view.timeline", "view.results", "view.console", "<",
         "view.full_screen"}},
       {"Motion",
        {"> Import", "file.import_motion", "<",

@@ -79,7 +79,7 @@ std::vector<Operator> region_operators() {
        "Limit brushes and edits to an outline that you draw over the 3D view or a slice. The region reaches through "
        "the whole body.",
        [](Context& c) { begin(c, begin_region_lasso); }, needs_rest},
-      {"skin.region_bone", "Region of bone", icon::kRegion, "Weights",
+      {"skin.region_bone", "Region of selected bones", icon::kRegion, "Weights",
        "Limit brushes and edits to where the selected bones have most of the weight.", region_of_bones, needs_paint},
       {"skin.region_invert", "Invert region", "", "Weights",
        "Limit brushes and edits to what lies outside the current region.", invert_region, needs_region},

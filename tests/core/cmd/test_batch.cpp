@@ -75,7 +75,7 @@ TEST_CASE("batch: one cell that fails stops no other, what is there is kept, and
   REQUIRE(direct.exit_code == 0);
   CHECK(read_file(folder / "direct.nrrd") == read_file(cell / "posed.nrrd"));
 
-  // Asking for another export of the same cells does not compute their poses again.
+  // If the batch is run again with another export format, the poses that it computed before are not computed again.
   const auto before = std::filesystem::last_write_time(cell / "cell.json");
   write_batch(folder, R"([".vti"])");
   run_limber({"batch", batch, "-o", out, "--shard", "2/2"});

@@ -97,7 +97,7 @@ std::vector<Proof> proofs_of_views() {
        [](Stage& s, const Seen&) { return s.is("sidebar", "no") && s.is("text:Steps", "absent"); }},
       {"view.tool_strip", "key T", becomes("strip", "no")},
       {"view.console", "click Help/Console", becomes("console", "yes")},
-      {"view.results", "click \"View/Below the views/Results\"", becomes("widget:Close results")},
+      {"view.results", "click \"View/Bottom panel/Results\"", becomes("widget:Close results")},
       {"view.context_menu", "right-click \"3D view/view\"", becomes("widget:context/Hide"), Shows::Nothing, "wait-idle",
        [](Stage& s) { s.editor().views->bones = false; }},
       {"view.pie", "move \"3D view/view\"\n key `", becomes("widget:Views/Front")},

@@ -142,7 +142,7 @@ std::vector<Proof> proofs_of_regions() {
       {"skin.region_clear", "key Alt+A\n wait-idle", [](Stage& s, const Seen&) { return !painted_region(s.editor()); },
        Shows::InBody},
       {"skin.region_lasso", lasso, has_region, Shows::InBody, "key Alt+A"},
-      {"skin.region_bone", "click \"Edit weights/Region/Region of bone\"\n wait-idle",
+      {"skin.region_bone", "click \"Edit weights/Region/Region of selected bones\"\n wait-idle",
        [](Stage& s, const Seen&) {
          return std::abs(2 * painted_region_voxels(s.editor()) - s.document().weights->size()) <
                 s.document().weights->size() / 10;
