@@ -70,6 +70,28 @@ double search(FemEnergy& energy, NodePositions& x, double& value, const NodePosi
   value = best;
   return length;
 }
+
+// Line searches for a step that limits cut to a short one: along the step, and along the step smoothed around what
+// limits it. Moves x to the lower energy of the two, since the smoothed step may be long and yet lower the energy less.
+//   bound  in: the limit of the step; out: that of the step taken
+double search_both(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
+                   const std::vector<char>& fixed, FemEnergy::Bound& bound) {
+  const NodePositions around = energy.limit_step(x, step, fixed);
+  const FemEnergy::Bound further = energy.largest_step(x, around, 1);
+  NodePositions smoothed = x;
+  double value_of_smoothed = value, length = 0;
+  if (further.length > bound.length) length = search(energy, smoothed, value_of_smoothed, around, 0, further.length);
+  // The energy is valid only along the motion that was searched for contact last.
+  energy.largest_step(x, step, 1);
+  const NodePositions start = x;
+  const double of_step = search(energy, x, value, step, slope, bound.length);
+  if (length == 0 || (of_step > 0 && value <= value_of_smoothed)) return of_step;
+  energy.largest_step(start, around, 1);
+  x.swap(smoothed);
+  value = value_of_smoothed;
+  bound = further;
+  return length;
+}
 }  // namespace
 
 NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings& settings, Progress& progress,
@@ -87,15 +109,9 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     result.residual = longest(step);
 
     result.bound = energy.largest_step(x, step, 1);
-    double length = 0;
-    if (result.bound.length < kShort) {
-      const NodePositions around = energy.limit_step(x, step, settings.fixed);
-      const FemEnergy::Bound further = energy.largest_step(x, around, 1);
-      if (further.length > result.bound.length && (length = search(energy, x, value, around, 0, further.length)) > 0)
-        result.bound = further;
-      else energy.largest_step(x, step, 1);
-    }
-    if (length == 0) length = search(energy, x, value, step, slope, result.bound.length);
+    const bool is_short = result.bound.length < kShort;
+    const double length = is_short ? search_both(energy, x, value, step, slope, settings.fixed, result.bound)
+                                   : search(energy, x, value, step, slope, result.bound.length);
     result.shortest_search = std::min(result.shortest_search, length);
     if (on_iteration) on_iteration(result.iterations, result.residual);
     jams = length < kJam ? jams + 1 : 0;

@@ -283,6 +283,9 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   if (fem_.slides) sliding.near = sliding_near(tissue, volume.grid, bent_joints(armature, poses_, kBent));
   for (const auto& [joint, mm] : sliding.near) settings.covered.push_back({joint, kCovered * mm});
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
+  // The size of the limb for which these tets are right; rounding alone does not change it.
+  const double of_tets = reach_ / (fem_.quality == FemQuality::Draft ? kDraft : kUsual);
+  solver_size_ = (!fem_.spacing_mm || fem_.reach_mm) && of_tets > 1.001 * size_ ? of_tets : size_;
   TissueMesh meshed = mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving), settings, progress);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   sliding.tet_mm = finest_;
@@ -334,15 +337,16 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   if (last_.moving.empty()) return nullptr;
   const auto solving = std::chrono::steady_clock::now();
   const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };
-  const SolveSettings settings{.contact = fem_.contact,
-                               .contact_mm = std::min(size_ * kContact, finest_ / 4),
-                               .object_mm = std::min(size_ * SolveSettings().object_mm, finest_ / 4),
-                               .gravity = {fem_.gravity.x, fem_.gravity.y, fem_.gravity.z},
-                               .has_weight_at_start = has_weight_,
-                               .step_tolerance_mm = finest_ / 2,
-                               .tolerance_mm = (fem_.is_exact ? kExact : 1) * size_ * SolveSettings().tolerance_mm,
-                               .bone_drift_mm = std::max(size_ * kDrift, spacing_ / 2),
-                               .size = size_};
+  const SolveSettings settings{
+      .contact = fem_.contact,
+      .contact_mm = std::min(solver_size_ * kContact, finest_ / 4),
+      .object_mm = std::min(solver_size_ * SolveSettings().object_mm, finest_ / 4),
+      .gravity = {fem_.gravity.x, fem_.gravity.y, fem_.gravity.z},
+      .has_weight_at_start = has_weight_,
+      .step_tolerance_mm = finest_ / 2,
+      .tolerance_mm = (fem_.is_exact ? kExact : 1) * solver_size_ * SolveSettings().tolerance_mm,
+      .bone_drift_mm = std::max(solver_size_ * kDrift, spacing_ / 2),
+      .size = solver_size_};
   double angle = largest_angle_degrees(from, to);
   if (fem_.gravity != glm::dvec3(0) && !has_weight_) angle = std::max(angle, kSagging);
   SolvedPose solved = solve_pose(last_.model.fem, path, angle, settings, progress, fem_.on_step, &last_.V);

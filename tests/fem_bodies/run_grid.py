@@ -43,6 +43,8 @@ EXPOSED_PERCENT = 0.1
 LARGE_SOFT = (5000, 0.3)
 OTHER_SOFT = (500, 3.0)
 CORDS = 5.0  # cartilage and tendon of at least 500 voxels
+# Cavities hold gas and fluid; their Poisson ratio of 0.45 lets them change where flesh hardly does.
+CAVITIES = 5.0
 
 
 def bodies(data, hard):
@@ -101,7 +103,8 @@ def volume_limits(report):
         if change is None or "bone" in kind or "marrow" in kind or voxels < OTHER_SOFT[0]:
             continue
         is_cord = kind in ("cartilage", "tendon", "ligament")
-        limit = CORDS if is_cord else LARGE_SOFT[1] if voxels >= LARGE_SOFT[0] else OTHER_SOFT[1]
+        limit = CORDS if is_cord else CAVITIES if kind == "cavity" else \
+            LARGE_SOFT[1] if voxels >= LARGE_SOFT[0] else OTHER_SOFT[1]
         rows.append((tissue["label"], tissue["name"], change, limit))
     return sorted(rows, key=lambda row: -abs(row[2]) / row[3])
 

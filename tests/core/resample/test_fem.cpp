@@ -177,6 +177,25 @@ TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and 
   for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
 }
 
+TEST_CASE("fem: the gap between skins and the tolerance suit the tets, also where a finger asks for finer tets" *
+          doctest::test_suite("slow")) {
+  const Arm arm;
+  const auto parameters = [&](const Pose& pose) {
+    const Posed posed = arm.posed(pose, Fem{.contact = true, .quality = FemQuality::Draft});
+    REQUIRE(posed.report.solve);
+    CHECK(posed.report.solve->reached == 1);
+    return posed.report.solve->parameters;
+  };
+  Pose both = arm.flexed(5);
+  flex(both, arm.phantom.armature, require_bone(arm.phantom.armature, "IndexMiddle"), 5);
+  const SolveParameters of_elbow = parameters(arm.flexed(5)), of_both = parameters(both);
+  REQUIRE(of_elbow.contact_mm);
+  REQUIRE(of_both.contact_mm);
+  CHECK(of_both.tet_mm < 0.9 * of_elbow.tet_mm);
+  CHECK(*of_both.contact_mm / of_both.tet_mm == doctest::Approx(*of_elbow.contact_mm / of_elbow.tet_mm));
+  CHECK(of_both.tolerance_mm / of_both.tet_mm == doctest::Approx(of_elbow.tolerance_mm / of_elbow.tet_mm));
+}
+
 TEST_CASE("fem: fingers close onto each other and the palm, and pass through neither" * doctest::test_suite("slow")) {
   const Phantom phantom = make_arm_phantom(3);
   const SkinWeights weights = diffuse_heat(phantom.volume, phantom.tissues, phantom.armature);
