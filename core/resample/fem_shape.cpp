@@ -52,6 +52,9 @@ constexpr double kDrift = 2;
 // degrees.
 constexpr double kSagging = 45;
 constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; for small tets it is smaller
+// With larger tets than the thinnest bent limb asks for, the distance is at most this many times what that limb asks
+// for: pairs of skin within the distance take memory.
+constexpr double kWiderContact = 1.5;
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
 // Cosine of half of 3 degrees. With fine quality, tets are smaller around joints that turn by more than 3 degrees.
 constexpr double kBent = 0.9997;
@@ -339,7 +342,7 @@ std::shared_ptr<const FemShape> FemSequence::next(Progress& progress) {
   const BonePath path = [&](double t) { return bone_motions(weights_.bones(), armature_, pose_between(from, to, t)); };
   const SolveSettings settings{
       .contact = fem_.contact,
-      .contact_mm = std::min(solver_size_ * kContact, finest_ / 4),
+      .contact_mm = std::min({solver_size_ * kContact, kWiderContact * size_ * kContact, finest_ / 4}),
       .object_mm = std::min(solver_size_ * SolveSettings().object_mm, finest_ / 4),
       .gravity = {fem_.gravity.x, fem_.gravity.y, fem_.gravity.z},
       .has_weight_at_start = has_weight_,
