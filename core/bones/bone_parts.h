@@ -3,7 +3,7 @@
 // because joints are thinner than a voxel. First, bones that touch in a joint or side by side are cut apart
 // (core/bones/joint_cuts.h). Then a watershed splits the blob; it grows from the marrow cores or, without marrow, from
 // the deepest points of the bone. Each part follows the rig bone that it surrounds. Bender's weight files
-// (skin/weights_io.h) separate bones by planes. These planes are not used here: on Bender's sample arm they would assign
+// (skin/weights_io.h) separate bones by planes. These planes are not used here: on Bender's sample arm they would give
 // 1004 voxels to the wrong bone.
 //
 // A label whose name says which bone it is has precedence over shape (core/bones/bone_identity.h). A label of several

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <set>
 
+#include "core/base/text_parse.h"
 #include "core/cmd/command.h"
 #include "core/export/tet_phantom.h"
 #include "core/prepare/prepare.h"
@@ -70,6 +71,11 @@ std::string share_of_body(const TissueModel& model, const LabelVolume& body) {
                 "tissues; rigid and unbent parts are missing, and each tet has one tissue",
                 100 * mm3 / all_mm3, in_mesh.size(), in_body.size());
   return text;
+}
+
+std::string inside_out_warning(std::int64_t tets, const std::string& name) {
+  return std::to_string(tets) + " tets of " + in_quotes(name) +
+         " are inside out, at joints that are bent far; bend them less, or use --method fem, which leaves fewer";
 }
 
 Path mesh_path(const Path& name) {

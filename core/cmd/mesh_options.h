@@ -39,6 +39,9 @@ TetMesh solver_mesh(const FemShape& shape);
 // solver's mesh contain.
 std::string share_of_body(const TissueModel& model, const LabelVolume& body);
 
+// Returns a warning that tets of a posed mesh are inside out.
+std::string inside_out_warning(std::int64_t tets, const std::string& name);
+
 // Returns the path of the mesh file: `name` itself if its extension is that of a mesh format, otherwise NAME.node
 // (TetGen format).
 Path mesh_path(const Path& name);

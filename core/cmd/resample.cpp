@@ -16,7 +16,6 @@
 #include "core/bake/baked_joint_io.h"
 #include "core/base/output_files.h"
 #include "core/base/parallel.h"
-#include "core/base/text_parse.h"
 #include "core/body/glide_poses.h"
 #include "core/body/pose_body.h"
 #include "core/cmd/body_options.h"
@@ -239,9 +238,7 @@ void write_body_mesh(const Options& options, const Body& body, const BoundBody& 
   PosedMesh moved =
       pose_mesh(mesh, body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
                 find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), baked);
-  if (moved.inside_out > 0)
-    note(posed.report, {std::to_string(moved.inside_out) + " tets of " + in_quotes(options.mesh_out) +
-                        " are inside out, at joints that are bent far; a smaller angle or --method fem avoids it"});
+  if (moved.inside_out > 0) note(posed.report, {inside_out_warning(moved.inside_out, options.mesh_out)});
   mesh.mesh.V = std::move(moved.V);
   write_mesh(std::move(mesh.mesh), posed.posed.volume, body.tissues, options.mesh.unit, options.mesh_out, progress);
 }

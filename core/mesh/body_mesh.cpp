@@ -119,7 +119,6 @@ class Shape {
     }
   }
 
-
  private:
   struct Gradient {
     int label;

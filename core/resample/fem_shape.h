@@ -57,7 +57,7 @@ class FemSequence {
   const LabelSet& is_bone_;
   std::vector<Pose> poses_;
   Fem fem_;
-  double size_ = 1;                  // thickness of the thinnest bent limb, relative to an adult's elbow (1)
+  double size_ = 1;  // thickness of the thinnest bent limb, relative to an adult's elbow (1)
   // The size for which the solver's lengths and stiffnesses are chosen: that of the limb for which the tets are right.
   // It is above size_ if the tets are larger than that limb asks for. With the gap and the tolerance of a finger, tets
   // of a thigh would need very many iterations.

@@ -72,7 +72,7 @@ TEST_CASE("batch: a description that is wrong is refused in one line that names 
   const std::string body = R"("bodies": [{"volume": "v.nrrd", "rig": "r.json"}])", pose = R"("poses": [{"name": "a"}])";
   const std::string both = "{" + body + ", " + pose;
   for (const auto& [text, named] : std::vector<std::pair<std::string, std::string>>{
-           {"[]", "no description of a batch"},
+           {"[]", "not a description of a batch"},
            {"{}", "no bodies"},
            {"{" + body + "}", "the batch has no poses"},
            {R"({"bodies": [], )" + pose + "}", "bodies"},
@@ -89,7 +89,8 @@ TEST_CASE("batch: a description that is wrong is refused in one line that names 
             "none.nrrd"},
            {R"({"bodies": [{"volume": "v.nrrd", "rig": "r.json", "colour": "red"}], )" + pose + "}", "colour"},
            {"{" + body + R"(, "poses": [{"name": "a", "motion": "walk.bvh", "frames": "3:12"}]})", "last frame is 11"},
-           {"{" + body + R"(, "poses": [{"name": "a", "motion": "walk.bvh", "frames": "3-9"}]})", "no frames"},
+           {"{" + body + R"(, "poses": [{"name": "a", "motion": "walk.bvh", "frames": "3-9"}]})",
+            "not a range of frames"},
            {"{" + body + R"(, "poses": [{"name": "a", "motion": "walk.bvh", "frames": "0:1", "frame": 1}]})",
             "a pose has either one frame or several"},
            {"{" + body + R"(, "poses": [{"name": "a", "frames": "0:1"}]})", "motion"},

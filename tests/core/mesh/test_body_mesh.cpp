@@ -93,7 +93,7 @@ TEST_CASE("body mesh: every tissue of a phantom has the volume of its voxels, an
   }
 }
 
-TEST_CASE("body mesh: unsmoothed, the surfaces are the faces of the voxels; smoothed, their area is smaller") {
+TEST_CASE("body mesh: unsmoothed, the surfaces are the faces of the voxels, and smoothing makes their area smaller") {
   const LabelVolume volume = two_layers();
   const TissueVoxels tissue(volume);
   const BodyMesh blocks = mesh_body(volume, tissue, {.relaxations = 0}), smooth = mesh_body(volume, tissue);

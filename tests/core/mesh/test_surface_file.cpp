@@ -260,13 +260,13 @@ TEST_CASE("surface file: damaged PLY is refused with its place") {
   check_refused(replaced(ascii, "format ascii 1.0\n", ""), "a.ply", "names no format");
   check_refused(replaced(ascii, "double x", "real x"), "a.ply", "\"real\" is not a type");
   check_refused(replaced(ascii, "double x", "double u"), "a.ply", "x, y and z");
-  check_refused(replaced(ascii, "list uchar", "list float"), "a.ply", "no whole number");
+  check_refused(replaced(ascii, "list uchar", "list float"), "a.ply", "not a whole number");
   check_refused(replaced(ascii, "vertex_indices", "corners"), "a.ply", "no list vertex_indices");
   check_refused(replaced(ascii, "element vertex 4", "element vertex -4"), "a.ply", "number of rows");
   check_refused(replaced(ascii, "element face", "element vertex"), "a.ply", "occurs twice");
   check_refused(replaced(ascii, "3 0 1 2", "3 0 1 4"), "a.ply", "a.ply, face 1 (line 14): ");
   check_refused(replaced(ascii, "3 0 1 2", "2 0 1"), "a.ply", "fewer than three");
-  check_refused(replaced(ascii, "3 0 1 2", "-3 0 1 2"), "a.ply", "no whole number");
+  check_refused(replaced(ascii, "3 0 1 2", "-3 0 1 2"), "a.ply", "not a whole number");
   check_refused(ascii.substr(0, ascii.size() - 8), "a.ply", "ends too early");
   check_refused(little.substr(0, little.size() - 1), "a.ply", "a.ply, face 4: ");
   check_refused(replaced(little, "vertex 4", "vertex 999999999999"), "a.ply", "a.ply, vertex ");

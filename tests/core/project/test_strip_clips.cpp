@@ -180,8 +180,8 @@ TEST_CASE("project: a strip that begins behind its end is refused as damaged") {
     return get_strips(in, {clip});
   };
   for (const double skip : {0.0, 12.5, 30.0}) CHECK(read_back(skip).tracks[0].strips[0].skip == skip);
-  for (const double skip : {-1e-3, 30.1, 1e13, 1e300, std::numeric_limits<double>::infinity(),
-                            std::numeric_limits<double>::quiet_NaN()})
+  for (const double skip :
+       {-1e-3, 30.1, 1e13, 1e300, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     CHECK_THROWS_AS(read_back(skip), Error);
 }
 

@@ -177,7 +177,7 @@ TEST_CASE("fem: a pose out of reach ends at the last good place on the way, and 
   for (const auto& bone : result.report.bones) CHECK(bone.rigid_residual_mm < 0.01);
 }
 
-TEST_CASE("fem: the gap between skins and the tolerance suit the tets, also where a finger asks for finer tets" *
+TEST_CASE("fem: the gap between skins and the tolerance follow the tets, also where a finger asks for finer tets" *
           doctest::test_suite("slow")) {
   const Arm arm;
   const auto parameters = [&](const Pose& pose) {
@@ -192,7 +192,10 @@ TEST_CASE("fem: the gap between skins and the tolerance suit the tets, also wher
   REQUIRE(of_elbow.contact_mm);
   REQUIRE(of_both.contact_mm);
   CHECK(of_both.tet_mm < 0.9 * of_elbow.tet_mm);
-  CHECK(*of_both.contact_mm / of_both.tet_mm == doctest::Approx(*of_elbow.contact_mm / of_elbow.tet_mm));
+  // The gap is wider than the finger asks for, but by half at most, since pairs of skin within it take memory.
+  const double share = (*of_both.contact_mm / of_both.tet_mm) / (*of_elbow.contact_mm / of_elbow.tet_mm);
+  CHECK(share > 0.7);
+  CHECK(share <= 1 + 1e-9);
   CHECK(of_both.tolerance_mm / of_both.tet_mm == doctest::Approx(of_elbow.tolerance_mm / of_elbow.tet_mm));
 }
 

@@ -319,7 +319,7 @@ TEST_CASE("volume io: NIfTI places voxels by sform, else qform, else voxel size,
     CHECK(plain.direction == glm::dmat3(-1, 0, 0, 0, -1, 0, 0, 0, 1));
   }
   const std::string half = patched<float>(patched<float>(nifti(), 112, 0.5f), 116, 10.0f);
-  refused_for(folder.write("c.nii", half), "no whole number");
+  refused_for(folder.write("c.nii", half), "not a whole number");
   const VolumeFile doubled = read_volume(folder.write("d.nii", patched<float>(nifti(), 112, 2.0f)));
   CHECK(doubled.volume.voxels == ZeroedVector<Label>{0, 2, 4, 6, 8, 10, 12, 14});
   CHECK(read_volume(folder.write("e.nii.gz", packed(nifti(), 31))).volume.grid == wanted);
@@ -381,14 +381,14 @@ TEST_CASE("volume io: bad files are refused with one line, whatever their format
   refuse(
       ".nrrd",
       nrrd("type: float\ndimension: 3\nsizes: 1 1 1\nendian: little\nencoding: raw\n", patched<float>("....", 0, 1.5f)),
-      "no whole number");
+      "not a whole number");
   refuse(
       ".nrrd",
       nrrd("type: float\ndimension: 3\nsizes: 1 1 1\nendian: little\nencoding: raw\n", patched<float>("....", 0, nan)),
-      "no whole number");
+      "not a whole number");
   refuse(".nrrd", nrrd(kCube + "limber_bones:=[]\n", kEight), "weights");
-  refuse(".nrrd", "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n", "no NRRD");
-  refuse(".xyz", "hello", "no volume");
+  refuse(".nrrd", "version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 12\n", "not an NRRD");
+  refuse(".xyz", "hello", "not a volume");
 }
 
 TEST_CASE("volume io: more than 65 535 distinct labels are refused, 65 535 are read" * doctest::test_suite("slow")) {

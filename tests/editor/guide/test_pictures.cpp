@@ -8,11 +8,13 @@
 // the same as the stored picture: the same window, workspace and view. Pictures are compared by the tile that differs
 // most, because most of any picture is background. `./run pictures` makes the pictures again with fine bodies; look at
 // each one that changed.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 
 #include "core/base/file.h"
+#include "editor/ui/messages.h"
 #include "render/image_io.h"
 #include "tests/editor/sitting.h"
 
@@ -26,7 +28,7 @@ namespace {
 
 constexpr glm::ivec2 kWindow{960, 600};
 constexpr int kTile = 60;  // pixels; both sides of the window are multiples of it
-// Limit of the mean colour difference, 0 to 255, in the tile that differs most. Coarse bodies and messages differ by up
+// Limit of the mean colour difference, 0 to 255, in the tile that differs most. Coarse bodies differ by up
 // to 37, pictures of other scenes by 45 to 128.
 constexpr double kMostInTile = 41;
 const fs::path kGuide = fs::path(LIMBER_SOURCE_DIR) / "assets/docs/guide";
@@ -71,7 +73,13 @@ Image picture_of(const std::string& name, Bodies bodies) {
   sitting.editor().views->renderer.light_at_rest(render::Light::Draft);
   std::vector<ScriptLine> lines = parse_script(script);
   // Messages disappear after seconds. A coarse picture need not wait for that.
-  if (bodies == Bodies::Coarse) std::erase_if(lines, [](const ScriptLine& line) { return line.words[0] == "wait"; });
+  const auto is_wait = [](const ScriptLine& line) { return line.words[0] == "wait"; };
+  if (const auto wait = std::find_if(lines.begin(), lines.end(), is_wait);
+      bodies == Bodies::Coarse && wait != lines.end()) {
+    sitting.test.player.play({lines.begin(), wait}, home.folder.path());
+    sitting.editor().messages->toasts.clear();
+    lines.erase(lines.begin(), wait + 1);
+  }
   sitting.test.player.play(lines, home.folder.path());
   return in_steps(render::read_png(home / (name + ".png")));
 }

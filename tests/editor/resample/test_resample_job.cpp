@@ -77,14 +77,18 @@ std::string failure(LimbEditor& test) {
 }  // namespace
 
 TEST_CASE("resampling: what a report tells the command line to add, the editor tells where to find") {
-  const ResultFacts facts = facts_of_report(
-      R"({"warnings": ["501 voxels are covered by two bones: Fore still overlaps Upper by 2.1 mm after a shif)"
-      R"(t of 2.0 mm: --glide MM allows longer shifts; limber fit-joint, a command of its own, moves the axis)"
-      R"( of a joint"]})");
-  REQUIRE(facts.warnings.size() == 1);
-  CHECK(facts.warnings[0] ==
+  for (const std::string fit : {"the command limber fit-joint moves the axis of a joint",
+                                "limber fit-joint, a command of its own, moves the axis of a joint"}) {
+    const ResultFacts facts = facts_of_report(
+        R"({"warnings": ["501 voxels are covered by two bones: Fore still overlaps Upper by 2.1 mm after a shif)"
+        R"(t of 2.0 mm: --glide MM allows longer shifts; )" +
+        fit + R"("]})");
+    REQUIRE(facts.warnings.size() == 1);
+    CHECK(
+        facts.warnings[0] ==
         "501 voxels are covered by two bones: Fore still overlaps Upper by 2.1 mm after a shift of 2.0 mm: Keep bones "
         "apart allows longer shifts; Fit joint axis in the Rig workspace moves the axis of a joint");
+  }
 }
 
 TEST_CASE("steps: the list names what is missing next, from nothing to a posed volume") {

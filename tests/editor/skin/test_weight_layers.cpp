@@ -211,7 +211,7 @@ TEST_CASE("layers: opacity, eye and mask are edits in the sidebar, and a hidden 
   CHECK(!layers(test).layers[0]->visible);
   stroke(test, dab(test));
   CHECK(test.steps() == steps + 1);
-  CHECK(why_not_paint(*test.editor) == "The layer Layer 1 is hidden: show it, or select another");
+  CHECK(why_not_paint(*test.editor) == "The layer Layer 1 is hidden: show it, or select another layer");
   test.play("click \"sidebar/sections/Layers/base\"\nwait-idle");
   CHECK(why_not_paint(*test.editor).empty());
 }
