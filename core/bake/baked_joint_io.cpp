@@ -74,7 +74,7 @@ void put_nodes(ByteWriter& writer, const std::vector<std::int32_t>& nodes) {
   for (const auto& [first, count] : runs) writer.put(first), writer.put(count);
 }
 
-// Reads the places of the nodes. Their shifts follow later in the file.
+// Reads the positions of the nodes. Their shifts follow later in the file.
 //   angles  number of angles with shifts
 std::vector<std::int32_t> get_nodes(ByteReader& reader, const glm::ivec3& size, std::size_t angles, std::size_t bytes) {
   const std::int64_t places = std::int64_t{size.x} * size.y * size.z;

@@ -65,7 +65,7 @@ void add_mesh(CLI::App& app) {
     warn(file.warnings);
     const TissueTable tissues = tissues_of(file, options->tissues);
     require_labels(file.volume, tissues, options->volume);
-    const BodyMesh body = mesh_of(file.volume, TissueVoxels(file.volume), options->mesh, progress);
+    const BodyMesh body = mesh_of(file.volume, TissueVoxels(file.volume), tissues, options->mesh, progress);
     write_mesh(body.mesh, file.volume, tissues, options->mesh.unit, options->output, progress);
     print_tissues(body.mesh, file.volume, tissues);
   });

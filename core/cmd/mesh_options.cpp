@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "core/cmd/mesh_options.h"
 
+#include <cmath>
 #include <cstdio>
 #include <set>
 
@@ -25,14 +26,42 @@ void add_mesh_options(CLI::App& command, MeshOptions& options, const std::string
       ->check(CLI::IsMember({"mm", "cm"}));
 }
 
-BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const MeshOptions& options,
-                 Progress& progress) {
-  if (!options.spacing) return mesh_body(volume, tissue, {.relaxations = options.relaxations}, progress);
+namespace {
+void warn_of_volumes(const TetMesh& mesh, const std::vector<double>& wanted, const TissueTable& tissues) {
+  std::vector<double> mm3(wanted.size(), 0);
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) mm3[mesh.region[t]] += signed_volume(mesh.V, mesh.T.row(t));
+  int off = 0, worst = 0;
+  double most = 0;
+  for (std::size_t label = 1; label < wanted.size(); ++label) {
+    if (wanted[label] == 0) continue;
+    const double share = std::abs(mm3[label] / wanted[label] - 1);
+    off += share > 0.01;
+    if (share > most) most = share, worst = static_cast<int>(label);
+  }
+  if (off == 0) return;
+  const Tissue* tissue = tissues.find(static_cast<Label>(worst));
+  warn("the mesh misses the volume of " + std::to_string(off) + (off == 1 ? " tissue" : " tissues") +
+       " by more than 1 %, most of all " + (tissue && !tissue->name.empty() ? tissue->name : std::to_string(worst)) +
+       ", which has " + std::to_string(int(std::lround(100 * mm3[worst] / wanted[worst]))) +
+       " % of its volume: use a smaller spacing");
+}
+}  // namespace
+
+BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                 const MeshOptions& options, Progress& progress) {
   std::vector<double> volumes(65536, 0);
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) { volumes[volume.at(v)] += volume.grid.voxel_volume(); });
-  if (tissue.seams()) warn("seams are not cut in a mesh at another spacing than that of the voxels");
-  const LabelVolume sampled = balanced_regrid(volume, *options.spacing, progress);
-  return mesh_body(sampled, TissueVoxels(sampled), {.relaxations = options.relaxations, .volumes = volumes}, progress);
+  const BodyMeshSettings settings{.relaxations = options.relaxations, .volumes = volumes};
+  BodyMesh body;
+  if (options.spacing) {
+    if (tissue.seams()) warn("seams are not cut in a mesh at another spacing than that of the voxels");
+    const LabelVolume sampled = balanced_regrid(volume, *options.spacing, progress);
+    body = mesh_body(sampled, TissueVoxels(sampled), settings, progress);
+  } else {
+    body = mesh_body(volume, tissue, settings, progress);
+  }
+  warn_of_volumes(body.mesh, volumes, tissues);
+  return body;
 }
 
 void write_mesh(TetMesh mesh, const LabelVolume& volume, const TissueTable& tissues, const std::string& unit,

@@ -25,9 +25,11 @@ struct MeshOptions {
 //   start  what the names of the options begin with, such as "--" or "--mesh-"
 void add_mesh_options(CLI::App& command, MeshOptions& options, const std::string& start);
 
-// Meshes the body. With a spacing, the body is sampled anew first, and its tissues keep their volumes.
+// Meshes the body. With a spacing, the body is sampled anew first, and its tissues keep their volumes. Warns of tissues
+// that the mesh lacks or whose volume is off by more than 1 %.
 //   tissue   the tissue voxels of the volume, with their seams
-BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const MeshOptions& options, Progress& progress);
+BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
+                 const MeshOptions& options, Progress& progress);
 
 // Writes the mesh, whose regions are labels, with organ numbers, in the format of the name's extension.
 void write_mesh(TetMesh mesh, const LabelVolume& volume, const TissueTable& tissues, const std::string& unit,

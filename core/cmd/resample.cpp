@@ -234,7 +234,7 @@ void write_body_mesh(const Options& options, const Body& body, const BoundBody& 
                      BodyInPose& posed, Progress& progress) {
   TissueVoxels tissue = bound.tissue;
   tissue.set_seams(seams_and_joints(body.file.volume, tissue, body.tissues, bound.weights));
-  BodyMesh mesh = mesh_of(body.file.volume, tissue, options.mesh, progress);
+  BodyMesh mesh = mesh_of(body.file.volume, tissue, body.tissues, options.mesh, progress);
   PosedMesh moved =
       pose_mesh(mesh, body.file.volume, bound.tissue, body.tissues, bound.weights, posed.rig, posed.pose,
                 find_method(options.method)->blend.value_or(Blend::Linear), posed.posed.shape.get(), baked);

@@ -181,9 +181,7 @@ PosedMesh pose_mesh(const BodyMesh& body, const LabelVolume& volume, const Tissu
     const glm::dvec3 at = flesh[node] + shift[node];
     posed.V.row(node) << at.x, at.y, at.z;
   }
-  const std::int64_t before = std::ssize(tets_inside_out(posed.V, body.mesh.T));
   posed.inside_out = untangle(posed.V, body.mesh.V, body.mesh.T, fixed);
-  posed.mended = before - posed.inside_out;
   return posed;
 }
 

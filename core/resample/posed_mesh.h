@@ -15,8 +15,7 @@ namespace limber {
 
 struct PosedMesh {
   Eigen::MatrixX3d V;           // positions of the mesh's nodes in the pose, world, mm
-  std::int64_t mended = 0;      // number of tets that were inside out and are not any more
-  std::int64_t inside_out = 0;  // number of tets that still are
+  std::int64_t inside_out = 0;  // number of tets that are inside out
 };
 
 // Returns the seams of the tissue, and with them the surface of each bone near another bone of the rig: there, in

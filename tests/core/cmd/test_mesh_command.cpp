@@ -195,7 +195,7 @@ TEST_CASE("mesh command: MCNP's sets of elements hold every tet once, by the rul
   }
 }
 
-TEST_CASE("mesh command: a body too large for its own voxels, a wrong name and air are one clear line each") {
+TEST_CASE("mesh command: a folder that does not exist, a table as volume and a tiny spacing are one clear line each") {
   const Arm arm;
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"mesh", arm.volume, "-o", arm.folder / "nowhere/arm.node"},
@@ -206,4 +206,9 @@ TEST_CASE("mesh command: a body too large for its own voxels, a wrong name and a
     CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
   }
   CHECK_FALSE(std::filesystem::exists(arm.folder / "arm.node"));
+
+  // At a spacing that thin tissues do not survive, the command says so.
+  const ProgramRun coarse = run_limber({"mesh", arm.volume, "--spacing", "60", "-o", arm.folder / "arm.vtu"});
+  CHECK(coarse.exit_code == 0);
+  CHECK(coarse.err.find("by more than 1 %") != std::string::npos);
 }
