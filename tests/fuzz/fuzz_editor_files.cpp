@@ -14,6 +14,8 @@
 #include "editor/context/layout_json.h"
 #include "editor/context/preferences.h"
 #include "editor/context/recent_files.h"
+#include "editor/input/keymap.h"
+#include "editor/input/keymap_overrides.h"
 #include "editor/ui/theme.h"
 
 namespace {
