@@ -354,7 +354,8 @@ std::string bvh_text(const Motion& motion) {
   const std::vector<int> order = depth_first(motion.joints);
   std::string text = "HIERARCHY\n";
   std::vector<int> open;
-  // The indentation stops at 32 levels, since otherwise a chain of thousands of joints would be mostly blanks.
+  // The indentation stops at 32 levels, since otherwise the file of a chain of thousands of joints would consist mostly
+  // of blanks.
   auto indentation = [&] { return std::string(2 * std::min<size_t>(open.size(), 32), ' '); };
   auto close_until = [&](int parent) {
     while (!open.empty() && open.back() != parent) {

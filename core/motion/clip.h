@@ -90,8 +90,8 @@ class ClipOnRig {
   const std::string& problem() const { return problem_; }
 
  private:
-  // Adds to `pose`, the pose of the motion at a frame, the shift that the root's keys make there. `base` returns the
-  // pose of the motion at other frames.
+  // Adds the shift of the root's keys at a frame to `pose`, which is the motion's pose at this frame. `base` returns
+  // the motion's pose at other frames.
   void move_root(Pose& pose, int frame, const std::function<const Pose&(int)>& base) const;
 
   std::shared_ptr<const Clip> clip_;

@@ -44,8 +44,8 @@ struct Constraint {
   std::string target;
   glm::dvec3 place{0};
 
-  // Components of a rotation vector about the bone's own axes. Limit rotation limits these components. Copy rotation
-  // copies these components of the rotation from the bone's own orientation to its target's.
+  // Selects components of a rotation vector about the bone's own axes. Limit rotation limits the selected components.
+  // Copy rotation copies only the selected components of the rotation from the bone's own orientation to its target's.
   std::array<bool, 3> axes{true, true, true};
   RotationSpace space = RotationSpace::World;  // copy rotation: what the rotation is measured from
   // Limit rotation: limits about the bone's own axes, radians.

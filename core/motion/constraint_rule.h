@@ -19,8 +19,9 @@ struct ConstraintOnRig {
   int bone = 0;
   // Index of the target bone; -1: the target is a position in the world, or this kind of constraint has no target.
   int target = -1;
-  // For plants: the two long bones of the limb. If the bone's name tells no limb, the two bones above the bone. `hinge`
-  // is the axis about which the limb bends at rest, in world axes, or zero.
+  // Only for plants: the two long bones of the limb. If the planted bone belongs to no known limb, these are its parent
+  // (`lower`) and its grandparent (`upper`). `hinge` is the axis about which the limb bends at rest, in world axes, or
+  // zero.
   int upper = -1, lower = -1;
   glm::dvec3 hinge{0};
 };

@@ -29,10 +29,11 @@ constexpr int kMostRounds = 40;
 // toes slide further than allowed in a stance, the weight of this stance (its "urge") grows from round to round.
 constexpr double kShortestStance = 0.1;       // seconds; a shorter stance is ignored
 constexpr double kMaySlide = 1.01;            // allowed slide of the body's foot, as a multiple of the source's slide
-constexpr double kMayExceed[] = {0.25, 0.6};  // further allowed slide, mm: of the ankle, of the toes
-// Factor on kMayExceed for stances that are found with the full limits of speed and height.
+constexpr double kMayExceed[] = {0.25, 0.6};  // mm added to the allowed slide: of the ankle, of the toes
+// For a stance that is found with the full limits of speed and height, kMayExceed is multiplied by this factor; for one
+// found with half of the limits, it is not.
 constexpr double kMayExceedMoving = 3;
-// Limits of the factor by which an urge is multiplied in one round.
+// The factor by which the weight of a stance (its "urge") is multiplied in one round is clamped to this range.
 constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;
 // Regularization of the rotations of thigh and shank that move the ankle (turns_of_leg), as a share of the summed
 // squared lengths of thigh and shank. kMayMiss is for horizontal movement, kMayRise for vertical. The larger the share,

@@ -23,7 +23,8 @@
 
 namespace limber {
 
-// When a project is read, these values are cut to a limit: the body's shift, mm, and a tangent's components, per frame.
+// When a project is read, larger values are cut to these limits: the body's shift, mm, and the components of a tangent,
+// radians or mm per frame.
 constexpr double kFarthestShift = 1e7, kSteepestTangent = 1e6;
 
 // Returns the rotation vector of a unit quaternion, with an angle in [0, 2 pi). The vectors of q and -q have opposite

@@ -11,7 +11,7 @@ namespace limber {
 
 struct LoopSettings {
   int repeats = 2;
-  int blend = 0;       // number of frames over which a seam is blended, half of them on each side
+  int blend = 0;       // number of frames over which each seam is blended, half of them before and half after it
   bool stays = false;  // true: the body stays on the spot, and each repeat begins with the same heading
 };
 

@@ -27,9 +27,9 @@ Motion y_up_from_z_up(const Motion& motion);
 
 // Resamples a motion to another frame rate: rotations by slerp between the frames on either side, positions linearly.
 // The first frame stays, and the duration changes by less than a frame. A joint that does not rotate about three
-// different axes is interpolated channel by channel.
-//   rate  frames per second; throws Error outside of [0.1, 1000], or if it would give more than 10 million frames, and
-//         Cancelled
+// different axes is interpolated channel by channel. Throws Error for a rate outside of [0.1, 1000] and for a result of
+// more than 10 million frames. Throws Cancelled when the user stops it.
+//   rate  frames per second
 Motion resampled(const Motion& motion, double rate, Progress& progress = no_progress());
 
 // Records a motion of the rig: one joint for each bone, one frame for each pose.

@@ -31,7 +31,7 @@ StripMove fitting_move(const Strips& strips, const std::set<std::string>& chosen
   move.frames = static_cast<int>(std::clamp<std::int64_t>(move.frames, -kFarthest, kFarthest));
   move.tracks = fitting_tracks(strips, chosen, wanted.tracks);
   if (overlaps == Overlaps::Allowed) return move;
-  // A moving strip and a staying strip on its new track: the moves by which they would overlap, frames.
+  // The moves, in frames, by which a moving strip would overlap a strip that stays on the moving strip's new track.
   struct Barred {
     std::int64_t low, high;  // the strips overlap if the move is between these two
   };

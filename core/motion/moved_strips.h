@@ -17,10 +17,11 @@ struct StripMove {
   bool operator==(const StripMove&) const = default;
 };
 
-// Returns the move nearest to the wanted one that leaves the strips on tracks that exist and, unless they may overlap
-// others, keeps them beside the others. Strips that overlap already may go on to, while they stay on their track.
+// Returns the move nearest to the wanted one that moves the strips only to tracks that exist. With Overlaps::Avoided,
+// the moved strips also overlap no strip that stays; strips that overlap already may go on overlapping while they keep
+// their track.
 //   chosen  names of the strips that move
-//   rate    of the clip that has the strips, frames per second
+//   rate    frames per second of the clip that has the strips
 enum class Overlaps { Allowed, Avoided };
 StripMove fitting_move(const Strips& strips, const std::set<std::string>& chosen, const StripMove& wanted, double rate,
                        Overlaps overlaps);

@@ -22,7 +22,8 @@ std::vector<std::string> moved_targets(const Constraints& constraints, const Arm
     // Only constraints with a target position are affected. Copied rotations do not depend on where the target bone is.
     if (constraint_rule(constraint.kind).target != ConstraintTarget::Place) continue;
     const auto target = after.find(constraint.target);
-    // The target is a position in the world, or its bone no longer exists, which the constraint's problem reports.
+    // The target is a position in the world, or its bone no longer exists. In the second case the constraint's
+    // problem() says so.
     if (!target) continue;
     const int old = from[static_cast<std::size_t>(*target)];
     if (old < 0 || is_moved(before.bones[old], after.bones[*target])) moved.push_back(constraint.name);

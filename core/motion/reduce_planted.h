@@ -16,7 +16,8 @@ std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<Pla
 
 struct PlantedKeys {
   ReducedKeys reduced;
-  double most_off = 0;  // largest distance of a planted point from its recorded place, in the frames of its plant, mm
+  // largest distance of a planted point from its recorded position, in the frames of its plant, mm
+  double most_off = 0;
 };
 
 // Returns keys as reduced_to_keys() does. They also keep the points of the plants within `plant_mm` of their positions

@@ -21,15 +21,16 @@ std::string unique_name(const std::string& wanted, const Taken& taken) {
   return name;
 }
 
-// Returns the number if it is whole, but for rounding, and a frame that a strip can have.
+// Returns `number` as an integer if it is whole up to rounding errors and not beyond the frames that a strip can have.
+// Else returns nothing.
 std::optional<int> whole(double number) {
   const double nearest = std::round(number);
   if (!(std::abs(nearest) <= double(kMostStripFrame))) return std::nullopt;
   return std::abs(number - nearest) < 1e-6 ? std::optional(static_cast<int>(nearest)) : std::nullopt;
 }
 
-// Returns whether the strip plays its clip's frames once, forwards and from the first: it can then be trimmed by
-// changing the first or last of these frames.
+// Returns whether the strip plays its clip's frames once, forwards and from the first frame on. Such a strip can be
+// trimmed by changing the first or last of these frames.
 bool plays_once(const Strip& strip) {
   return strip.repeat == 1 && strip.skip == 0 && !strip.reversed && strip.blend != StripBlend::AddChange;
 }

@@ -13,11 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr double kRounding = 2e-6;  // frames
+constexpr double kRounding = 2e-6;  // frames; smaller differences count as rounding errors
 
 double eased(double share) { return share * share * (3 - 2 * share); }
 
-// Returns whether the later strip, which begins where the earlier one ends, goes on with what that one plays.
+// Returns whether `later`, which begins where `earlier` ends, continues the same clip at the same frame and with the
+// same settings.
 bool goes_on_with(const Strip& earlier, const Strip& later, double rate) {
   if (earlier.clip != later.clip || earlier.speed != later.speed || earlier.reversed != later.reversed ||
       earlier.mirrored != later.mirrored || earlier.goes_on != later.goes_on || earlier.blend != later.blend ||
@@ -25,15 +26,16 @@ bool goes_on_with(const Strip& earlier, const Strip& later, double rate) {
     return false;
   const double passed = earlier.skip + (double(later.start) - earlier.start) * frames_per_frame(earlier, rate);
   if (earlier.first == later.first && earlier.last == later.last) return std::abs(passed - later.skip) < kRounding;
-  // The frames of both are parts of one cycle.
+  // The strips use different ranges of the clip's frames. They continue each other only within one cycle.
   if (earlier.reversed || earlier.blend == StripBlend::AddChange) return false;
   return std::abs(earlier.first + passed - later.first - later.skip) < kRounding &&
          passed < earlier.last - earlier.first + kRounding && later.skip < later.last - later.first + kRounding;
 }
 
-// Finds for each strip the first strip of its run and the run's end, and which strips another one follows.
+// Finds the first strip and the end of each run (strips that play as one), and which strips are continued by another
+// one.
 void find_runs(const StripTrack& track, double rate, std::vector<StripRun>& runs) {
-  std::multimap<int, std::size_t> ending;  // by their ends, the strips before that nothing follows yet
+  std::multimap<int, std::size_t> ending;  // by end frame, the earlier strips that no other one continues yet
   for (std::size_t i = 0; i < track.strips.size(); ++i) {
     const Strip& strip = track.strips[i];
     const int end = end_of(strip, rate);
@@ -107,12 +109,12 @@ int end_of(const Strip& strip, double rate) {
 std::vector<StripRun> runs_of(const StripTrack& track, double rate) {
   std::vector<StripRun> runs(track.strips.size());
   find_runs(track, rate, runs);
-  for (std::size_t i = 0; i < runs.size(); ++i) {  // an end is known when the run's strips have been walked through
+  for (std::size_t i = 0; i < runs.size(); ++i) {  // the end of a run is known only after find_runs()
     runs[i].start = runs[runs[i].head].start;
     runs[i].end = runs[runs[i].head].end;
     if (!runs[i].has_next) runs[runs[i].head].fade_out = track.strips[i].blend_out;
   }
-  std::int64_t latest = std::int64_t{-4} * kMostStripFrame;  // end of the runs that begin before
+  std::int64_t latest = std::int64_t{-4} * kMostStripFrame;  // largest end frame of the runs before this one
   for (std::size_t i = 0; i < runs.size(); ++i) {
     StripRun& run = runs[i];
     const Strip& head = track.strips[run.head];

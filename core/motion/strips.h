@@ -2,22 +2,22 @@
 // Strips: clips that play one after another and over one another, as in the non-linear animation editors of Blender and
 // other programs.
 //
-// A strip plays a part of a clip from a frame on: faster or slower, forwards or backwards, mirrored, several times, on
-// all bones or on some. Strips lie on tracks. The pose of a frame is made from the lowest track to the highest, and
-// within a track from the earliest strip to the latest: each strip changes the pose that those before it have made, by
-// as much as its influence says. Where nothing plays, the rig is at rest.
+// A strip plays a part of a clip, beginning at a given frame: faster or slower, forwards or backwards, mirrored,
+// several times, on all bones or on some. Strips lie on tracks. The pose of a frame is computed from the lowest track
+// to the highest, and within a track from the earliest strip to the latest: each strip blends its pose over the result
+// of the strips before it, weighted by its influence. In a frame in which no strip plays, the rig is at rest.
 //
-// Strips of one track that overlap cross-fade: the later one fades in while the earlier one still plays. One that ends
-// before the earlier one fades in over its first half and out over its second. A strip that holds keeps its last pose
-// when it has ended, below the strips of its track that begin later. Before the first strip of a track, that one holds
-// its first pose.
+// Strips of one track that overlap cross-fade: the later one fades in while the earlier one still plays. A strip that
+// also ends before the earlier one fades in over its first half and out over its second half. A strip with `holds`
+// keeps its last pose after its end, below later strips of its track. Before the first strip of a track begins, its
+// first pose is held if it has `holds`.
 //
-// Strips of one clip on one track that touch, and of which the later one goes on at the frame of the clip at which the
-// earlier one ends, play as one: fades, order and holding are those of the whole. A strip that is split so plays as
-// before.
+// Strips on one track play as one strip, with common fades, order and holding, if they play the same clip, touch, and
+// the later one continues at the clip's frame at which the earlier one ends. Splitting a strip therefore does not
+// change what it plays.
 //
-// Time is counted in frames of the clip that has the strips. A clip with another rate keeps its duration in seconds, so
-// it takes another number of frames.
+// Time is counted in frames of the clip that has the strips. If the clip of a strip has another frame rate, it keeps
+// its duration in seconds, so the strip has another number of frames than its clip.
 #pragma once
 
 #include <cstdint>
@@ -77,41 +77,41 @@ struct Strips {
   bool operator==(const Strips&) const = default;
 };
 
-// Returns the clips of the strips, each once, in the order in which they come first.
+// Returns the clips of the strips, each once, in the order of their first use.
 std::vector<std::shared_ptr<const Clip>> clips_of(const Strips& strips);
 
 constexpr double kMostRepeats = 10'000;
-constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // of a clip
-constexpr int kLongestBlend = 100'000;                        // frames
+constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // limits for one clip
+constexpr int kLongestBlend = 100'000;                        // longest fade of a strip, frames
 constexpr std::int64_t kMostStripFrame = 1 << 28;             // largest frame number of a strip, either sign
-constexpr double kFarthestMove = 1e7;                         // largest coordinate of a strip's place, mm
-// Returns how many frames of its clip have passed when a strip that does not skip any ends.
+constexpr double kFarthestMove = 1e7;  // largest coordinate of a strip's move along the ground, mm
+// Returns how many frames of its clip have passed at the end of the strip, if the strip skips none at its beginning.
 double frames_of_cycles(const Strip& strip);
-// Returns whether the strip begins within its cycles. Rounding may put its beginning a little behind their end.
+// Returns whether the skipped frames end before the last cycle does, so that something is left to play. Rounding errors
+// are tolerated.
 bool begins_within(const Strip& strip);
-// Throws Error for strips that no project can keep: too many of them, too many tracks, frames or places too far away,
-// a beginning behind the end.
+// Throws Error for strips that a project file cannot store: too many strips or tracks, frames or positions that are too
+// large, or a strip that would begin after its last cycle.
 void require_within_limits(const Strips& strips);
 
 // Returns how many frames of a strip's clip pass in one frame of the strip.
-//   rate  of the clip that has the strip, frames per second
+//   rate  frames per second of the clip that has the strips
 double frames_per_frame(const Strip& strip, double rate);
-// Returns the frame at which the strip ends. It is the last one that plays.
+// Returns the last frame at which the strip plays.
 int end_of(const Strip& strip, double rate);
 
-// The strips that play as one with a strip, itself included.
+// A run: strips of one track that play as one, because each continues the one before it.
 struct StripRun {
-  std::size_t head = 0;           // the first of them, counted in the track
-  int start = 0, end = 0;         // frames
-  int fade_in = 0, fade_out = 0;  // frames, because a strip says so or because the run overlaps a strip before it
-  bool has_next = false;          // whether another one follows the strip
+  std::size_t head = 0;           // index on the track of the run's first strip
+  int start = 0, end = 0;         // first and last frame of the run
+  int fade_in = 0, fade_out = 0;  // frames; from the strips' own fades or from an overlap with an earlier run
+  bool has_next = false;          // true: another strip of the run follows this one
 };
 // Returns the run of each strip of the track.
 std::vector<StripRun> runs_of(const StripTrack& track, double rate);
-// Returns the share of its influence that a strip has at a frame of its run, [0, 1], as the fades say. It changes
-// smoothly.
+// Returns the weight that the fades give to a strip at a frame of its run, [0, 1]. It changes smoothly.
 double share_at(const StripRun& run, int frame);
-// Returns whether the track plays, as its own and the others' switches say.
+// Returns whether the track plays: it is not muted, and it is solo if any track is.
 bool plays(const Strips& strips, std::size_t track);
 
 // The frames from the first start to the last end of the strips; nothing if there are none.

@@ -11,7 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kWhole = 1e-6;  // a frame this close to a whole one is that frame, so that rounding changes no pose
+// frames; a frame number this close to a whole one is rounded to it, so that rounding errors change no pose
+constexpr double kWhole = 1e-6;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);
 
@@ -107,7 +108,7 @@ Pose StripsOnRig::pose_of(const OnRig& one, int frame) const {
   const double steps = strip.last - strip.first;
   double passed =
       std::clamp(strip.skip + (double(frame) - strip.start) * one.ratio, std::min(strip.skip, one.total), one.total);
-  // At the end of the last cycle no further cycle begins.
+  // At the exact end of the last cycle the last pose plays, not the first pose of a further cycle.
   int cycles = 0;
   if (steps > 0) {
     cycles = static_cast<int>(std::floor(passed / steps + kWhole / steps));
@@ -122,8 +123,9 @@ Pose StripsOnRig::pose_of(const OnRig& one, int frame) const {
   return move == GroundMove{} ? pose : moved(*armature_, std::move(pose), move);
 }
 
-// Returns whether the last pose of an ended strip is still held. A strip that replaces is held while later strips play,
-// so that they fade in over its last pose. A strip that adds is held only until a later one begins, as both would add.
+// Returns whether the last pose of an ended strip is still held. A strip that replaces the pose is held while later
+// strips play, so that they fade in over its last pose. A strip that adds to the pose is held only until a later strip
+// begins, since otherwise the effects of both would add up.
 bool StripsOnRig::is_held(const std::vector<OnRig>& track, const OnRig& ended, int frame) {
   if (!ended.strip->holds || ended.strip->blend == StripBlend::Replace) return ended.strip->holds;
   return std::none_of(track.begin(), track.end(), [&](const OnRig& other) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Strips applied to a rig: prepared once, then evaluated at many frames.
 //
-// Two rotations are blended by slerp, the body's shifts linearly. A strip that replaces all of the pose with full
-// influence gives its own poses bit for bit, and nothing below it is evaluated. Between two frames of a strip's clip,
-// as at half of its speed, its poses are blended too.
+// Two rotations are blended by slerp, the body's shifts linearly. A strip that replaces the whole pose with full
+// influence gives its own poses bit for bit, and the strips below it are not evaluated. Between two whole frames of a
+// strip's clip, for example at half speed, the poses of the two frames are blended.
 #pragma once
 
 #include <map>
@@ -21,10 +21,10 @@ class ClipOnRig;
 
 class StripsOnRig {
  public:
-  // Bones of a strip that the rig does not have are ignored. On a rig with several root bones, which cannot turn as
-  // one, the cycles of a strip all begin at the same place, and strips are not moved along the ground.
-  //   rate    of the clip that has the strips, frames per second
-  //   before  earlier strips, whose prepared clips are reused where nothing has changed; may be null
+  // Bones of a strip that the rig does not have are ignored. A rig with several root bones cannot be turned as one. On
+  // such a rig all cycles of a strip begin at the same position, and strips are not moved along the ground.
+  //   rate    frames per second of the clip that has the strips
+  //   before  an earlier StripsOnRig, whose prepared clips are reused if nothing has changed; may be null
   StripsOnRig(std::shared_ptr<const Strips> strips, std::shared_ptr<const Armature> armature, double rate,
               const StripsOnRig* before = nullptr);
 
@@ -37,8 +37,9 @@ class StripsOnRig {
   struct OnRig {
     const Strip* strip;
     std::shared_ptr<const ClipOnRig> clip;
-    double ratio = 1, total = 0;  // frames of the clip: in a frame of the strip; that have passed at its end
-    int end = 0;                  // frame
+    // frames of the clip that pass in one frame of the strip, and that have passed at the strip's end
+    double ratio = 1, total = 0;
+    int end = 0;  // last frame of the strip
     StripRun run;
     std::vector<char> changes;       // for each bone, whether the strip changes it; empty: all bones
     bool changes_root = true;        // whether the strip changes the body's shift
@@ -47,7 +48,7 @@ class StripsOnRig {
   };
   struct Layer {
     const OnRig* strip;
-    double share;  // influence times fade, (0, 1]
+    double share;  // weight of the strip: its influence times its fade, (0, 1]
   };
 
   OnRig prepared(const Strip& strip, const StripRun& run, double rate, const StripsOnRig* before);
