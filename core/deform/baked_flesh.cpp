@@ -119,7 +119,7 @@ bool BakedFlesh::Field::touches(const glm::ivec3& low, const glm::ivec3& high) c
 
 BakedFlesh::Field::Along BakedFlesh::Field::along(int axis, double place) const {
   const double node = place / step[axis] - first[axis], low = std::floor(node);
-  // A place outside the box gets the nearest position just outside it, where shifts are zero.
+  // For a place outside the box, uses the nearest position just outside the box, where shifts are zero.
   return {static_cast<int>(std::clamp(low, -2.0, double(size[axis]))), static_cast<float>(node - low)};
 }
 

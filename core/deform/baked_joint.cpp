@@ -9,8 +9,9 @@ namespace limber {
 
 namespace {
 
-// Adds to `shares` the weights, times `factor`, whose sum of values is the slope at x[at] of the parabola through three
-// neighbouring angles. If there are only two angles, uses the slope of the line.
+// The slope at x[at] of the parabola through the values at three neighbouring angles is a weighted sum of these values.
+// Adds the weights of this sum, multiplied by `factor`, to `shares`. If there are only two angles, uses the slope of
+// the line through them.
 void add_slope(const std::vector<double>& x, int at, double factor, std::vector<double>& shares) {
   const int last = static_cast<int>(x.size()) - 1;
   if (last == 1) {

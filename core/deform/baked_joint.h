@@ -9,7 +9,7 @@
 // three of them [Catmull & Rom 1974, A class of local interpolating splines, for unequal distances]; between the nodes
 // they are interpolated trilinearly. At rest the shift is exactly zero.
 //
-// Joints with cardinal correctives of this kind: Kry, James & Pai 2002, EigenSkin.
+// Kry, James & Pai 2002, EigenSkin, describe correctives of this kind for the joints of a character.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace limber {
 
-// Hashes (SHA-256) of what a joint was baked from. A body with other hashes must not use it.
+// Hashes (SHA-256) of what a joint was baked from. The joint must not be used on a body with other hashes.
 struct BakeSource {
   using Hash = std::array<std::uint8_t, 32>;
   Hash volume{};   // the grid, and the labels of its tissue

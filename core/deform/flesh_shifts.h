@@ -19,9 +19,10 @@ class FleshShifts {
   using CornerShifts = std::array<glm::vec3, 729>;
   // Computes the corner shifts of a brick. Returns whether it has any; if not, `shifts` is not written.
   virtual bool corner_shifts(std::int64_t brick, CornerShifts& shifts) const = 0;
-  // Returns the shift of one corner of a voxel near a seam. lowest the lowest of the eight voxels around the corner
-  //   around one bit for each of the eight voxels around the corner, x fastest: 1 if the voxel's cell contributes to
-  //   the shift; not 0
+  // Returns the shift of one corner of a voxel near a seam.
+  //   lowest  the lowest of the eight voxels around the corner
+  //   around  one bit for each of the eight voxels around the corner, x fastest: 1 if the voxel's cell contributes to
+  //           the shift; not 0
   virtual glm::vec3 corner_shift(const glm::ivec3& lowest, unsigned around) const = 0;
   // Returns whether the shifts bend the tissue of a brick even if all of it follows one bone.
   virtual bool bends(std::int64_t brick) const = 0;

@@ -9,7 +9,7 @@ namespace limber {
 constexpr int kFixedOne = 65536;  // units of fixed point per output voxel
 using FixedPoint = glm::ivec3;    // coordinates in units of 1/65536 output voxel
 
-// A pose that moves a point further than this from the base is refused, output voxels. Fixed point allows 32 768.
+// A pose that moves a point further than this from the base is refused; in output voxels. Fixed point allows 32 768.
 constexpr double kFurthestPosed = 32000;
 
 // The transform from rest voxel coordinates to the output lattice: output = (rest + 0.5) * ratio - 0.5 - base.

@@ -20,7 +20,8 @@ constexpr int kPosedBin = 16;  // edge of a search bin, voxels: a quarter of an 
 // overlapping if they are at most this far apart at rest, voxels. A crease may press them together: riders stick out by
 // two voxels on both sides, and the crease is one voxel wide.
 constexpr int kCrease = 5;
-// as kCrease, but for flesh that slides over bone: it may come from anywhere, so nothing counts as overlapping
+// Takes the place of kCrease for flesh that slides over bone. Such flesh may come from anywhere, so nothing counts as
+// overlapping.
 constexpr int kSlides = 1 << 20;
 constexpr int kSide = TissueVoxels::kBrick + 1;
 
@@ -65,8 +66,8 @@ glm::dvec4 shares_in(const std::array<glm::dvec3, 4>& corners, const glm::dvec3&
   return {1 - s.x - s.y - s.z, s};
 }
 
-// Returns 1 for each tet of a bone over which flesh slides, that is, at some of whose nodes flesh has nodes of its own
-// (TetMesh::copy_of).
+// Returns 1 for each tet of a bone over which flesh slides: a bone some of whose nodes have copies that belong to the
+// flesh (TetMesh::copy_of).
 std::vector<char> slid_over(const TetMesh& mesh) {
   std::vector<char> has_copy(mesh.V.rows(), 0), result(mesh.T.rows(), 0), slides(65536, 0);
   for (std::size_t v = 0; v < mesh.copy_of.size(); ++v)

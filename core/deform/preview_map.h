@@ -110,10 +110,12 @@ class LivePreview {
   LivePreview(std::shared_ptr<const LabelVolume> volume, const TissueTable& tissues, const TissueVoxels& tissue,
               const SkinWeights& weights, int step);
 
-  // Returns the map of a pose. If nothing has changed since the last call, returns the same pointer. posed_from_rest
-  //   motions of the bones of the weights mesh a mesh with which the tissue near it moves; empty: none baked baked
-  //   joints with their rotations in the pose; their shifts are added to blending by dual quaternions throws Error if
-  //   the pose moves tissue too far, and when a joint was baked from a larger volume
+  // Returns the map of a pose. If nothing has changed since the last call, returns the same pointer. Throws Error if
+  // the pose moves tissue too far, and if a joint was baked from a larger volume.
+  //   posed_from_rest  motions of the bones of the weights
+  //   mesh             a mesh with which the tissue near it moves; empty: none
+  //   baked            baked joints with their rotations in the pose; their shifts are added to blending by dual
+  //                    quaternions
   std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
                                            const MeshPose& mesh = {}, const std::vector<BentJoint>& baked = {});
 

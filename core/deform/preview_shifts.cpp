@@ -52,7 +52,7 @@ bool PreviewShifts::set(const PreviewLattice& lattice, const std::vector<BentJoi
   } else {
     std::fill(shift_.begin(), shift_.end(), glm::vec3(0));
     std::fill(is_near_.begin(), is_near_.end(), 0);
-    // The shift of a vertex near a joint that is no longer given has changed too.
+    // A vertex near a joint of the previous pose that is not among the new joints has a changed shift too.
     for (const Table& table : tables_)
       for (const std::int32_t place : table.places) is_near_[place] = 1;
     tables_.clear();
