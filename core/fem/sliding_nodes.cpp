@@ -21,8 +21,8 @@ constexpr double kInFront = 0.5;
 // voxels must lie within kFurthest; those at most kDecides further away than the nearest one count. Where skin is thin,
 // the mesh's bone ends below the voxels' bone (LatticeNetSettings).
 constexpr double kDecides = 0.5, kFurthest = 2;
-// Of a bone's surface: the distance between the samples, the distance over which it is smoothed, and the margin around
-// the sliding nodes, in edges of tets.
+// For the distance field of a bone's surface, in edges of tets: the distance between samples, the distance over which
+// it is smoothed, and the margin around the sliding nodes.
 constexpr double kSample = 0.25, kSmooth = 0.3, kMargin = 4;
 
 glm::dvec3 vec_of(const Eigen::RowVector3d& p) { return {p[0], p[1], p[2]}; }
@@ -96,7 +96,7 @@ void mark_faced(const TetMesh& mesh, const std::vector<int>& bone, const NodePos
   }
 }
 
-// Reads what soft tissue lies on bone in a volume.
+// Finds which soft tissue lies on the bones of a volume.
 class TissueOnBone {
  public:
   TissueOnBone(const LabelVolume& volume, const TissueTable& tissues, double tet_mm)

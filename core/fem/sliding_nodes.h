@@ -36,9 +36,10 @@ struct SlidingSettings {
 std::vector<std::uint8_t> sliding_nodes(const LabelVolume& volume, const TissueTable& tissues, const TetMesh& mesh,
                                         const std::vector<int>& bone, const SlidingSettings& settings);
 
-// Gives the tets of soft tissue at the sliding nodes nodes of their own, which come after all others, and builds the
-//   surfaces of the bones there. model a model whose nodes have their holders and influences slides #V: 1 for the nodes
-//   that sliding_nodes() found, else 0
+// Gives the tets of soft tissue their own copies of the sliding nodes, which come after all other nodes, and builds the
+// surfaces of the bones there.
+//   model   a model whose nodes have their holders and influences
+//   slides  #V: 1 for the nodes that sliding_nodes() found, else 0
 void let_slide(FemModel& model, const std::vector<std::uint8_t>& slides, double tet_mm);
 
 }  // namespace limber

@@ -52,8 +52,8 @@ constexpr double kDrift = 2;
 // degrees.
 constexpr double kSagging = 45;
 constexpr double kContact = 1.4;  // distance below which skin is pushed apart, mm; for small tets it is smaller
-// With larger tets than the thinnest bent limb asks for, the distance is at most this many times what that limb asks
-// for: pairs of skin within the distance take memory.
+// If the tets are larger than the thinnest bent limb requires, the contact distance grows with them, but at most to
+// this multiple of the distance for that limb, because every pair of skin parts within the distance takes memory.
 constexpr double kWiderContact = 1.5;
 constexpr double kTouches = 1.5;  // multiple of the contact distance below which reports count a node as touching
 // Cosine of half of 3 degrees. With fine quality, tets are smaller around joints that turn by more than 3 degrees.
@@ -286,7 +286,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   if (fem_.slides) sliding.near = sliding_near(tissue, volume.grid, bent_joints(armature, poses_, kBent));
   for (const auto& [joint, mm] : sliding.near) settings.covered.push_back({joint, kCovered * mm});
   finest_ = settings.fine_around.empty() ? spacing_ : spacing_ / 2;
-  // The size of the limb for which these tets are right; rounding alone does not change it.
+  // The size of the limb for which tets of this size are right. Differences due to rounding alone are ignored below.
   const double of_tets = reach_ / (fem_.quality == FemQuality::Draft ? kDraft : kUsual);
   solver_size_ = (!fem_.spacing_mm || fem_.reach_mm) && of_tets > 1.001 * size_ ? of_tets : size_;
   TissueMesh meshed = mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving), settings, progress);

@@ -12,9 +12,10 @@ namespace limber {
 
 namespace {
 
-constexpr int kNearJoint = 2;     // voxels of a bone up to this far from another bone, voxels, touch it in a joint
-constexpr int kSpread = 40;       // edges over which flesh next to bone gives way to it
-constexpr double kTowards = 0.7;  // share of the way from the centre of a voxel to a node on a seam
+constexpr int kNearJoint = 2;  // bone voxels up to this many voxels from another bone count as part of a joint
+constexpr int kSpread = 40;    // number of mesh edges over which the shifts of bone nodes are spread into flesh
+// a second sample point of flesh lies at this share of the way from the voxel's centre to the node
+constexpr double kTowards = 0.7;
 
 glm::dvec3 place_of(const Eigen::MatrixX3d& V, int node) { return {V(node, 0), V(node, 1), V(node, 2)}; }
 
@@ -35,7 +36,8 @@ struct TetsAtNodes {
   }
 };
 
-// Spreads shifts of some nodes to the nodes around them, over kSpread edges of the mesh, less and less far from them.
+// Spreads the nodes' shifts to the nodes around them, by kSpread rounds of averaging over mesh edges. Nodes that are
+// `fixed` keep their shifts; far from them shifts become small.
 //   shift   #V, mm; changed at nodes that are not fixed
 void spread(std::vector<glm::dvec3>& shift, const Eigen::MatrixX4i& T, const std::vector<bool>& fixed) {
   std::vector<glm::dvec3> sum(shift.size());
@@ -73,8 +75,8 @@ std::vector<std::int32_t> bones_of_voxels(const LabelVolume& volume, const Tissu
   return bone_of;
 }
 
-// Returns which nodes do not move freely: those of bone, but for nodes that two bones of the rig share, which touch at
-// an edge or a corner of a voxel.
+// Returns true for each node that moves rigidly: a node of bone, unless two bones of the rig share it. Bones share
+// nodes where they touch only at an edge or a corner of a voxel.
 std::vector<bool> rigid_nodes(const BodyMesh& body, const LabelVolume& volume, const TissueVoxels& tissue,
                               const std::vector<bool>& is_bone_label, const SkinWeights& weights) {
   const std::vector<std::int32_t> bone_of = bones_of_voxels(volume, tissue, is_bone_label, weights);
@@ -130,11 +132,12 @@ PosedMesh pose_mesh(const BodyMesh& body, const LabelVolume& volume, const Tissu
   const std::vector<bool> is_bone_label = bone_labels(tissues);
   const TetsAtNodes tets(body.mesh, is_bone_label);
   const auto voxel_at = [&](int tet) { return place_of(body.mesh.V, body.mesh.T(tet, body.voxel_corner[tet])); };
-  std::vector<bool> is_edge(body.mesh.V.rows(), false);  // flesh at the node moves as on one side of it
+  // true for nodes on a seam or on bone, where flesh moves as on one side of the node
+  std::vector<bool> is_edge(body.mesh.V.rows(), false);
   for (const int node : body.at_seam) is_edge[node] = true;
 
-  // Where the flesh around each node moves, also at the border of bone. At edges of flesh its motion is found at two
-  // points on one side.
+  // Finds the posed position of the flesh at each node, also at the border of bone. At nodes with is_edge it is
+  // extrapolated from two points in the flesh on one side.
   std::vector<int> bone_nodes, soft_nodes;
   std::vector<glm::dvec3> bone_voxels, soft;
   for (int node = 0; node < int(body.mesh.V.rows()); ++node) {
@@ -162,7 +165,7 @@ PosedMesh pose_mesh(const BodyMesh& body, const LabelVolume& volume, const Tissu
     if (is_edge[node]) flesh[node] += (moved[next++] - flesh[node]) / kTowards;
   }
 
-  // Bone moves rigidly, and the flesh around it gives way.
+  // Moves the nodes of bone rigidly, and spreads the resulting shifts to the flesh around them.
   const auto motions =
       skin_transforms(bone_motions(weights.bones(), armature, shape ? part_of_pose(pose, shape->reached) : pose));
   const std::vector<SkinAt> skin = skin_at(volume, tissue, weights, bone_voxels);

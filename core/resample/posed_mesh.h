@@ -18,8 +18,8 @@ struct PosedMesh {
   std::int64_t inside_out = 0;  // number of tets that are inside out
 };
 
-// Returns the seams of the tissue, and with them the surface of each bone near another bone of the rig: there, in
-// joints, the mesh of a body that is to be posed is cut, so that no node belongs to two bones.
+// Returns the seams along which the mesh of a body that is to be posed is cut: the seams of the tissue and, in joints,
+// the surface of each bone near another bone of the rig. Because of the cuts in joints, no node belongs to two bones.
 std::shared_ptr<const Seams> seams_and_joints(const LabelVolume& volume, const TissueVoxels& tissue,
                                               const TissueTable& tissues, const SkinWeights& weights);
 

@@ -239,7 +239,8 @@ class PosedVoxels {
   }
 
   void forget_corners_below(int z) const {
-    const bool fills_again = settings_.mass_exact || keeps_flesh_;  // soft_borders() needs these corners later
+    // true: soft_borders() computes the tiles again later and needs these corners
+    const bool fills_again = settings_.mass_exact || keeps_flesh_;
     if (!fills_again) lattice_.forget_corners_below(z);
   }
 
