@@ -229,10 +229,10 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
   if (by_bone)
     for (const JointLandmark& mark : ball_landmarks(m, *target.bone))
       take(mark, How::Ball, strange[mark.bone], kByBall);
-  // If little of the surface fits, no joint is certain, whatever evidence it was found by. A confidence below kFew,
-  // kFewOfLimb or kFewOfHand gives an error of kFarOff or kLimbFarOff mm times the difference. The limits differ
-  // because the limb bones of different bodies are much alike, while trunk bones are not. A ball joint gets the lowest
-  // limit, because its shape alone identifies it.
+  // If little of the surface fits, no joint is certain, whatever evidence it was found by. Where a joint's confidence
+  // is below kFew, kFewOfLimb or kFewOfHand, its error is at least the missing confidence times kFarOff or kLimbFarOff
+  // mm. The limits differ because the limb bones of different bodies are much alike, while trunk bones are not. A ball
+  // joint gets the lowest limit, because its shape alone identifies it.
   constexpr double kFew = 0.35, kFewOfLimb = 0.62, kFewOfHand = 0.7, kFarOff = 100, kLimbFarOff = 300;
   // If the fit's residual exceeds kUnlike (share of the tissue's diagonal), every joint gets at least an error of
   // kWrong times the excess, and far more if the excess is above kSteep. Measured residuals: at most 0.011 on whole

@@ -17,7 +17,8 @@ namespace {
 // mm.
 constexpr double kShare = 0.5, kMost = 30;
 constexpr int kRounds = 60;
-// The search for tissue takes at most this many steps in each direction; longer steps reach further.
+// The search for tissue tests at most this many positions in each direction; if voxels are small, it skips some of
+// them.
 constexpr int kMostSteps = 20;
 constexpr double kSlide = 0.6;  // cost of a shift along a free hinge's axis, relative to a shift across it
 

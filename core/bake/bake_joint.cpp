@@ -25,7 +25,7 @@ namespace limber {
 
 namespace {
 
-// degrees: smallest extent of the range, and largest angle of either end
+// Degrees: the smallest allowed extent of the range of angles, and the largest allowed angle at either end.
 constexpr double kLeastRange = 5, kWidest = 170;
 // Number of lattice nodes along an edge of a tet. The shifts are linear within a tet, but change their slope from tet
 // to tet: with half as many nodes, tens of voxels in the crease of a bent elbow overlap.
@@ -76,8 +76,8 @@ void check(const Armature& rig, int bone, const BakeSettings& settings) {
     throw Error("a joint is not baked at so many angles", std::to_string(settings.angles), "write a number of 1 to 30");
 }
 
-// Returns the angles to solve on one side of rest: the baked ones, and halfway before each of them one at which only
-// the error is measured.
+// Returns the angles to solve on one side of rest: the baked angles, and halfway before each of them an angle at which
+// only the error is measured.
 std::vector<SolvedAngle> angles_to(double end, const BakeSettings& settings) {
   const double share = std::abs(end) / (settings.high - settings.low);
   const int baked = end == 0 ? 0 : std::max(1, static_cast<int>(std::lround(share * settings.angles)));
@@ -202,7 +202,7 @@ double most_of(std::vector<double> distances, double share) {
 }
 
 // Returns the error of the baked joint at a solved angle.
-//   difference  of each corner: solved minus blended place, mm
+//   difference  for each corner: its solved position minus its blended position, mm
 BakeError error_at(const std::shared_ptr<const BakedJoint>& joint, double degrees, const JointCorners& corners,
                    const std::vector<glm::vec3>& difference, const TissueVoxels& tissue, const Grid& grid) {
   const BakedFlesh flesh(tissue, grid, {{.baked = joint, .degrees = degrees}});

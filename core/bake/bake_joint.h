@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Bakes a joint (deform/baked_joint.h): solves it by finite elements at angles from rest to either end of its range,
-// each from the shape of the angle before, and stores how far the solved shapes differ from blending. The angles
-// halfway between the baked ones are solved too, and used only to tell the error there.
+// and stores how far the solved shapes differ from blending. Each solve starts from the shape at the angle before. The
+// angles halfway between the baked ones are solved too, but used only to measure the error there.
 //
 // All angles on one side of rest share one model: the tissue that may deform, and the ends of bones that count as part
 // of the joint, are those of the whole range, and nothing waits for contact (Fem::is_exact). Then shapes change
@@ -30,7 +30,7 @@ struct BakeSettings {
 
 struct JointBake {
   BakedJoint joint;
-  bool all_reached = true;            // false: the range ends where the solves did
+  bool all_reached = true;            // false: the solver did not reach all angles, and the baked range is shorter
   std::vector<std::string> warnings;  // tell the user what differs from the request
 };
 

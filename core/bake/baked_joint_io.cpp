@@ -194,7 +194,7 @@ BakedJoint read_baked_joint(const Path& path) {
 
 void write_baked_joint(const BakedJoint& joint, const Path& path) {
   const std::string bytes = encode(joint);
-  decode_baked_joint(bytes, path.string());  // a file that could not be read must not be written
+  decode_baked_joint(bytes, path.string());  // throws if the file could not be read again; then nothing is written
   write_file_atomically(path, bytes);
 }
 

@@ -21,6 +21,6 @@ BakedJoint decode_baked_joint(const std::string& bytes, const std::string& where
 
 BakedJoint read_baked_joint(const Path& path);  // throws Error as decode_baked_joint() does
 void write_baked_joint(const BakedJoint& joint,
-                       const Path& path);  // throws Error when it cannot be written, or not read
+                       const Path& path);  // throws Error if the file cannot be written or could not be read again
 
 }  // namespace limber

@@ -5,9 +5,9 @@
 //    sum over corners  weight * | sum of the nodes' shares * x  -  given |^2
 //      +   kBending * sum over three nodes in a row  | x - 2 x + x |^2
 //
-// The second sum is small; it continues the field smoothly to nodes in the air beside the skin, which few corners tell
-// of. The equations are solved by conjugate gradients, one field after the other, so that the result does not depend on
-// the number of threads.
+// The second sum is small; it continues the field smoothly to nodes in the air beside the skin, which have few corners
+// around them. The equations are solved by conjugate gradients, one field after the other, so that the result does not
+// depend on the number of threads.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace limber {
 
 class CornerFit {
  public:
-  //   corners  #C corners, as the voxel whose lowest corner each is; no corner twice
+  //   corners  #C different corners; each is given by the voxel of which it is the lowest corner
   //   weight   #C, each above 0
   //   step     number of corners from one node to the next, along each axis
   CornerFit(std::vector<glm::ivec3> corners, std::vector<float> weight, const glm::ivec3& step);
@@ -34,7 +34,7 @@ class CornerFit {
 
  private:
   struct Shares {
-    glm::ivec3 side[8];    // 0 or 1 along each axis: which of the nodes around the corner
+    glm::ivec3 side[8];    // 0 or 1 along each axis: where each node lies among the eight nodes around the corner
     std::int32_t node[8];  // places of these nodes in the box
     double share[8];
     int count = 0;

@@ -15,9 +15,9 @@
 namespace limber {
 
 struct JointCorners {
-  std::vector<glm::ivec3> corner;      // #C: the voxel whose lowest corner each is, by brick, x fastest
-  std::vector<glm::dvec3> rest;        // #C positions at rest, world, mm
-  std::vector<std::int64_t> offsets;   // #C + 1: where the influences of each corner begin
+  std::vector<glm::ivec3> corner;  // #C corners, each given by the voxel of which it is the lowest; by brick, x fastest
+  std::vector<glm::dvec3> rest;    // #C positions at rest, world, mm
+  std::vector<std::int64_t> offsets;   // #C + 1: index of the first influence of each corner
   std::vector<BoneWeight> influences;  // weights of all corners, one corner after another, ascending by bone
   std::vector<std::uint8_t> is_soft;   // #C: whether a voxel of soft tissue is around the corner
   std::vector<std::uint8_t> is_skin;   // #C: whether a voxel of skin is around the corner

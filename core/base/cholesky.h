@@ -75,7 +75,7 @@ class Cholesky {
   // returned true. Returns false, without a solution, when the matrix turns out not to be positive definite.
   bool solve(std::span<double> b);
 
-  // count of numbers in the factor: 4 bytes each, or 8 if it was repeated in double precision
+  // Returns how many numbers the factor has: 4 bytes each, or 8 if the factorization was repeated in double precision.
   std::int64_t factor_size() const;
   double factor_operations() const;  // approximate number of floating point operations of a factorization
   // Number of factorizations so far that had to be repeated in double precision.

@@ -17,9 +17,10 @@ namespace limber {
 namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
-constexpr int kRounds = 40;            // upper limit on the steps of Newton's method
-constexpr double kVolumeError = 2e-4;  // share of its volume by which the volume of a label may be off
-constexpr double kLongestMove = 0.25;  // by which a step may move a node along an axis, voxels
+constexpr int kRounds = 40;  // upper limit on the steps of Newton's method
+// Newton's method ends when the volume of every label is off by less than this share of it
+constexpr double kVolumeError = 2e-4;
+constexpr double kLongestMove = 0.25;  // upper limit on the movement of a node along an axis in one step, voxels
 constexpr int kMostLabels = 4000;
 
 struct Triangle {
@@ -51,8 +52,8 @@ class Shape {
   const std::vector<glm::dvec3>& places() const { return place_; }
   const std::vector<std::uint16_t>& labels() const { return labels_; }
 
-  // Moves every point of a cell to the mean of the points on the lattice edges around it, and every point of an edge to
-  // where the points of the cells around it meet the edge.
+  // Moves every point of a cell to the mean of the points on the lattice edges around it. Then moves every point of an
+  // edge along the edge, to the mean coordinate of the points of the cells around it.
   void smooth() {
     const auto& edges = net_.edges();
     std::vector<glm::dvec3> sum(place_.size(), glm::dvec3(0));
@@ -70,7 +71,7 @@ class Shape {
     }
   }
 
-  // Returns how much each label's volume has to grow.
+  // Returns the wanted volume minus the present volume of each label, voxels.
   Eigen::VectorXd missing() const {
     Eigen::VectorXd volume = Eigen::VectorXd::Zero(std::ssize(labels_));
     for (const Triangle& t : triangles_) {
@@ -81,7 +82,7 @@ class Shape {
     return Eigen::Map<const Eigen::VectorXd>(wanted_.data(), std::ssize(wanted_)) - volume;
   }
 
-  // Returns the largest share of its volume that a label misses, and sets `label` to the label.
+  // Returns the largest error of a label's volume, as a share of its wanted volume, and sets `label` to that label.
   double worst(const Eigen::VectorXd& missing, std::uint16_t& label) const {
     double most = 0;
     for (Eigen::Index i = 0; i < missing.size(); ++i)
@@ -89,8 +90,8 @@ class Shape {
     return most;
   }
 
-  // Moves the nodes, by the least sum of squares, so that the volumes of the labels grow by `missing` to first order.
-  // Nodes at the border of their boxes move only if that takes them inside.
+  // Moves the nodes by the smallest sum of squares with which the volumes of the labels grow by `missing`, to first
+  // order. A node at the border of its box moves only if the move leads into the box.
   void correct(const Eigen::VectorXd& missing) {
     gather_gradients();
     const Eigen::Index n = missing.size();
@@ -224,7 +225,8 @@ BodyMesh mesh_body(const LabelVolume& volume, const TissueVoxels& tissue, const 
 
   body.mesh = net.tets();
   progress.update("meshing the body", 0.8);
-  // The net's nodes come first. Of the others, those at whole coordinates are centres of voxels, also in large cells.
+  // The net's nodes come first. Of the other nodes, those at whole coordinates are the centres of voxels, also in large
+  // cells.
   body.voxel_corner.resize(body.mesh.T.rows());
   for (Eigen::Index t = 0; t < body.mesh.T.rows(); ++t)
     for (int i = 0; i < 4; ++i) {

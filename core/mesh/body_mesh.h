@@ -3,9 +3,10 @@
 // organs included, as in the mesh-type reference phantoms [ICRP Publication 145, 2020].
 //
 // The mesh is that of a surface net over the voxels (surface_net.h), so it cannot fail and every tet is positively
-// oriented. The surfaces between tissues are smoothed. Then the net's nodes move by the least sum of squares that gives
-// each tissue the volume of its voxels (Newton's method on the volumes). Deep inside a tissue tets are larger. Where a
-// seam separates tissue that touches, the mesh has two surfaces with nodes of their own at one place.
+// oriented. The surfaces between tissues are smoothed. Then the net's nodes move by the smallest sum of squares with
+// which each tissue gets the volume of its voxels (Newton's method on the volumes). Deep inside a tissue tets are
+// larger. Where a seam separates tissue that touches, the mesh has two surfaces with separate nodes at the same
+// positions.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +20,8 @@ namespace limber {
 
 struct BodyMeshSettings {
   int relaxations = 4;  // steps of smoothing; 0: the surfaces are the faces of the voxels
-  // Volume of each label, mm3, by label; for a body that was sampled anew, the volumes before. Empty: the volume of the
-  // label's voxels.
+  // Wanted volume of each label, mm3, by label; after resampling to other voxels, pass the volumes before it. Empty:
+  // the volume of the label's voxels.
   std::vector<double> volumes = {};
 };
 
@@ -34,7 +35,8 @@ struct BodyMesh {
   std::uint16_t worst_label = 0;  // the label with this difference
 };
 
-// The most samples of the lattice, voxels of the box around the tissue; a larger body is sampled anew before.
+// Upper limit on the samples of the lattice: the voxels of the box around the tissue. The caller must first resample a
+// larger body to fewer voxels.
 constexpr std::int64_t kMostMeshSamples = 60'000'000;
 
 // Returns the mesh, which does not depend on the number of threads.

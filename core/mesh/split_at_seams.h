@@ -10,8 +10,9 @@
 
 namespace limber {
 
-// Gives each node on a seam one copy for each further group of its tets: tets are in one group if faces that no seam
-// cuts connect them around the node. New nodes are added at the end of mesh.V. Returns all nodes on seams.
+// Splits the nodes on seams and returns all of them. Two tets at a node are in one group if they are connected around
+// the node through faces that no seam cuts. The first group keeps the node; every further group gets a copy of it, at
+// the end of mesh.V.
 //   mesh  the tets of `net` (SurfaceNet::tets())    lattice  the lattice of the net, with its seams
 std::vector<int> split_at_seams(TetMesh& mesh, const SampleLattice& lattice, const SurfaceNet& net);
 

@@ -15,8 +15,8 @@ namespace limber {
 // Returns the tets that are inside out or flat, in ascending order.
 std::vector<int> tets_inside_out(const Eigen::MatrixX3d& V, const Eigen::MatrixX4i& T);
 
-// Moves nodes near tets that are inside out until no tet is. Returns the number of tets that still are: a tet between
-// nodes that do not move can be.
+// Moves nodes near tets that are inside out until no tet is. Returns the number of tets that remain inside out, which
+// can happen between nodes that do not move.
 //   V      #V positions, mm, that are changed          T      #T tets
 //   rest   #V positions in which every tet is upright  fixed  #V, true: the node does not move
 std::int64_t untangle(Eigen::MatrixX3d& V, const Eigen::MatrixX3d& rest, const Eigen::MatrixX4i& T,
