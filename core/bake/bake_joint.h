@@ -4,9 +4,9 @@
 // angles halfway between the baked ones are solved too, but used only to measure the error there.
 //
 // All angles on one side of rest share one model: the tissue that may deform, and the ends of bones that count as part
-// of the joint, are those of the whole range, and nothing waits for contact (Fem::is_exact). Then shapes change
-// smoothly with the angle. Solved alone, each angle has a model of its own: on a real arm neighbouring angles then
-// differ by jumps of 4 mm, which no interpolation could follow.
+// of the joint, are those of the whole range, and no tissue stays rigid until contact reaches it (Fem::is_exact).
+// Therefore shapes change smoothly with the angle. If each angle had a model of its own, neighbouring angles would
+// differ: on a real arm by jumps of 4 mm, which no interpolation could follow.
 #pragma once
 
 #include <string>

@@ -66,7 +66,8 @@ glm::ivec3 get_vector(ByteReader& reader, std::int32_t low, std::int32_t high) {
 }
 
 void put_nodes(ByteWriter& writer, const std::vector<std::int32_t>& nodes) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> runs;  // first place and number of places
+  // index of each run's first node in the lattice, and number of nodes
+  std::vector<std::pair<std::int32_t, std::int32_t>> runs;
   for (const std::int32_t place : nodes)
     if (!runs.empty() && runs.back().first + runs.back().second == place) ++runs.back().second;
     else runs.emplace_back(place, 1);

@@ -134,8 +134,8 @@ class PosedTets::Border {
   // enough, since the point may use half of the air between the two parts.
   static constexpr double kBoth = 2;
   static constexpr double kRounding = 1.0 / 64;  // tolerance of the results of free_way()
-  // Share that a point may use of its half of the air. The share is below 1, so that the tissue of the two parts never
-  // claims the same voxel centre.
+  // A point uses at most this share of its half of the air gap. The share is below 1, so that the tissue of the two
+  // parts never claims the same voxel centre.
   static constexpr double kApart = 0.98;
 
   // Returns where the line from `from` through `to` first enters another part of the mesh: 0 at `from`, 1 at `to`,

@@ -473,7 +473,7 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
                      posed_from_rest[b].translation != posed_from_rest_[b].translation;
   if (std::find(bone_moved_.begin(), bone_moved_.end(), 1) == bone_moved_.end() && mesh == mesh_ && !shifts)
     return false;
-  map_ = nullptr;  // null until this update ends, so that after an exception the next update starts anew
+  map_ = nullptr;  // null until this update ends, so that after an exception the next update recomputes everything
 
   if (mesh.rest != mesh_.rest) hold_by(mesh.rest);
   mesh_ = mesh;

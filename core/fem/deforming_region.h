@@ -28,8 +28,8 @@ struct ObjectSweep {
   std::vector<std::vector<glm::dvec3>> ways;
   double deepest_mm = 0;  // distance by which the object may move beyond its target position
 };
-// The index in ObjectSweep::ways of the way on which an object leaves the body after the shortest distance, and this
-// distance, mm. Infinite: the body blocks all ways.
+// The shortest way on which an object leaves the body: its index in ObjectSweep::ways, and its length, mm. Infinite
+// length: the body blocks all ways.
 struct ObjectClearance {
   std::size_t way = 0;
   double mm = 0;

@@ -71,8 +71,9 @@ double search(FemEnergy& energy, NodePositions& x, double& value, const NodePosi
   return length;
 }
 
-// Line searches for a step that limits cut to a short one: along the step, and along the step smoothed around what
-// limits it. Moves x to the lower energy of the two, since the smoothed step may be long and yet lower the energy less.
+// Makes two line searches for a step that limits have shortened: one along the step, one along the step smoothed around
+// what limits it. Moves x to the lower energy of the two, since the smoothed step may be long and yet lower the energy
+// less.
 //   bound  in: the limit of the step; out: that of the step taken
 double search_both(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
                    const std::vector<char>& fixed, FemEnergy::Bound& bound) {

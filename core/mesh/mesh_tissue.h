@@ -24,7 +24,7 @@ struct MeshSettings {
   // Positions of joints that bend, world, mm; nodes near them are half as far apart.
   std::vector<glm::dvec3> fine_around;
   double fine_radius_mm = 40;
-  // places where bones keep below the surface (LatticeNetSettings::Covered)
+  // Places near which bones must stay below the surface (LatticeNetSettings::Covered).
   std::vector<LatticeNetSettings::Covered> covered = {};
   TetrahedralizeLimits limits = {};  // limits on TetGen's time and memory
 };

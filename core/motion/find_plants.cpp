@@ -14,9 +14,10 @@ namespace {
 // A foot stands while it moves slower than kStanding, mm/s, and is less than kLifted, mm, above its lowest positions.
 // Both limits are for a leg of length kUsualLeg, mm, and are scaled with the length of the leg.
 constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
-// A limb rests if it moves less than this distance, mm, in kShortestStance and stays this near to one position.
+// A limb rests if it moves less than this distance, mm, within kShortestStance seconds, and stays this near to one
+// position.
 constexpr double kRest = 2;
-// Limit that replaces kRest, mm, to find the rest of a limb that drifts slowly before or after it.
+// Takes the place of kRest, mm, in the search for a rest of a limb that drifts slowly before or after the rest.
 constexpr double kHeld = 0.3;
 constexpr double kLowest = 0.02;         // quantile of a point's heights that is taken as the height of the ground
 constexpr double kShortestStance = 0.1;  // seconds; shorter stances are ignored

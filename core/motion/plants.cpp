@@ -100,7 +100,8 @@ class Planter {
   // Returns how far the body should move in a frame, mm: the weighted mean of the displacements of its planted feet. If
   // the body moves with its feet, the legs change their shape less.
   glm::dvec3 carrying(const Pose& pose, int frame) const {
-    // Weight in the mean of an additional displacement zero, so that one planted foot does not move the body fully.
+    // The mean also contains a displacement of zero with this weight, so that one planted foot does not move the body
+    // fully.
     constexpr double kOfFree = 0.1;
     const PosedRig rig(armature_, pose);
     glm::dvec3 sum(0);

@@ -58,9 +58,9 @@ class FemSequence {
   std::vector<Pose> poses_;
   Fem fem_;
   double size_ = 1;  // thickness of the thinnest bent limb, relative to an adult's elbow (1)
-  // The size for which the solver's lengths and stiffnesses are chosen: that of the limb for which the tets are right.
-  // It is above size_ if the tets are larger than that limb asks for. With the gap and the tolerance of a finger, tets
-  // of a thigh would need very many iterations.
+  // The limb size for which the solver's lengths and stiffnesses are chosen. It is size_, or the larger size that suits
+  // the tets if the tets are larger than the thinnest bent limb requires: with the contact distance and the tolerance
+  // of a finger, tets of a thigh would need very many iterations.
   double solver_size_ = 1;
   double spacing_ = 0, finest_ = 0;  // edge length of the tets, and of the smallest tets around joints, mm
   double reach_ = 0;                 // width that scales the meshed region, mm (Fem::reach_mm)

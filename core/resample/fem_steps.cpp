@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-// First lines of the files, which tell their kind. A mesh whose tissue slides has a first line of its own, so that the
+// First lines of the files, which identify their kind. A mesh whose tissue slides has its own first line, so that the
 // files of all other meshes keep their format.
 constexpr std::string_view kMesh = "limber fem mesh 1\n", kSliding = "limber fem mesh 2\n",
                            kStep = "limber fem step 1\n";

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Moves the tet mesh of a whole body to a pose, so that rest and pose have the same tets. The nodes of a bone move
-// rigidly with it. All others move as the tissue around them does (posed_points.h); a node on a seam moves with its own
-// side, and flesh next to bone gives way to it. Where a joint is bent so far that tets turn inside out, nodes of soft
-// tissue move until no tet does.
+// rigidly with it. All other nodes move as the tissue around them (posed_points.h); a node on a seam moves as the
+// tissue on its own side of the seam. Flesh next to bone is shifted so that it stays attached to the bone. Where a
+// joint is bent so far that tets turn inside out, nodes of soft tissue are moved to turn them back.
 #pragma once
 
 #include <cstdint>
