@@ -90,8 +90,8 @@ class Shape {
     return most;
   }
 
-  // Moves the nodes by the smallest sum of squares with which the volumes of the labels grow by `missing`, to first
-  // order. A node at the border of its box moves only if the move leads into the box.
+  // Moves the nodes so that the volumes of the labels grow by `missing` to first order, with the smallest sum of
+  // squared movements. A node at the border of its box moves only if the move leads into the box.
   void correct(const Eigen::VectorXd& missing) {
     gather_gradients();
     const Eigen::Index n = missing.size();

@@ -3,10 +3,10 @@
 // organs included, as in the mesh-type reference phantoms [ICRP Publication 145, 2020].
 //
 // The mesh is that of a surface net over the voxels (surface_net.h), so it cannot fail and every tet is positively
-// oriented. The surfaces between tissues are smoothed. Then the net's nodes move by the smallest sum of squares with
-// which each tissue gets the volume of its voxels (Newton's method on the volumes). Deep inside a tissue tets are
-// larger. Where a seam separates tissue that touches, the mesh has two surfaces with separate nodes at the same
-// positions.
+// oriented. The surfaces between tissues are smoothed. Then the net's nodes are moved so that each tissue gets the
+// volume of its voxels, with the smallest sum of squared movements (Newton's method on the volumes). Deep inside a
+// tissue tets are larger. Where a seam separates tissue that touches, the mesh has two surfaces with separate nodes at
+// the same positions.
 #pragma once
 
 #include <cstdint>
