@@ -19,6 +19,7 @@
 #include "editor/shown/test_pose.h"
 #include "editor/skin/brush_cursor.h"
 #include "editor/skin/label_strokes.h"
+#include "editor/skin/painting.h"
 #include "editor/skin/seam_brush.h"
 #include "editor/skin/weight_display.h"
 #include "editor/skin/weight_layers.h"

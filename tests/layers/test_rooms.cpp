@@ -165,3 +165,36 @@ TEST_CASE("rooms: few files of the editor name the struct that owns its state") 
   CHECK(naming > 0);
   CHECK(naming < 40);
 }
+
+TEST_CASE("rooms: a volume, a click and a dab pass through rooms in their order, down and up once") {
+  // Each walk lists units along the calls of one deed: a unit includes the next and lies in the same room or a later
+  // one. Calls return along the same units, so that a walk leads down once and up once.
+  const std::vector<std::vector<std::string>> walks = {
+      // A label volume from its file, through a pose, to the posed file.
+      {"core/cmd/resample", "core/cmd/body_options", "core/body/body", "core/volume_io/volume_io",
+       "core/volume_io/voxel_source"},
+      {"core/cmd/resample", "core/body/pose_body", "core/resample/posed_voxels", "core/resample/resample",
+       "core/deform/inverse_map", "core/deform/rasterize", "core/deform/lattice"},
+      {"core/body/body", "core/volume_io/volume_io", "core/volume_io/volume_format", "core/volume_io/voxel_writer"},
+      // A click from the window to the document: the event names an operator, whose edit is committed.
+      {"editor/app/editor", "editor/app/event_dispatch", "editor/context/operator"},
+      {"editor/pose/pose_ops", "editor/context/document_edits", "core/project/history", "core/project/document"},
+      // A dab from the pointer to the stroke, and what it changed from there to the texture of weights.
+      {"editor/app/editor", "editor/skin/paint_mode", "editor/skin/painting", "core/paint/stroke",
+       "core/paint/brush_rule"},
+      {"editor/skin/paint_mode", "editor/context/views", "render/view", "render/passes/pass_resources",
+       "render/textures/weight_texture"},
+  };
+  std::map<std::string, int> place;  // of every room, from the lowest of the core to the highest of the editor
+  for (const Floor& floor : kFloors)
+    for (const std::string& room : floor.rooms)
+      place.emplace(room.empty() ? floor.name : floor.name + "/" + room, static_cast<int>(place.size()));
+  const auto included = included_units();
+  for (const std::vector<std::string>& walk : walks)
+    for (std::size_t step = 1; step < walk.size(); ++step) {
+      INFO(walk[step - 1], " to ", walk[step]);
+      REQUIRE(included.contains(walk[step - 1]));
+      CHECK(included.at(walk[step - 1]).contains(walk[step]));
+      CHECK(place.at(room_of(walk[step])) <= place.at(room_of(walk[step - 1])));
+    }
+}
