@@ -101,8 +101,8 @@ void follow_constraints(Clip& clip, const Names& names) {
   take_list(clip, std::move(next));
 }
 
-// Gives the strips' bones other names.
-//   follow  returns the new set of names
+// Replaces the bone names in the strips' lists of bones.
+//   follow  returns the new names for a set of old names
 void follow_strips(Clip& clip, const std::function<std::set<std::string>(const std::set<std::string>&)>& follow) {
   if (!clip.strips) return;
   Strips next = *clip.strips;
@@ -143,7 +143,7 @@ struct GoneOver {
   std::map<std::string, std::string> names;  // old name -> new name
 
   std::string now(const std::string& bone) const { return names.contains(bone) ? names.at(bone) : bone; }
-  // Returns whether `bone` is the name of a removed bone that a mirrored bone takes.
+  // Returns whether `bone` is the name of a removed bone, and a mirrored bone takes this name.
   bool is_left_over(const std::string& bone) const {
     return !names.contains(bone) &&
            std::any_of(names.begin(), names.end(), [&](const auto& name) { return name.second == bone; });

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes a document follow renamed and mirrored bones. The document stores some data by bone name: keys, constraints,
-// library poses, the source joints of clips, pins, pole targets, weight locks and the bone map. Some clips match joints
-// to bones by their names alone. If the new names would change this match, the clip stores its previous joint, rest
-// offset and scale, so that it keeps its motion. A bone that had no joint, and whose new name matches a joint, follows
-// that joint from then on.
+// Updates a document after bones were renamed or mirrored. The document stores some data by bone name: keys,
+// constraints, library poses, the source joints of clips, pins, pole targets, weight locks and the bone map. Some clips
+// match joints to bones by their names alone. If the new names would change this match, the clip stores its previous
+// joint, rest offset and scale, so that it keeps its motion. A bone that had no joint, and whose new name matches a
+// joint, follows that joint from then on.
 #pragma once
 
 #include "core/project/document.h"

@@ -67,7 +67,7 @@ struct Visibility {
 
 // Voxels of a resampled volume that the pose fills twice, as ascending voxel indices.
 struct Overlap {
-  // Voxels that two tissue regions fill that are not adjacent at rest; voxels that two bones fill.
+  // tissue: voxels filled by two tissue regions that are not adjacent at rest. bones: voxels filled by two bones.
   std::vector<std::int64_t> tissue, bones;
 
   bool operator==(const Overlap&) const = default;
@@ -99,7 +99,7 @@ struct Document {
   std::shared_ptr<const FileType> volume_type;  // the format of the file that the volume was read from
   std::shared_ptr<const Armature> armature;
   std::shared_ptr<const SkinWeights> weights;
-  // The shown pose: at first the clip's pose at `frame`, which the user may change.
+  // The shown pose. It is the clip's pose at `frame` until the user changes it.
   std::shared_ptr<const Pose> pose;
   std::shared_ptr<const Visibility> visibility;
   std::vector<std::shared_ptr<const Result>> results;

@@ -47,7 +47,7 @@ class DocumentWriter {
 };
 
 struct ReadLimits {
-  // A document with more bytes of voxels and weights than this is refused; 0: than 90 % of the free memory.
+  // Limit on the bytes of voxels and weights; a larger document is refused. 0: the limit is 90 % of the free memory.
   std::int64_t most_bytes = 0;
   // If true, reading keeps the undamaged parts of the document, and the undamaged blocks of the volume and of weights.
   // Warnings say what is lost. Lost voxels become air. Lost weights get the influences of a neighbouring voxel.

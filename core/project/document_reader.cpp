@@ -554,7 +554,7 @@ class Reading {
         [&](std::int64_t group, const std::string& leaf) {
           const auto first = lengths.begin() + group * kGroupBricks;
           const std::vector<std::uint16_t> counts(first, first + std::min(kGroupBricks, bricks - group * kGroupBricks));
-          // A group of bricks that several sets of weights contain, with equal hash, is in memory once.
+          // Several sets of weights may share a group of bricks (equal hash), which is in memory once.
           auto& known = groups_[node.leaves[group + 1].bytes];
           const bool shared = std::equal(known.begin(), known.end(), counts.begin(), counts.end(),
                                          [](const auto& brick, std::uint16_t count) { return brick->size() == count; });
@@ -716,7 +716,7 @@ class Reading {
     get(in, clip);
     in.require(node.nodes.size() == motions || (!has_motion && !in.at_end() && !reads_strips_));
     if (in.at_end()) return clip;
-    // The clips of strips have no strips of their own, so that reading does not nest deeply.
+    // Strips of these clips are refused (reads_strips_), so that clips cannot be nested deeply.
     std::vector<std::shared_ptr<const Clip>> clips;
     {
       const Restored nested(reads_strips_, true);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Keeps strips together with the clips of the document that they play.
+// Keeps the strips of a document up to date when the clips that they play are edited, renamed or deleted.
 #pragma once
 
 #include "core/project/document.h"
@@ -11,8 +11,9 @@ namespace limber {
 // strips are removed.
 void relink_strips(const Document& before, Document& next);
 
-// Lets the strips of `clip` play the same of `changed`, which is the clip with `ratio` frames in place of each one, as
-// core/motion/clip_speed.h makes it. The playing ranges that were those of the strips stay so.
+// Replaces `clip` by `changed` in all strips that play it. `changed` is the same motion at another speed
+// (core/motion/clip_speed.h), with `ratio` frames for each frame of `clip`. The strips' frames are converted, so that
+// they play the same part of the motion. A clip whose frame range was that of its strips gets their new range.
 void follow_frames(Document& document, const std::shared_ptr<const Clip>& clip,
                    const std::shared_ptr<const Clip>& changed, double ratio);
 
