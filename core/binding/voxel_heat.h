@@ -42,7 +42,7 @@ struct ShareOfProgress {
 };
 
 // Solves for the temperatures of the bones of all blocks in the blocks' bricks, and offers them to `best`. Throws Error
-// if the solve for a bone does not reach its residual, and Cancelled.
+// if the solve for a bone does not reach its residual, and Cancelled if the user cancels.
 void solve_in_voxels(const HeatGraph& heat, const HeatBody& body, const std::vector<BoneBlock>& blocks,
                      const KnownHeat& known, const HeatDiffusion& settings, const ShareOfProgress& share,
                      Progress& progress, BestFour& best, WeightsReport& report);

@@ -172,8 +172,9 @@ class Pieces {
   //     nearest rig bone only if all pieces that it touches follow this bone, its parent or its children. Otherwise it
   //     follows a bone of the pieces that it touches: the nearest one if these bones form a chain, or their common
   //     ancestor.
-  //   - So does a piece that is three times as far and does not touch the own piece of its nearest bone,
-  //     unless it is about as large as that piece and touches the bone's parent (a toe beside a toe).
+  //   - The same holds for a piece that is three times as far, does not touch its nearest bone's own piece, and either
+  //   is much smaller than that own piece or touches no piece of the bone's parent (so that a toe beside a toe keeps
+  //   its nearest bone).
   //   - A piece that is nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());

@@ -24,7 +24,7 @@ constexpr double kReachAside = 0.3;  // smallest reach of a joint's domain in an
 constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
 constexpr double kShaftWidth = 0.1;  // thickness of the innermost tissue that is shaft, share of the shorter bone
 constexpr double kFarAside = 0.35;   // tissue further than this from a bone is never its shaft, share of its length
-constexpr double kCoarse = 0.04;     // voxel size that doubles weights of squared distance, share of the shorter bone
+constexpr double kCoarse = 0.04;     // voxels this large double weights of squared distances; share of the shorter bone
 constexpr double kAway = 8;  // extra weight of cut area where shafts begin; proportional to the squared distance
 // Beyond this distance from the expected cut, as a share of the distance to the shafts, the weight of cut area rises
 // with the fourth power of the distance. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
@@ -43,12 +43,12 @@ constexpr double kMarrow = 4;         // factor on the weight of cut area throug
 constexpr double kBall = 0.02;        // a ball with a smaller radius is ignored; share of the length of its bone
 constexpr double kLargestBall = 0.1;  // a larger radius of a ball is cut to this; share of the length of its bone
 constexpr double kBallCore = 0.8;     // tissue within this share of a ball's radius certainly belongs to the ball
-constexpr double kBallWidth = 0.5;    // radii from a ball at which cut area weighs as much as where shafts begin
+constexpr double kBallWidth = 0.5;    // radii beyond a ball at which cut area weighs as much as where shafts begin
 // Another child of the bone's parent may be attached along the bone, if its head is at least this share of the bone's
 // length away from the bone's head.
 constexpr double kSitsAlong = 0.25;
 constexpr double kClosed = 0.5;  // contact area above which bones count as fused, share of the joint's cross-section
-constexpr double kJointReach = 0.15;  // smallest distance within which a joint's shape is measured, share of the parent
+constexpr double kJointReach = 0.15;  // a joint's shape is measured at least within this distance; share of the parent
 constexpr double kJointSlice = 0.06;  // half thickness of the slice that measures a joint, share of the shorter bone
 constexpr std::int32_t kHard = 1 << 28;
 

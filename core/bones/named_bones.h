@@ -16,7 +16,8 @@ namespace limber {
 
 struct NamedBones {
   ZeroedVector<int> bone;  // rig bone of each voxel of the graph; -1: must be found by shape
-  // Index in `candidates` for each voxel of the graph. Voxels with different indices (groups) are different bones.
+  // Index in `candidates` for each voxel of the graph. Voxels with different indices (groups) belong to different
+  // bones.
   ZeroedVector<std::int32_t> group;
   std::vector<std::vector<int>> candidates;  // for each group, the rig bones that it may follow; empty: any
   ZeroedVector<FoundBy> found_by;            // how the rig bone of each voxel of the graph was found

@@ -12,7 +12,7 @@
 namespace limber {
 
 namespace {
-// Two neighbours in the posed volume count as neighbours at rest if their distance at rest is at most so many voxel
+// Two neighbours in the posed volume count as neighbours at rest if their distance at rest is at most this many voxel
 // edges of the posed grid.
 constexpr double kNeighbours = 3;
 // Weight of the distance from a bone at rest, mm, relative to the error of its motion, mm, in bone_that_carries().

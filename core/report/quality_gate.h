@@ -11,8 +11,10 @@ namespace limber {
 
 struct QualityLimits {
   double tissue_percent = 1;
-  std::int64_t least_voxels = 5000;  // smaller tissues are not judged, in voxels: resampling changes them by up to 2 %
-  double bone_residual_mm = 0.05;   // largest deviation of a bone from a rigid motion: 1/40 of the edge of a 2 mm voxel
+  // In voxels; smaller tissues are not judged, since resampling changes them by up to 2 %.
+  std::int64_t least_voxels = 5000;
+  // Largest deviation of a bone from a rigid motion, mm: 1/40 of the edge of a 2 mm voxel.
+  double bone_residual_mm = 0.05;
   double skin_share_percent = 0.2;  // largest allowed loss of skin, in percent of the surface
   double joint_excess_degrees = 0.1;
   // Limits of the body gates:

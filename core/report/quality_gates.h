@@ -40,7 +40,7 @@ struct Report;
 // Return the body gates or the fine gates, in the order of the lists at the head of this file.
 //   report  JSON text of schema limber-report/1; if it is not JSON, no gate is measured
 std::vector<QualityGate> body_gates(const std::string& report, const QualityLimits& limits = {});
-// returns the fine gates
+// Returns the fine gates.
 std::vector<QualityGate> quality_gates(const std::string& report, const QualityLimits& limits = {});
 std::vector<QualityGate> quality_gates(const Report& report, const QualityLimits& limits = {});
 // Returns the body gates, the fine gates and the gates of a solve (solve_gates.h).
