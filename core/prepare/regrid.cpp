@@ -308,11 +308,14 @@ class Regrid {
     const double in_p = share_of(of_p, between.label), in_q = share_of(of_q, between.label);
     const std::int64_t i = to_.grid.index(p), k = to_.grid.index(q);
     bool p_gives_way = in_p > in_q || (in_p == in_q && i < k);
-    // An air voxel becomes tissue only if most of its box is tissue, so that the body keeps its volume.
-    if (a == 0) p_gives_way = share_of(of_p, 0) < 0.5 * volume_;
-    if (b == 0) p_gives_way = share_of(of_q, 0) >= 0.5 * volume_;
-    const bool take_p = !locked_[i] && (locked_[k] || p_gives_way);
-    if (!take_p && locked_[k]) return std::nullopt;
+    // An air voxel becomes tissue only if most of its box is tissue, so that the body keeps its volume: then the air
+    // voxel is changed, else only the voxel of tissue beside it.
+    const bool keep_p = a == 0 && share_of(of_p, 0) >= 0.5 * volume_;
+    const bool keep_q = b == 0 && share_of(of_q, 0) >= 0.5 * volume_;
+    if (a == 0 || b == 0) p_gives_way = a == 0 ? !keep_p : keep_q;
+    const bool may_p = !locked_[i] && !keep_p, may_q = !locked_[k] && !keep_q;
+    if (!may_p && !may_q) return std::nullopt;
+    const bool take_p = may_p && (!may_q || p_gives_way);
     return Insertion{take_p ? i : k, between.label, take_p ? in_p : in_q};
   }
 

@@ -172,6 +172,31 @@ TEST_CASE("regrid: layers thinner than a voxel stay closed") {
     }
 }
 
+TEST_CASE("regrid: a voxel that is mostly air stays air, also between layers that are closed") {
+  // Skin, fat and muscle in random voxels with gaps of air between them, as in a volume of separate structures.
+  LabelVolume volume = empty_volume(glm::ivec3(36), glm::dvec3(1));
+  std::mt19937 random(7);
+  for (Label& label : volume.voxels) label = random() % 5 < 3 ? Label(0) : static_cast<Label>(1 + random() % 3);
+  for (const int ratio : {2, 3}) {
+    const LabelVolume coarse = regrid(volume, glm::dvec3(ratio));
+    int tissue = 0, grown = 0;
+    const glm::ivec3 size = coarse.grid.size;
+    for (int z = 0; z < size.z; ++z)
+      for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+          if (coarse.at({x, y, z}) == 0) continue;
+          ++tissue;
+          int air = 0;
+          for (int n = 0; n < ratio * ratio * ratio; ++n)
+            air += volume.at(glm::ivec3(x, y, z) * ratio +
+                             glm::ivec3(n % ratio, n / ratio % ratio, n / ratio / ratio)) == 0;
+          grown += 2 * air > ratio * ratio * ratio;
+        }
+    CHECK(tissue > 0);
+    CHECK(grown == 0);
+  }
+}
+
 TEST_CASE("regrid: tissue that lies open in the volume stays open") {
   // Fat (4) under skin (1) is cut through. On the cut, fat touches air, and this stays allowed.
   LabelVolume volume = empty_volume({24, 24, 24});
