@@ -59,8 +59,8 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
                const Report& report, const PosingEvents& events, const std::function<void(BodyInPose&)>& on_posed,
                Progress& progress);
 
-// Completes the report of a posed body: settings, turned joints, measures and gates. Call it once, when nothing else
-// needs posed.posed.report: that part is moved into posed.report.
+// Completes the report of a posed body: settings, joints that the pose turns, measures and quality gates. Call it once,
+// when nothing else needs posed.posed.report: that part is moved into posed.report.
 void measure_posed_body(const Body& body, const PosingSettings& settings, BodyInPose& posed);
 
 }  // namespace limber

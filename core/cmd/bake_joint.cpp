@@ -46,7 +46,7 @@ void print_errors(const char* name, const std::vector<BakeError>& errors) {
     print("%-8s %+9.1f %9.2f %9.2f %9.2f\n", name, error.degrees, error.flesh_mm, error.skin_mm, error.largest_mm);
 }
 
-// Prints how far the baked joint is from finite elements, at the baked angles and between them.
+// Prints how far shapes of the baked joint differ from those of finite elements, at the baked angles and between them.
 void print_bake(const BakedJoint& joint) {
   print("%-8s %9s %9s %9s %9s\n", "", "degrees", "flesh mm", "skin mm", "most mm");
   print_errors("baked", joint.at_baked);

@@ -31,7 +31,8 @@ void add_mesh_options(CLI::App& command, MeshOptions& options, const std::string
 BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const TissueTable& tissues,
                  const MeshOptions& options, Progress& progress);
 
-// Writes the mesh, whose regions are labels, with organ numbers, in the format of the name's extension.
+// Writes a mesh whose regions are labels, in the format of the name's extension. The file gets organ numbers instead of
+// labels (export/tet_phantom.h).
 void write_mesh(TetMesh mesh, const LabelVolume& volume, const TissueTable& tissues, const std::string& unit,
                 const std::string& name, Progress& progress);
 

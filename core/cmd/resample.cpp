@@ -303,7 +303,8 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
                        .baked = std::move(baked)}};
 }
 
-// Writes the outputs and the report of one posed volume. Returns false if a gate failed that makes --strict fail.
+// Writes the outputs and the report of one posed volume. Returns false if a quality gate failed for which a command
+// with --strict fails.
 bool finish(const Options& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
             const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total, Progress& progress) {
   const std::shared_ptr<const FemShape> shape = posed.posed.shape;

@@ -37,8 +37,8 @@ constexpr double kSoleSlope = 23 * kDegree;   // slope from the toes up to the a
 constexpr double kToeSlope = 8 * kDegree;     // slope from the toes' tips up to their base, with the sole on the ground
 constexpr double kBackwards = 110 * kDegree;  // a foot turned further than this from forward points backwards
 constexpr double kSteepFoot = 75 * kDegree;   // a foot that points down more steeply than this has no heading
-// The pronation is assumed if the hand does not show where its palm faces. If the upper arm is raised from hanging by
-// more than this angle, the thumb is assumed to point forward, else the palm.
+// If the hand does not show where its palm faces, its pronation is assumed. If the upper arm is raised from hanging by
+// more than this angle, the thumb is assumed to point forward, else the palm is assumed to face forward.
 constexpr double kRaisedArm = 22.5 * kDegree;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);

@@ -20,7 +20,7 @@ constexpr double kTie = 1e-9;
 // Upper limit of the rounds in which lost layers are restored. A round may cause another one: a voxel that becomes skin
 // may touch labels that skin did not touch before. In practice two rounds suffice.
 constexpr int kMostRounds = 8;
-constexpr int kBalancingRounds = 40;  // of balanced_regrid(); counts are then near those wanted
+constexpr int kBalancingRounds = 40;  // number of rounds of balanced_regrid(); counts are then near those wanted
 
 struct Share {
   Label label;
@@ -141,7 +141,7 @@ class Regrid {
     return best;
   }
 
-  // Gives a label that has no voxel, but the volume of half a voxel or more, the voxel in which it has most.
+  // If a label has no voxel, but the volume of half a voxel or more, gives it the voxel in which its share is largest.
   void keep_small(const std::vector<Mixed>& mixed, const std::vector<double>& wanted) {
     std::vector<std::int64_t> count(65536, 0), best_at(65536, -1);
     std::vector<double> most(65536, 0);

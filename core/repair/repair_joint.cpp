@@ -23,7 +23,7 @@ namespace {
 // all passes together smooth over about 1.6 voxels.
 constexpr int kSmoothing = 10;
 constexpr double kSmoothingAmount = 0.75;
-constexpr int kMostRounds = 4;  // the repair ends after so many rounds of correction; each of them resamples the body
+constexpr int kMostRounds = 4;  // upper limit on the rounds of correction; each of them resamples the body
 // Factor by which the costs of folds and overlap grow after a round in which more tissue overlaps than before.
 constexpr double kMoreCare = 5;
 // A turn's weight is 1 / (its own volume change + this share of the mean volume change of all turns).

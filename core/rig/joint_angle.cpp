@@ -9,7 +9,7 @@ namespace limber {
 namespace {
 
 constexpr double kShown = 0.05;  // degrees; smaller angles are not mentioned, since texts show one decimal
-// Cosine of 60 degrees: at a larger angle to the hinge axis, a rotation axis gets no reading.
+// Cosine of 60 degrees. If a rotation axis is at a larger angle to the hinge axis, read_joint() returns nothing.
 constexpr double kAcross = 0.5;
 
 }  // namespace
