@@ -54,7 +54,7 @@ void print_bake(const BakedJoint& joint) {
   const BakeError worst = worst_between(joint);
   print(
       "%s is baked from %+.4g to %+.4g degrees, %lld nodes at %lld angles. Between them, at %+.4g degrees, 95 %% of "
-      "flesh is within %.2f mm and of skin within %.2f mm of finite elements.\n",
+      "flesh is within %.2f mm and of skin within %.2f mm of the finite element solution.\n",
       one_line(joint.bone).c_str(), joint.degrees.front(), joint.degrees.back(),
       static_cast<long long>(joint.nodes.size()), static_cast<long long>(joint.degrees.size() - 1), worst.degrees,
       worst.flesh_mm, worst.skin_mm);

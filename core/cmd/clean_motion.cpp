@@ -46,7 +46,7 @@ std::vector<double> numbers_in(std::string_view text, char between, const std::s
   for (std::size_t from = 0; from <= text.size();) {
     const std::size_t to = std::min(text.find(between, from), text.size());
     const auto number = number_of<double>(text.substr(from, to - from));
-    if (!number || !std::isfinite(*number)) throw Error("a hold is not understood", where, kHoldForm);
+    if (!number || !std::isfinite(*number)) throw Error("the value of --hold is not valid", where, kHoldForm);
     numbers.push_back(*number);
     from = to + 1;
   }
@@ -58,7 +58,7 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
               const std::vector<Pose>& poses) {
   const std::string where = "--hold \"" + value + "\"";
   const std::size_t at = value.rfind('@'), equals = value.find('=');
-  if (at == std::string::npos) throw Error("a hold is not understood", where, kHoldForm);
+  if (at == std::string::npos) throw Error("the value of --hold is not valid", where, kHoldForm);
   const std::string name = value.substr(0, std::min(at, equals));
   Plant hold;
   const auto found = std::find_if(limbs.begin(), limbs.end(), [&](const PlantedLimb& l) { return l.name == name; });
@@ -71,7 +71,7 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
   const std::vector<double> frames = numbers_in(std::string_view(value).substr(at + 1), '-', where);
   const double last = static_cast<double>(poses.size()) - 1;
   if (frames.size() != 2 || frames[0] != std::floor(frames[0]) || frames[1] != std::floor(frames[1]))
-    throw Error("a hold is not understood", where, kHoldForm);
+    throw Error("the value of --hold is not valid", where, kHoldForm);
   if (frames[0] < 0 || frames[1] < frames[0] || frames[1] > last)
     throw Error("the motion does not have these frames", where,
                 "choose frames from 0 to " + std::to_string(static_cast<int>(last)));
@@ -82,7 +82,7 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
     return hold;
   }
   const std::vector<double> place = numbers_in(std::string_view(value).substr(equals + 1, at - equals - 1), ',', where);
-  if (place.size() != 3) throw Error("a hold is not understood", where, kHoldForm);
+  if (place.size() != 3) throw Error("the value of --hold is not valid", where, kHoldForm);
   hold.place = {place[0], place[1], place[2]};
   constexpr double kFarthest = 1e6;  // larger coordinates are refused, mm
   for (const double one : place)
@@ -95,7 +95,7 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
 void print_plants(const std::vector<Plant>& plants, const Armature& rig, const std::vector<PlantedLimb>& limbs,
                   const std::vector<Pose>& before, const std::vector<Pose>& after) {
   if (plants.empty()) return;
-  print("%-12s %-6s %12s %14s %14s %14s\n", "limb", "point", "frames", "slid before", "slides now", "off its place");
+  print("%-12s %-6s %12s %14s %14s %14s\n", "limb", "point", "frames", "slid before", "slides now", "off target");
   for (const Plant& plant : plants) {
     const PlantError was = error_of(plant, rig, limbs, before), is = error_of(plant, rig, limbs, after);
     const std::string frames = std::to_string(plant.first) + "-" + std::to_string(plant.last);
@@ -127,7 +127,7 @@ std::vector<Pose> changed(const Options& options, const Armature& rig, double ra
                              .stays = options.on_the_spot});
   print(
       "Where repeats meet, poses differ by up to %.1f degrees%s%s; blending them turns bones up to %.2f times as "
-      "fast.\n",
+      "fast as in the original motion.\n",
       loop.gap_degrees, loop.gap_bone.empty() ? "" : ", in ", loop.gap_bone.c_str(), loop.haste);
   if (loop.haste > 1.5)
     warn("bones turn too fast where repeats meet: use a motion of a whole cycle, or a longer --seam");

@@ -44,8 +44,8 @@ void export_body(const Exporter& exporter, const VolumeFile& file, const Options
 void convert_volume(const Options& options) {
   const Exporter* exporter = exporter_for(options.out);
   if (exporter && !exporter->takes_voxels)
-    throw Error("a volume has no mesh to write", options.out,
-                "`limber mesh` and `limber resample --mesh-out` make one");
+    throw Error("this format stores a tet mesh, which a volume does not have", options.out,
+                "make one with `limber mesh` or `limber resample --mesh-out`");
   if (exporter && exporter->needs_frequency && !options.material.frequency)
     materials_of({}, options.material, options.out);  // throws an Error that says which option is missing
   if (exporter) check_place(options.out);

@@ -64,7 +64,7 @@ void write(const Options& options, const Study& study, const std::vector<CellOut
 void run(const Options& options, const std::string& commit, const StartPictures& pictures) {
   CommandProgress progress(options.run.progress);
   if (options.study != "arm" && !options.folder.empty())
-    throw Error("only the arm's study takes a folder", options.folder,
+    throw Error("only the built-in study arm takes a folder", options.folder,
                 "write: limber experiment arm " + options.folder + " -o " + options.out);
   Study study = options.study == "arm" ? paper_study(options.folder) : read_study(options.study);
   if (!options.methods.empty()) study.techniques = techniques_of(options.methods, "--methods");

@@ -170,8 +170,9 @@ void add_fk(CLI::App& app) {
       "fk", "prints the world positions and rotations of every joint of a rig or a motion (forward kinematics)");
   auto options = std::make_shared<FkOptions>();
   command
-      ->add_option("FILE", options->file,
-                   "a rig (posed, LPS mm, rotations from rest) or a BVH (its own axes and units)")
+      ->add_option(
+          "FILE", options->file,
+          "a rig (prints posed positions in LPS mm, rotations from rest) or a BVH (prints its own axes and units)")
       ->required();
   auto* json =
       command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");

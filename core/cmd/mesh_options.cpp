@@ -40,10 +40,10 @@ void warn_of_volumes(const TetMesh& mesh, const std::vector<double>& wanted, con
   }
   if (off == 0) return;
   const Tissue* tissue = tissues.find(static_cast<Label>(worst));
-  warn("the mesh misses the volume of " + std::to_string(off) + (off == 1 ? " tissue" : " tissues") +
-       " by more than 1 %, most of all " + (tissue && !tissue->name.empty() ? tissue->name : std::to_string(worst)) +
+  warn("in the mesh, the volume of " + std::to_string(off) + (off == 1 ? " tissue is off" : " tissues is off") +
+       " by more than 1 %, most for " + (tissue && !tissue->name.empty() ? tissue->name : std::to_string(worst)) +
        ", which has " + std::to_string(int(std::lround(100 * mm3[worst] / wanted[worst]))) +
-       " % of its volume: use a smaller spacing");
+       " % of its volume in the voxels: use a smaller spacing");
 }
 }  // namespace
 

@@ -134,7 +134,7 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
           static_cast<long long>(closed.bare_bone_voxels));
   if (closed.is_padded) print("skin: the volume was grown by one voxel on every side to hold the skin\n");
   if (closed.enclosed_voxels > 0)
-    print("skin: it encloses %lld voxels of air\n", static_cast<long long>(closed.enclosed_voxels));
+    print("skin: the new skin encloses %lld voxels of air\n", static_cast<long long>(closed.enclosed_voxels));
   return std::move(closed.volume);
 }
 
@@ -255,10 +255,10 @@ void add_prepare(CLI::App& app) {
           "--skin-label", options->skin_label,
           "with --close-skin: label value or name that new skin gets (default: the nearest tissue that is skin)")
       ->needs(close);
-  auto* seams = writes(
-      command->add_option("--seams", options->seams,
-                          "finds where limbs touch without being connected (hand on hip, thigh on thigh) and writes "
-                          "the faces between them as a label volume: 1 towards x, 2 towards y, 4 towards z, summed"));
+  auto* seams = writes(command->add_option(
+      "--seams", options->seams,
+      "finds where limbs touch without being connected (hand on hip, thigh on thigh) and writes "
+      "the faces between them as a label volume: a voxel has the sum of 1, 2 and 4 for faces towards x, y and z"));
   auto* rig = command->add_option("--rig", options->rig, "seams: the rig whose bones define the limbs");
   seams->needs(rig);
   rig->needs(seams);

@@ -59,7 +59,7 @@ void require(bool holds, const std::string& what, const std::string& where, cons
 void require_new(const Path& path, bool replace) {
   check_place(path);
   std::error_code unreadable;
-  require(replace || !std::filesystem::exists(path, unreadable), "a file of that name is there already", path.string(),
+  require(replace || !std::filesystem::exists(path, unreadable), "a file of this name exists already", path.string(),
           "use another name, or add --replace");
 }
 
@@ -79,12 +79,12 @@ void read_body_parts(const Options& options, Document& document, Progress& progr
 Document read_parts(const Options& options, Progress& progress) {
   Document document;
   require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true,
-          "tissues and weights belong to a volume", options.file, "write it after create");
+          "tissues and weights need a volume", options.file, "name the volume's file after create");
   require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true,
-          "weights and poses belong to a rig", options.file, "name it with --rig");
+          "weights and poses need a rig", options.file, "name it with --rig");
   require(options.part.empty() ? options.seams.empty() && options.bone_map.empty() : true,
-          "seams and bone maps belong to a volume", options.file, "write it after create");
-  require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map belongs to a rig", options.file,
+          "seams and bone maps need a volume", options.file, "name the volume's file after create");
+  require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map needs a rig", options.file,
           "name it with --rig");
   if (!options.part.empty()) read_body_parts(options, document, progress);
   if (!options.rig.empty()) {
@@ -169,7 +169,7 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   std::string failure;
   try {
     Project project = read_project(options.file, progress);
-    print("no unsaved edits were found; what the project holds is kept\n");
+    print("no unsaved edits were found; the project is written as it was saved\n");
     return project;
   } catch (const ProjectInUse&) {
     throw;
@@ -180,7 +180,7 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   require(std::filesystem::is_regular_file(options.file, error), "the project does not exist", options.file,
           "check the name");
   chunks = std::make_unique<CarvedChunks>(options.file, progress);
-  require(!chunks->latest_first().empty(), "nothing of a project was found", options.file,
+  require(!chunks->latest_first().empty(), "no part of a project was found", options.file,
           "name a .limber file, or open an earlier copy");
   warn(failure);
   add_help(*chunks, options, progress);

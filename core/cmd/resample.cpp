@@ -139,8 +139,9 @@ void check_sequence(const Options& options) {
                 "leave --frame or --frames out");
   if (options.fit_joints)
     throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints",
-                "fit each first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
-  if (!options.steps.empty()) throw Error("--steps excludes --frames", "--steps " + options.steps, "leave it out");
+                "fit each joint first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
+  if (!options.steps.empty())
+    throw Error("--steps and --frames exclude each other", "--steps " + options.steps, "leave one of the two out");
   for (const std::string& output :
        {options.output, options.report, options.grey, options.field, options.jacobian, options.overlap,
         options.mesh_out, options.solver_mesh, options.landmarks, options.fem->pressure})
@@ -158,7 +159,7 @@ void check_method(const Options& options) {
     throw Error("baked joints correct dual quaternions only", "--method " + options.method,
                 "use --method dqs, or leave --baked out");
   if (!options.baked.empty() && options.fit_joints)
-    throw Error("a joint is baked around the axis that it had, which --fit-joints moves", "--fit-joints",
+    throw Error("--fit-joints moves the axis around which a joint was baked", "--fit-joints",
                 "leave one of the two out, or bake with the fitted rig");
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
@@ -460,7 +461,8 @@ void add_resample(CLI::App& app) {
       "exit with code 5 when a quality gate fails: measures the result as for --report, and still writes all outputs");
   command->add_option("--spacing", options->spacing, "voxel size of the output, mm (default: same as the input)")
       ->check(CLI::Range(1e-9, 1e6));
-  command->add_flag("--nearest", options->nearest, "takes the label of the nearest voxel at rest, not interpolated");
+  command->add_flag("--nearest", options->nearest,
+                    "takes the label of the nearest voxel at rest, without interpolation");
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact,
                                        "restores the rest volume of each soft tissue, by changing as few voxels at "
                                        "tissue borders as possible, the least certain first");

@@ -46,7 +46,7 @@ class CaseReader {
       skin.bones.push_back(skin_transform(pose * bone_from_world, rest));
     }
     const auto flat = numbers(json_, "rest");
-    if (flat.size() % 3 != 0) fail("\"rest\" is not flat xyz", "give three numbers a point");
+    if (flat.size() % 3 != 0) fail("\"rest\" is not a list of x, y, z numbers", "give three numbers for each point");
     for (size_t i = 0; i < flat.size(); i += 3) skin.points.emplace_back(flat[i], flat[i + 1], flat[i + 2]);
     read_influences(skin);
     return skin;

@@ -189,7 +189,7 @@ std::string slicer_xml(CLI::App& command, const std::string& name) {
   for (const std::string& group : groups) {
     if (parameters[group].empty()) continue;
     text += group == kNeeded ? "  <parameters>\n" : "  <parameters advanced=\"true\">\n";
-    text += line(2, "label", group) + line(2, "description", group == kNeeded ? "What is read and written" : group);
+    text += line(2, "label", group) + line(2, "description", group == kNeeded ? "Files to read and to write" : group);
     text += parameters[group] + "  </parameters>\n";
   }
   return text + "</executable>\n";

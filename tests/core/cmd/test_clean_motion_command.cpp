@@ -184,7 +184,7 @@ TEST_CASE("clean-motion command: what cannot be cleaned is one clear line, and n
   refused({"--plant-feet"}, "no leg");
   refused({"--loop", "2", "--seam", "100000"}, "the blend at the seam is longer");
   refused({"--hold", "tail@0-1"}, "no limb of this name");
-  refused({"--hold", "hand"}, "a hold is not understood");
+  refused({"--hold", "hand"}, "the value of --hold is not valid");
   for (const char* value : {"hand=1,2@0-1", "hand=1,2,nan@0-1", "hand@0", "hand@0-", "hand@0.5-1", "hand=@0-1",
                             "hand=1,2,3@1-0", "hand=1e300,0,0@0-1", "hand@0-99999", "@", ""})
     refused({"--hold", value}, "--hold");

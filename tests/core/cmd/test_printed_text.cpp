@@ -117,7 +117,7 @@ TEST_CASE("printed text: a full disk or a closed stdout is told, and no command 
       CAPTURE(to);
       CAPTURE(run.err);
       CHECK(run.exit_code == 1);
-      CHECK(run.err.find("limber: what was printed could not be written") != std::string::npos);
+      CHECK(run.err.find("limber: the printed text could not be written") != std::string::npos);
     }
   CHECK(run_shell(program + " fk nothing.json > /dev/full").exit_code == 1);
 }

@@ -223,7 +223,7 @@ TEST_CASE(
   put_bytes(hit, std::string(100'000, '\x0d'));
   const ProgramRun run = run_limber({"project", hit, "recover", "-o", folder / "out.limber"});
   CHECK(run.exit_code == 1);
-  CHECK(run.err.find("nothing of a project was found") != std::string::npos);
+  CHECK(run.err.find("no part of a project was found") != std::string::npos);
   CHECK_FALSE(fs::exists(folder / "out.limber"));
 }
 
