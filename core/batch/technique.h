@@ -21,11 +21,11 @@ struct Technique {
   Technique plain() const { return {method, contact, false}; }
   bool operator==(const Technique&) const = default;
 };
-std::vector<Technique>
-plain_techniques();             // all techniques without the correction that keeps the volume of each soft tissue
-std::string technique_words();  // the words of plain_techniques(): "mix, lbs, dqs, fem, fem-contact"
-std::string word_of(
-    const Technique& technique);  // "fem-contact", "fem-mass-exact": the word in descriptions, folder names and tables
+// Returns all techniques without the correction that keeps the volume of each soft tissue.
+std::vector<Technique> plain_techniques();
+std::string technique_words();  // returns the words of plain_techniques(): "mix, lbs, dqs, fem, fem-contact"
+// Returns the word for a technique in descriptions, folder names and tables, such as "fem-contact", "fem-mass-exact".
+std::string word_of(const Technique& technique);
 std::string title_of(const Technique& technique);  // returns text such as "FEM with contact", "FEM, mass-exact"
 // Returns the techniques with the given words ("lbs", "fem-contact"). Throws Error for a word that is unknown or occurs
 // twice; `where` names the source of the words in the message.

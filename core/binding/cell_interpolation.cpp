@@ -197,7 +197,8 @@ class BrickInterpolation {
   const CellTemperatures& temperatures_;
   BestFour& best_;
   // Memory that is reused from cell to cell.
-  std::vector<int> from_, next_;  // index in voxels_ of the first voxel of each cell
+  // Indices in voxels_, for each cell: its first voxel; the entry for its next voxel while voxels are being sorted.
+  std::vector<int> from_, next_;
   std::array<std::pair<std::int64_t, glm::ivec3>, 512> voxels_;
   std::array<std::int32_t, 27> around_;  // the 27 cells in and around a cell; -1: no link leads to that cell
   std::array<float, 6> distance_;

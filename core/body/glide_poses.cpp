@@ -12,7 +12,7 @@
 namespace limber {
 
 namespace {
-constexpr double kLongest = 50;  // a request for a longer shift is refused, mm
+constexpr double kLongest = 50;  // mm; a request for a longer shift is refused
 // With the word `voxel`, a bone may move by at most this share of a voxel's edge. It is below 1 because of rounding
 // errors.
 constexpr double kOfAVoxel = 0.99;

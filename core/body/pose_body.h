@@ -49,7 +49,7 @@ struct BodyInPose {
   std::vector<RigidTransform> asked;  // #bones: motions from rest to the requested pose, with the body's original rig
   const SkinWeights& weights;         // the weights of the bound body
   Posed posed;
-  Report report;  // warnings, shifted joints and times; see measure_posed_body()
+  Report report;  // warnings, shifted joints and times; measure_posed_body() adds the rest
 };
 
 // Computes each pose of a sequence and calls on_posed for it. With finite elements, each solve starts from the shape

@@ -13,7 +13,7 @@
 namespace limber {
 
 namespace {
-constexpr std::uint64_t kLargestMap = 1 << 20;  // a larger bone map file is refused, bytes
+constexpr std::uint64_t kLargestMap = 1 << 20;  // bytes; a larger bone map file is refused
 
 // Finds the rig bones that belong to a region of the body, by the meaning of the bones' names.
 class RigRegions {

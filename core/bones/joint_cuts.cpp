@@ -24,8 +24,8 @@ constexpr double kReachAside = 0.3;  // smallest reach of a joint's domain in an
 constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
 constexpr double kShaftWidth = 0.1;  // thickness of the innermost tissue that is shaft, share of the shorter bone
 constexpr double kFarAside = 0.35;   // tissue further than this from a bone is never its shaft, share of its length
-constexpr double kCoarse = 0.04;     // voxels this large double weights of squared distances; share of the shorter bone
-constexpr double kAway = 8;  // extra weight of cut area where shafts begin; proportional to the squared distance
+constexpr double kCoarse = 0.04;  // at this voxel size, weights of squared distances double; share of the shorter bone
+constexpr double kAway = 8;  // extra weight of cut area where shafts begin; rises with the squared distance to the cut
 // Beyond this distance from the expected cut, as a share of the distance to the shafts, the weight of cut area rises
 // with the fourth power of the distance. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
 constexpr double kSteep = 0.4;
@@ -203,7 +203,7 @@ class Cut {
 
  private:
   struct Voxel {
-    std::int32_t at;  // index in the graph
+    std::int32_t at;  // index of the voxel in the graph
     int nearest;      // 0 or 1: the nearer one of the two bones
     bool is_allowed;  // true: the voxel may follow the bone that `nearest` names
     int shaft;        // 0 or 1: the bone whose shaft holds the voxel; -1: none

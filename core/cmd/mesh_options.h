@@ -18,7 +18,7 @@ namespace limber::cmd {
 struct MeshOptions {
   std::optional<double> spacing;  // distance between the nodes of a surface, mm; none: the voxel size
   int relaxations = BodyMeshSettings{}.relaxations;
-  std::string unit = "mm";  // of the file: "mm" or "cm"
+  std::string unit = "mm";  // unit of the mesh's file: "mm" or "cm"
 };
 
 // Adds the options of a body's mesh: its spacing, its smoothing and its unit.

@@ -106,8 +106,8 @@ Document read_parts(const Options& options, Progress& progress) {
   if (!options.seams.empty()) document.seams = shared(read_seams(options.seams, *document.volume, progress));
   if (!options.bone_map.empty()) {
     document.bone_map = shared(read_bone_map(options.bone_map));
-    bones_of_labels(*document.tissues, *document.armature,
-                    *document.bone_map);  // throws Error for an unknown label or bone
+    // Throws Error for an unknown label or bone.
+    bones_of_labels(*document.tissues, *document.armature, *document.bone_map);
   }
   if (!options.motion.empty()) {
     const auto motion = shared(read_motion(options.motion, options.up));

@@ -9,10 +9,10 @@ namespace limber {
 namespace {
 
 enum State : std::uint8_t {
-  kSettled,  // has another label, or was filled; its label counts for its neighbours
-  kKept,     // has the erased label and keeps it
-  kPending,  // still to be filled
-  kQueued,   // still to be filled, and in the list of the current layer
+  kSettled,  // the voxel has another label, or was filled; its label counts for its neighbours
+  kKept,     // the voxel has the erased label and keeps it
+  kPending,  // the voxel is still to be filled
+  kQueued,   // the voxel is still to be filled, and is in the list of the current layer
 };
 
 // The labels in the bounding box of the pending voxels, enlarged by one voxel on each side within the grid.

@@ -39,7 +39,7 @@ Motion arm_curl(const Armature& armature) {
 // opposite to the leg of its side.
 Motion walk(const Armature& armature) {
   constexpr double kStride = 1300;                  // length of a stride, mm
-  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // rotation axes: swing a hanging limb forward; turn left
+  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // axes of rotations that swing a hanging limb forward and turn left
   const auto bump = [](double phase, double centre, double width) {
     const double d = std::remainder(phase - centre, 1.0) / width;
     return std::exp(-d * d);

@@ -33,7 +33,7 @@ double cone_distance(const Cone& cone, const glm::dvec3& p) {
 }
 
 double ellipsoid_distance(const Ellipsoid& ellipsoid, const glm::dvec3& p) {
-  const glm::dvec3 q = (p - ellipsoid.frame.origin) * ellipsoid.frame.axes / ellipsoid.radii;  // v * M = M^T v
+  const glm::dvec3 q = (p - ellipsoid.frame.origin) * ellipsoid.frame.axes / ellipsoid.radii;  // v * M is M^T v in GLM
   const double k0 = glm::length(q), k1 = glm::length(q / ellipsoid.radii);
   return k1 > 0 ? k0 * (k0 - 1) / k1 : -std::min({ellipsoid.radii.x, ellipsoid.radii.y, ellipsoid.radii.z});
 }

@@ -24,8 +24,8 @@ constexpr double kSmallestBody = 1e4;  // volume of the smallest body, mm3; smal
 constexpr double kLeastShare = 0.02;
 // Volume of the smallest bone, mm3; smaller specks are noise and get no bone label.
 constexpr double kSmallestBone = 150;
-constexpr double kLargestMarrow =
-    1.5e5;  // mm3; larger cavities in bone, such as that of a closed skull, contain no marrow
+// Largest cavity in bone that may contain marrow, mm3; that of a closed skull, for example, is larger.
+constexpr double kLargestMarrow = 1.5e5;
 constexpr double kSmallestLung = 5e4;  // volume of the smallest lung, mm3; smaller regions are not labelled as lung
 constexpr double kPureAir = -950;      // Hounsfield units; lungs are denser than this, gas in the bowel is not
 

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
-constexpr double kLargestSpacing = 1e6;  // a larger spacing, mm, is refused, as it is in volumes that are read
+constexpr double kLargestSpacing = 1e6;  // mm; a larger spacing is refused, as in volume files
 // Labels whose shares of a voxel's volume differ by less than this have equal shares: the shares are sums of rounded
 // products.
 constexpr double kTie = 1e-9;

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostRoots = 64;       // number of root nodes (one for each save) that are tried, latest first
 constexpr int kMostCandidates = 16;  // number of nodes that are tried for one part of the document
-constexpr std::size_t kLargestNode = std::size_t{4} << 20;  // a larger chunk, in packed bytes, is not tried as a node
+constexpr std::size_t kLargestNode = std::size_t{4} << 20;  // packed bytes; a larger chunk is not tried as a node
 
 bool is_empty(const Document& document) { return document == Document{}; }
 

@@ -154,6 +154,6 @@ inline std::uint8_t packed_reference(const Clip& clip) {
 // Size of the leaves of voxels or long text, bytes. The last leaf may be smaller.
 constexpr std::int64_t kLeafBytes = std::int64_t{1} << 20;
 constexpr std::int64_t kGroupBricks = 32;  // number of weight bricks whose influences fill one leaf, 256 KB at most
-constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // a larger part, bytes, goes into leaves
+constexpr std::size_t kInlineBytes = std::size_t{64} << 10;  // bytes; a larger part goes into leaves
 
 }  // namespace limber

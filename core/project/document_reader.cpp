@@ -182,7 +182,7 @@ void get(ByteReader& in, BoneMap& map) {
 }
 
 void get(ByteReader& in, Measurements& measurements) {
-  constexpr double kFarthest = 1e6;  // a measured point this far from the origin or further, mm, is refused
+  constexpr double kFarthest = 1e6;  // mm; a measured point this far from the origin or further is refused
   measurements.resize(in.count(13));
   std::set<std::string> names;
   for (Measurement& one : measurements) {

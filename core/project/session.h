@@ -35,8 +35,8 @@ struct SessionSettings {
   std::function<void()> on_change;  // called from any thread when status() has changed
   double retry_seconds = 1;         // seconds until a failed write is tried again
   double watch_seconds = 2;         // seconds between checks of the project file
-  // Size above which a journal is started anew once it has also grown to several times its first size.
-  std::int64_t large_journal = std::int64_t{256} << 20;  // the size, bytes
+  // Size, bytes, above which a journal is started anew once it has also grown to several times its first size.
+  std::int64_t large_journal = std::int64_t{256} << 20;
 };
 
 struct SessionStatus {

@@ -14,11 +14,11 @@ namespace limber {
 
 namespace {
 
-// Wanted edge length of a cell: a blend over 20 mm then spans two cells.
-constexpr double kCellEdge = 8;  // edge length, mm
-// Distance from a bone over which the mask rises from 0 to 1, so that soft tissue near bone keeps the bone's weights,
-// as heat weights do.
-constexpr double kBoneFade = 8;  // width of the fade, mm
+// Wanted edge length of a cell, mm: a blend over 20 mm then spans two cells.
+constexpr double kCellEdge = 8;
+// Distance from a bone, mm, over which the mask rises from 0 to 1, so that soft tissue near bone keeps the bone's
+// weights, as heat weights do.
+constexpr double kBoneFade = 8;
 // Distances from the joint, as shares of a bone's length, at which the mask begins to fall and at which it becomes 0.
 constexpr double kReachBegin = 0.6, kReachEnd = 0.95;
 // In a voxel, the mask rises from 0 to 1 as the weight of the joint's own bones and their neighbours rises from

@@ -11,9 +11,9 @@ namespace limber {
 
 namespace {
 
-// Lower limit of the distance between circles and between samples on a circle, which is otherwise two voxels. Finer
-// steps are not needed, as overlaps are as wide as layers of tissue.
-constexpr double kLeastStep = 3;  // smallest distance of samples, mm
+// Lower limit, mm, of the distance between circles and between samples on a circle, which is otherwise two voxels.
+// Finer steps are not needed, as overlaps are as wide as layers of tissue.
+constexpr double kLeastStep = 3;
 // Upper limit on the angle of a gap, radians: wider gaps are not closed by any turn.
 constexpr double kWidestTurn = std::numbers::pi;
 

@@ -78,7 +78,7 @@ std::vector<std::int32_t> tets_of_voxels(const Eigen::MatrixX4i& T, const Eigen:
   const AffineTransform to_voxel = voxel_from_world(grid);
   std::vector<glm::dvec3> nodes(V.rows());
   for (std::size_t v = 0; v < nodes.size(); ++v) nodes[v] = to_voxel * glm::dvec3(V(v, 0), V(v, 1), V(v, 2));
-  const bool mirrored = glm::determinant(to_voxel.linear) < 0;  // tets are inverted in voxel coordinates
+  const bool mirrored = glm::determinant(to_voxel.linear) < 0;  // true: tets are inverted in voxel coordinates
 
   // A thread handles whole layers of bricks (cubes of 8^3 voxels). Layers share no voxel, so no two threads write the
   // same voxel.

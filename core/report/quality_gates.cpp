@@ -101,8 +101,8 @@ QualityGate gate_of_limits() {
 struct LimitFigures {
   bool turned = true;              // false: the report names no turned joint
   int limited = 0, unlimited = 0;  // number of joints with limits and without
-  double excess_degrees = 0;       // degrees beyond its limits of the joint that exceeds them most
-  std::string bone;                // name of the bone of that joint
+  double excess_degrees = 0;       // largest angle by which a joint exceeds its limits
+  std::string bone;                // bone of the joint that exceeds its limits most
 };
 
 void decide_limits(QualityGate& gate, const LimitFigures& figures, const QualityLimits& limits) {

@@ -33,7 +33,7 @@ struct GltfDescription {
   };
   struct Accessor {
     std::int64_t view = -1;
-    std::uint64_t offset = 0, count = 0;  // offset in the view, bytes; number of elements
+    std::uint64_t offset = 0, count = 0;  // offset in the buffer view, bytes; number of elements
     std::int64_t component = 0;           // glTF's number for the type of a component [glTF 2.0, 3.6.2.2]
     std::string type;                     // glTF's name of the element type: SCALAR, VEC3 ...
     bool is_sparse = false;

@@ -22,8 +22,8 @@ namespace {
 
 // Half width of the band (the tissue in which the cut may lie), as a share of the length of the limb's first bone.
 constexpr double kBandShare = 0.2;
-constexpr double kWidestBand = 50;    // mm; a wider half width is cut to this
-constexpr double kNarrowestBand = 4;  // longest voxel edges; a narrower half width is widened to this
+constexpr double kWidestBand = 50;    // mm; a wider half width is reduced to this
+constexpr double kNarrowestBand = 4;  // in longest voxel edges; a narrower half width is widened to this
 constexpr std::int64_t kGrain = 64;   // bricks per block of a parallel loop
 
 // Returns the limb in a tissue's name, as in "Muscle, arms"; nothing when there is none. Ignores the names of bones and

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr double kEnd = 8;  // voxels; a face gets the bones of another face only from at most this far away
+constexpr double kEnd = 8;  // voxels; a face gets the bones of another face only if that face is at most this far away
 
 const char* word_for(BodyPart part) {
   switch (part) {

@@ -72,7 +72,7 @@ class SmoothWeights {
   std::vector<Link> links_;               // pairs of neighbouring cells, sorted by `from`
   std::vector<std::int32_t> first_link_;  // index of each cell's first link in links_; one entry more at the end
   std::vector<int> bones_;                // bones that have weight in the bricks of the last spread()
-  std::vector<float> weight_, next_;      // weights of each cell, in the order of bones_
+  std::vector<float> weight_, next_;      // weights of each cell, in the order of bones_; next_: after the current step
 };
 
 }  // namespace limber

@@ -11,7 +11,8 @@ namespace {
 // Angle between the joint's axis and the direction from which the fold is viewed, radians.
 constexpr double kTurn = 35 * M_PI / 180;
 constexpr double kStraight = 0.1;  // a joint is straight if the sum of its bones' unit directions is shorter than this
-constexpr double kOff_mm = 50;  // mm; a joint that is this far along its axis from the body's middle has an outer side
+// A joint has an outer side if it is at least this far, along its axis, from the body's middle, mm.
+constexpr double kOff_mm = 50;
 
 glm::dvec3 across(const glm::dvec3& axis, const glm::dvec3& v) { return v - axis * glm::dot(v, axis); }
 

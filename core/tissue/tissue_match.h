@@ -26,8 +26,8 @@ struct TissueNames {
   std::vector<std::string> synonyms;  // alternative names; one matches if the tissue's name contains all of its words
   std::vector<TissueKind> kinds;      // a tissue of one of these kinds gets this row when no name matches
   std::vector<TissueWords> words;     // sets of words: those of `name`, then those of each synonym
-  std::vector<bool> whole =
-      {};                // #words: true for a synonym written "=head", which must equal all words of the tissue's name
+  // #words: true for a synonym written "=head", which must equal all words of the tissue's name.
+  std::vector<bool> whole = {};
   bool is_bone = false;  // true: the row is a bone; muscles never match it, though many muscles are named after bones
 };
 

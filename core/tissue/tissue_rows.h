@@ -50,7 +50,7 @@ const TissueRows& tissue_rows();
 // that matches the tissue's name, or else its kind.
 struct UsualDensity {
   double value = 0;
-  std::string row, source;  // row: name of the row that matches the tissue; empty: none
+  std::string row, source;  // name of the row that matches the tissue (empty: none); source of the density
 };
 UsualDensity usual_density(const Tissue& tissue);
 

@@ -99,8 +99,8 @@ TissueTable read_tissue_table(const Path& path);
 // Returns true if the file is a label table. Its name decides, and for two extensions also its content: a .json must be
 // an object whose keys are all whole numbers, and a .txt must not be the header of a Virtual Family volume.
 bool is_tissue_table(const Path& path);
-void write_tissue_table(const TissueTable& table,
-                        const Path& path);  // the file's extension selects the format: .json, .ctbl, .txt (ITK-SNAP)
+// Writes a label table in the format that the extension selects: .json, .ctbl or .txt (ITK-SNAP).
+void write_tissue_table(const TissueTable& table, const Path& path);
 
 // Returns the completed table of a volume file. `in_file` has the file's labels with their values and whatever else the
 // file states about them. For each label, an entry of the user's table `user` (nullptr: none) replaces that of

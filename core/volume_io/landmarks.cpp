@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 constexpr std::uint64_t kMostBytes = 64 << 20;
-constexpr double kFurthest = 1e6;  // a coordinate with a larger absolute value, mm, is refused
+constexpr double kFurthest = 1e6;  // mm; a coordinate with a larger absolute value is refused
 }  // namespace
 
 std::vector<Landmark> read_landmarks(const Path& path) {

@@ -12,7 +12,7 @@
 namespace limber {
 
 namespace {
-// A longer header, bytes, is refused; this is enough for thousands of segments.
+// Limit on the length of a header, bytes; it is enough for thousands of segments.
 constexpr std::size_t kLongestHeader = 16 << 20;
 
 struct NrrdText {
@@ -188,8 +188,8 @@ TissueTable segments_of(const KeyValues& keys, const std::string& where) {
     Tissue tissue;
     tissue.file_value = *label;
     if (const auto* name = get("Name")) tissue.name = *name;
-    tissue.colour.x =
-        std::numeric_limits<float>::quiet_NaN();  // NaN: the file has no colour, and open_volume() sets one
+    // NaN means that the file has no colour; open_volume() then sets one.
+    tissue.colour.x = std::numeric_limits<float>::quiet_NaN();
     if (const auto* colour = get("Color"))
       if (const auto rgb = numbers_of<double>(*colour); rgb && rgb->size() == 3)
         for (int i = 0; i < 3; ++i) tissue.colour[i] = static_cast<float>(std::clamp((*rgb)[i], 0.0, 1.0));

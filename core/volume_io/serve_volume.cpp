@@ -76,8 +76,8 @@ class AskedFiles final : public VolumeFiles {
     return {std::move(heard.file), size};
   }
 
-  static constexpr std::size_t kBookkeeping = 64
-                                              << 20;  // memory for the names and positions of the largest series, bytes
+  // Memory for the names and positions of the slices of the largest DICOM series, bytes.
+  static constexpr std::size_t kBookkeeping = 64 << 20;
   Sandbox sandbox_;
 };
 

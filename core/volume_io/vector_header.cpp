@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 constexpr const char* kWhatToDo = "give a field as `limber resample --field OUT.nrrd` writes it";
-constexpr std::size_t kLargestHeader = 1 << 16;  // a longer header, bytes, is refused
+constexpr std::size_t kLargestHeader = 1 << 16;  // bytes; a longer header is refused
 
 // Parses the header of a displacement field as if it had one number per voxel instead of three. The size of the first
 // axis is changed to one sample for this, since the NRRD parser ignores an axis of one sample.

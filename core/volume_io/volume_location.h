@@ -35,7 +35,7 @@ class PlainFile {
 
 // Returns the first `most` bytes of the file, or all bytes of a shorter file.
 std::string first_bytes(const PlainFile& file, std::int64_t most);
-constexpr std::int64_t kLargestHeader = 16 << 20;  // a longer header, bytes, is refused
+constexpr std::int64_t kLargestHeader = 16 << 20;  // bytes; a longer header is refused
 
 struct VolumeLocation {
   Path path;  // the path that the user gave

@@ -25,7 +25,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kAskMilliseconds = 20;  // milliseconds between two checks whether the user has cancelled
 // Requested size of the pipe's buffer, bytes: the largest that the kernel usually grants.
 constexpr int kPipeBytes = 1 << 20;
-// A longer message, bytes, is refused; this is enough for a header with all its keys.
+// Limit on the length of a message, bytes; it is enough for a header with all its keys.
 constexpr std::uint64_t kLongestMessage = 64 << 20;
 constexpr int kNotLoaded = 127;  // exit code of a process that lacks a shared library
 constexpr const char* kHarmful = "it is damaged or malicious; export or download it again";
