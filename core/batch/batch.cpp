@@ -83,8 +83,8 @@ CellSettings read_settings(const Description& description) {
     if (volume != "displacement" && volume != "jacobian" && volume != "overlap")
       description.refuse("there is no such volume: \"" + volume + "\"", "volumes",
                          "use displacement, jacobian or overlap");
-    // These volumes contain vectors and fractions. Not every format for labels can store these, so they are written as
-    // NRRD.
+    // The additional volumes contain vectors or fractions. Not every format for labels can store these, so they are
+    // written as NRRD.
     settings.outputs[volume == "displacement" ? "field" : volume] = volume + ".nrrd";
   }
   const std::string mesh = description.text("mesh");

@@ -27,7 +27,7 @@ class Description {
   bool is_null() const;
   bool has(const std::string& key) const;
 
-  // Throws Error unless all keys of the object are among these.
+  // Throws Error unless all keys of the object are in `known`.
   void check_keys(const std::set<std::string>& known) const;
   // Returns the text under a key, or `otherwise` if the key is absent. Unless `words` is empty, the text must be one of
   // them.
@@ -51,7 +51,7 @@ class Description {
   double as_number(double least, double most) const;
 
   [[noreturn]] void refuse(const std::string& what, const std::string& what_to_do) const;
-  // Throws Error with `what` is wrong, the position of the value under a key, and what the user should do.
+  // Throws Error that says what is wrong (`what`), the position of the value under a key, and what the user should do.
   [[noreturn]] void refuse(const std::string& what, const std::string& key, const std::string& what_to_do) const;
   std::string where(const std::string& key = "") const;  // text for messages: "FILE, poses, number 1, flex"
 

@@ -165,7 +165,8 @@ class TissueFront {
         const bool is_own = &beyond == &domain;
         // The length of the straight path is a lower limit: a path that must bend is longer.
         float way = before + straight_on[direction];
-        // A path never goes back to its own corner. For a voxel in another domain, only this can be tested here.
+        // A path never goes back to its own corner. For a voxel in another domain, no more than this can be tested
+        // here.
         if (is_own ? !is_shorter(here.source, std::int64_t{there}, way) : straight_on[direction] == 0) continue;
         const bool near_seam = seams && is_near_seam[brick];
         if (near_seam && seams->is_cut_towards(voxel, direction)) continue;

@@ -131,7 +131,7 @@ void solve_joints(const HeatBody& body, const HeatDiffusion& settings, const std
     return temperature_of(solved.temperatures, cell_of(brick, place), bones[lane]);
   };
   known.outside = [&](std::int64_t brick, std::int64_t place, int lane) {
-    // A brick between bones that is not in the block has no weight of the block's bones.
+    // In a brick between bones that is not one of the block's bricks, the block's bones have no weight.
     if (std::binary_search(bricks.begin(), bricks.end(), static_cast<std::int32_t>(brick))) return 0.0f;
     return best.weight(brick, place, bones[lane]);
   };

@@ -157,7 +157,7 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
   const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), "glide " + settings.glide);
   Report base = report;
   Armature rig = body.rig;
-  // The bones' motions in each requested pose, with the body's original rig: fitting and gliding change poses and rig.
+  // The bones' motions in each requested pose, computed before fitting and gliding change poses and rig.
   std::vector<std::vector<RigidTransform>> asked;
   for (const Pose& pose : poses) asked.push_back(posed_from_rest(rig, pose));
   if (settings.fit_joints) {

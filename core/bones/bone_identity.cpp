@@ -91,7 +91,7 @@ class RigRegions {
     return bones;
   }
   std::vector<int> of_part(BodyPart part, BodySide side) const {
-    // In a rig of a single limb, the bones' names may not contain a side.
+    // The bone names of a rig of a single limb possibly contain no side.
     auto bones = with_role([&](const JointRole& role) { return role.part == part && role.side == side; });
     if (bones.empty() && side != BodySide::Middle)
       bones = with_role([&](const JointRole& role) { return role.part == part && role.side == BodySide::Middle; });

@@ -268,7 +268,7 @@ std::vector<float> bone_depth(const BoneGraph& graph, const glm::dvec3& spacing)
 
 namespace {
 // Returns the indices of `height` (no value is negative) in descending order of height; equal heights keep their order.
-// Radix sort on the bits of the floats, which increase with their values, eleven bits at a time.
+// Uses a radix sort on the bits of the floats, which increase with their values, eleven bits at a time.
 std::vector<std::int32_t> highest_first(const std::vector<float>& height) {
   constexpr int kBits = 11;
   std::vector<std::int32_t> order(height.size()), next(height.size());

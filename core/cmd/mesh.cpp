@@ -23,7 +23,7 @@ struct Options {
   RunOptions run;
 };
 
-// Prints, for each tissue, the tets, their volume, its share of the voxels' volume, and the mass.
+// Prints, for each tissue, the number of tets, their volume, its share of the volume of the voxels, and the mass.
 void print_tissues(const TetMesh& mesh, const LabelVolume& volume, const TissueTable& tissues) {
   std::vector<std::int64_t> voxels(65536, 0), tets(65536, 0);
   std::vector<double> mm3(65536, 0);

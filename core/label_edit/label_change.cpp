@@ -79,7 +79,7 @@ VoxelBox bounds_of(const LabelChange& change, const Grid& grid) {
   glm::ivec3 low(grid.size), high(-1);
   for (const LabelChange::Run& run : change.runs) {
     const std::int64_t row = run.first / grid.size.x, last = (run.first + run.count - 1) / grid.size.x;
-    // False: the run also covers the end of its first row and the start of its last row.
+    // True: the run lies in one row. False: it also covers the end of its first row and the start of its last row.
     const bool one_row = row == last;
     const int x = static_cast<int>(run.first % grid.size.x);
     const glm::ivec3 from(one_row ? x : 0, row % grid.size.y, row / grid.size.y),

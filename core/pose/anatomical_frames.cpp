@@ -22,9 +22,10 @@ constexpr double kUprightLean = 7.5 * kDegree;
 // legs is used to find the body's upright axis.
 constexpr double kStraightKnee = 20 * kDegree;
 constexpr double kLegsInLine = 25 * kDegree;
-// A knee bends at most this far sideways (varus, valgus); the rest is a turn of the thigh [Hsu 1990].
+// A knee bends at most this far sideways (varus, valgus); any further bend is taken as a turn of the thigh [Hsu 1990].
 constexpr double kKneeAside = 5 * kDegree;
-// An elbow bends at most this far sideways (half of the carrying angle); the rest is a turn of the arm.
+// An elbow bends at most this far sideways (half of the carrying angle); any further bend is taken as a turn of the
+// arm.
 constexpr double kElbowAside = 8 * kDegree;
 constexpr double kHyperextension = 15 * kDegree;
 // Range in which a foot points outwards (positive) relative to its knee [Staheli 1985]. A heading beyond it is taken as
@@ -231,8 +232,8 @@ void Measuring::leg(BodySide side) {
   set(*shank, shank_frame);
   if (!foot_bone) return;
   const glm::dvec3 seen = glm::conjugate(shank_frame) * direction(*foot_bone);
-  // A foot that points backwards is not measured, so it keeps its pose relative to the shank: either its bone runs to
-  // the heel, or left and right are swapped in the names.
+  // A foot that points backwards is not measured and keeps its pose relative to the shank, because either its bone runs
+  // to the heel, or left and right are swapped in the names.
   if (std::abs(heading_of(seen)) < kBackwards) foot(*foot_bone, shank_frame, heading_of(seen), seen);
 }
 

@@ -14,8 +14,8 @@ namespace limber {
 namespace {
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 33;
 constexpr double kLargestSpacing = 1e6;  // mm; a larger spacing is refused, as in volume files
-// Labels whose shares of a voxel's volume differ by less than this have equal shares: the shares are sums of rounded
-// products.
+// Labels whose shares of a voxel's volume differ by less than this count as having equal shares, since shares are sums
+// of rounded products.
 constexpr double kTie = 1e-9;
 // Upper limit of the rounds in which lost layers are restored. A round may cause another one: a voxel that becomes skin
 // may touch labels that skin did not touch before. In practice two rounds suffice.
@@ -215,7 +215,7 @@ class Regrid {
     gather(spans_[0][v.x], spans_[1][v.y], spans_[2][v.z], shares);
   }
 
-  // Returns the label with the largest share. Returns nothing if two labels share the first place.
+  // Returns the label with the largest share. Returns nothing if several labels have the largest share.
   static std::optional<Label> largest(const Shares& shares, double volume) {
     const auto most = std::max_element(shares.begin(), shares.end(),
                                        [](const Share& a, const Share& b) { return a.volume < b.volume; });

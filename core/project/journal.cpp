@@ -117,7 +117,7 @@ void JournalWriter::write(const Document& document, const std::string& label, Do
   try {
     file_->sync();
   } catch (...) {
-    // The journal cannot be continued, since it is unknown which of these bytes are on the disk.
+    // The journal cannot be continued, since it is unknown which bytes of the failed write are on the disk.
     broken_ = true;
     throw;
   }

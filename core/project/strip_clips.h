@@ -17,7 +17,7 @@ void relink_strips(const Document& before, Document& next);
 void follow_frames(Document& document, const std::shared_ptr<const Clip>& clip,
                    const std::shared_ptr<const Clip>& changed, double ratio);
 
-// A clip of the document that has strips of another one.
+// A clip of the document whose strips play another clip, and the number of these strips.
 struct StripUse {
   std::string clip;
   int strips = 0;

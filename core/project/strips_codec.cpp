@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 constexpr std::size_t kFewestOfTrack = 10;  // size of a stored track with an empty name and no strips, bytes
-// size of a stored strip with an empty name, bytes
+// Size of a stored strip with an empty name, bytes.
 constexpr std::size_t kFewestOfStrip = 4 + 4 + 12 + 24 + 5 + 1 + 8 + 8 + 1 + 56;
 
 void put(ByteWriter& out, const Strip& strip, std::size_t clip) {

@@ -13,7 +13,8 @@
 namespace limber {
 
 namespace {
-// Largest fraction of a bone's voxels that may follow a wrong rig bone: so many may be due to rounding at its border.
+// Largest fraction of a bone's voxels that may follow a wrong rig bone, since this many may do so by rounding at its
+// border.
 constexpr double kAstray = 1e-3;
 
 // Returns for each voxel of the bone graph the bone with the largest weight, as an index into the bones of `weights`.

@@ -79,7 +79,7 @@ class CheapestCut {
  private:
   using Side = SeamBand::Side;
 
-  // Returns the position of each voxel of the band in the order of the list of tissue voxels. In this order most
+  // Returns, for each voxel of the band, its rank in the order of the list of tissue voxels. In this order most
   // neighbours are near in memory, which cuts the time of the search for the cut by a quarter.
   std::vector<std::int32_t> ranks() const {
     std::vector<std::int32_t> order(band_.nodes.size()), rank(order.size());

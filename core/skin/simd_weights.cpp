@@ -139,8 +139,8 @@ LIMBER_INLINE void set_group(Influence* influences, std::int32_t bone_key, std::
   voxels.sort();
   Lanes now;
   for (std::size_t i = 0; i < sizeof(Lanes) / 4; ++i) now[i] = weights[i];
-  // Masks, one lane for each voxel: own[i]: influence i is of the painted bone; found: one of the four is. Weights:
-  // had: of the painted bone before; rest[i]: of influence i if it is of another bone.
+  // Masks with one lane for each voxel: own[i]: influence i belongs to the painted bone; found: one of the four does.
+  // Weights: had: weight of the painted bone before; rest[i]: weight of influence i if it belongs to another bone.
   Lanes own[4], rest[4], had{}, found{};
   for (int i = 0; i < 4; ++i) {
     own[i] = voxels.is_of(i, bone_key);

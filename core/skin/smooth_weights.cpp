@@ -12,8 +12,8 @@ constexpr double kCell = 0.75;  // upper limit on the edge of a cell (a block of
 // Share of its weights that a cell full of tissue exchanges with its neighbours in one step. A larger share would make
 // the weights oscillate.
 constexpr double kAtOnce = 0.5;
-// Upper limit on the share of its weights that a cell exchanges in one step. A cell that would exchange more exchanges
-// proportionally less with each neighbour. Only cells that are partly air reach this limit.
+// Upper limit on the share of its weights that a cell exchanges in one step. A cell that would exceed the limit
+// exchanges proportionally less with each neighbour. Only cells that are partly air reach this limit.
 constexpr float kMostAtOnce = 0.9f;
 // A weight of the result that is at most this share of a voxel's full weight is dropped.
 constexpr float kNothing = 1e-5f;

@@ -176,7 +176,7 @@ std::string svg_of(const LineChart& chart) {
   double written_to = -INFINITY;
   for (std::size_t place = 0; place < chart.places.size(); ++place) {
     const double half = kLetter * double(chart.places[place].size()) / 2;
-    // Leaves out a label that would overlap the one before.
+    // Leaves out a label that would overlap the label before it.
     if (x_of(place) - half < written_to && room < 2 * half) continue;
     written_to = x_of(place) + half + 4;
     svg += label(x_of(place), bottom + 17, chart.places[place], "tick", "middle");

@@ -92,8 +92,8 @@ std::map<double, Path> real_arms(const Path& folder) {
 
 }  // namespace
 
-// Returns the colour and mark of a technique. There are five of them, in a fixed order, so that techniques look alike
-// on all pages. Techniques beyond the fifth share colours and marks with earlier ones.
+// Returns the colour and mark of a technique. There are five looks, in a fixed order, so that techniques look alike on
+// all pages. Techniques beyond the fifth share colours and marks with earlier ones.
 TechniqueLook look_of(const Technique& technique) {
   std::vector<std::string> order = {"lbs", "dqs", "fem", "fem-contact", "mix"};
   for (const Technique& one : plain_techniques())

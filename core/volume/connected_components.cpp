@@ -80,7 +80,7 @@ Components connected_components(const LabelView& volume, const RowSet* in_rows, 
     for (std::int64_t z = begin; z < end; ++z) {
       of_slice[z] =
           runs_of_slice(volume, in_rows, of_labels, static_cast<int>(z), expected, &result.first_run[1 + z * size.y]);
-      // Expects a quarter more runs than in this slice for the next one, to be on the safe side.
+      // For the next slice, expects a quarter more runs than this slice has, to be on the safe side.
       expected = of_slice[z].size() + of_slice[z].size() / 4;
     }
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Holds a grey image (CT, MR) with 16 bits per voxel, as pictures need it: half the memory of floats, and the format
-// that graphics cards filter. A value of a CT of 4096 Hounsfield units is kept to a 32nd of a unit.
+// that graphics cards filter. In a CT that spans 4096 Hounsfield units, a value is stored with an error of at most 1/32
+// unit.
 #pragma once
 
 #include <array>
