@@ -140,8 +140,7 @@ void check_sequence(const Options& options) {
   if (options.fit_joints)
     throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints",
                 "fit each joint first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
-  if (!options.steps.empty())
-    throw Error("--steps and --frames exclude each other", "--steps " + options.steps, "leave one of the two out");
+  if (!options.steps.empty()) throw Error("--steps excludes --frames", "--steps " + options.steps, "leave it out");
   for (const std::string& output :
        {options.output, options.report, options.grey, options.field, options.jacobian, options.overlap,
         options.mesh_out, options.solver_mesh, options.landmarks, options.fem->pressure})
@@ -304,8 +303,7 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
                        .baked = std::move(baked)}};
 }
 
-// Writes the outputs and the report of one posed volume. Returns false if a quality gate failed for which a command
-// with --strict fails.
+// Writes the outputs and the report of one posed volume. Returns false if a gate failed for which --strict fails.
 bool finish(const Options& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
             const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total, Progress& progress) {
   const std::shared_ptr<const FemShape> shape = posed.posed.shape;
@@ -461,8 +459,7 @@ void add_resample(CLI::App& app) {
       "exit with code 5 when a quality gate fails: measures the result as for --report, and still writes all outputs");
   command->add_option("--spacing", options->spacing, "voxel size of the output, mm (default: same as the input)")
       ->check(CLI::Range(1e-9, 1e6));
-  command->add_flag("--nearest", options->nearest,
-                    "takes the label of the nearest voxel at rest, without interpolation");
+  command->add_flag("--nearest", options->nearest, "takes the label of the nearest voxel at rest, uninterpolated");
   auto* mass_exact = command->add_flag("--mass-exact", options->mass_exact,
                                        "restores the rest volume of each soft tissue, by changing as few voxels at "
                                        "tissue borders as possible, the least certain first");
