@@ -66,7 +66,8 @@ int main() {
         preview.update(posed_from_rest(body.rig, pose), Blend::DualQuaternion, {},
                        joints_in_pose(baked, body.rig, pose));
       };
-      update(-1);  // not measured: samples the baked joint once
+      // The first update is not measured, because it also samples the baked joint.
+      update(-1);
       frame[is_baked] = median_of(kFrames, update);
       volume[is_baked] = median_of(kVolumes, [&](int i) {
         ResampleSettings resampling;

@@ -72,8 +72,8 @@ Losses losses(const test::BentArm& arm, const std::map<Label, double>& change, c
   return result;
 }
 
-// Solves the same mesh in the same steps as Bender would: with the same Young's modulus, a Poisson ratio of 0.3 (at
-// which tets need no common pressure in patches), and no contact.
+// Solves the same mesh in the same steps as Bender would: with the same Young's modulus, a Poisson ratio of 0.3 (so low
+// that tets need not share pressures), and no contact.
 SolvedPose as_bender(const test::BentArm& arm, FemModel model) {
   for (TetMaterial& each : model.material) each = {each.shear_modulus * (1 + each.poisson_ratio) / 1.3, 0.3};
   return solve_pose(

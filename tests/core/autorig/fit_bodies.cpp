@@ -16,7 +16,7 @@ double ramp(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// Returns by how much the build moves a position, mm.
+// Returns the shift that takes a position of the standing body to its position in a body of the given build, mm.
 glm::dvec3 shift_of(const glm::dvec3& p, const Build& build, const StandingLandmarks& at) {
   const double wide = std::min(ramp(at.hip - 320, at.hip - 30, p.z), 1 - ramp(at.hip + 120, at.hip + 330, p.z));
   const double arm = p.z < at.shoulder ? ramp(at.arm_from, at.arm_to, std::abs(p.x)) : 0;

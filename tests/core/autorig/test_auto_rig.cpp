@@ -25,7 +25,8 @@ namespace limber {
 
 namespace {
 
-// Returns the distances in mm between joints of the same name. A name in `truth` may have "Right" in front.
+// Returns the distances in mm between joints of the same name. A bone is also compared with the bone of `truth` whose
+// name is "Right" and this name.
 std::vector<std::pair<double, std::string>> errors(const Armature& found, const Armature& truth) {
   std::vector<std::pair<double, std::string>> result;
   for (const Bone& bone : found.bones) {
@@ -249,8 +250,8 @@ TEST_CASE("auto-fit: the joints of a real arm lie within 16 mm, its shoulder in 
   }
   CHECK(fitted.joints[0].how == JointFit::How::Ball);
   CHECK(fitted.check.whole > 0.99);
-  // However far the elbow is bent at rest, its range is straight to the template's 145 degrees, and its axis is
-  // perpendicular to the bent arm's plane.
+  // However far the elbow is bent at rest, its range begins at the straight arm and ends at the template's 145 degrees.
+  // Its axis is perpendicular to the plane of the bent arm.
   const Armature& rig = fitted.armature;
   const int forearm = *rig.find("Forearm"), upper_arm = rig.bones[forearm].parent;
   const auto along = [&](int b) { return glm::normalize(rig.bones[b].tail - rig.bones[b].head); };

@@ -135,7 +135,7 @@ TEST_CASE(
   sparse.analyse(base);
   CHECK(ranks() == first);
 
-  // Connects nodes of two opposite sides, as contact does when skin closes over a grid.
+  // Connects nodes of two opposite sides of the grid, as contact connects surfaces that meet.
   BlockGraphBuilder meeting(base.node_count());
   constexpr int kMeet = 6;
   for (int i = 0; i < kMeet; ++i) meeting.add(std::array{i, i + kSize * (kSize - 1)});

@@ -189,7 +189,8 @@ TEST_CASE("work folder: where two machines do the same work, the first result st
   const Path place = folder / "cell";
   WorkFolder mine(place, no_progress());
   std::ofstream(mine / "mine") << "x";
-  std::filesystem::create_directory(place);  // as if another machine had made it: this one does not see its locks
+  // Simulates a folder made by another machine, whose locks this machine cannot see.
+  std::filesystem::create_directory(place);
   std::ofstream(place / "theirs") << "x";
   mine.commit();
   CHECK(mine.made());

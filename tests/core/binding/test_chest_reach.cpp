@@ -96,7 +96,7 @@ TEST_CASE("chest: without ribs the arms count as further away, and the chest hol
   const std::vector<BoneReach> usual = reaches_of_bones(bare.armature), found = reaches_in(bare);
   for (std::size_t b = 0; b < found.size(); ++b) {
     CAPTURE(bare.armature.bones[b].name);
-    // The spine's middle lies 58 % of the way down from the shoulders, just within the height of the ribs.
+    // The spine (bone 1) counts as chest too: its middle lies just within the height of the ribs.
     const bool is_chest = b == 1 || b == 2, is_arm = bare.armature.bones[b].name.ends_with("Arm");
     for (const float way : {5.0f, 40.0f, 100.0f, 200.0f, 400.0f}) {
       CHECK((found[b](way) > usual[b](way)) == is_arm);

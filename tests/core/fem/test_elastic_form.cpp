@@ -146,7 +146,8 @@ TEST_CASE(
     // The shaken box has negative eigenvalues, so the projection changes something.
     CHECK((projected - exact).norm() > 1e-6);
   }
-  // The projected Hessian has no negative eigenvalues with patches either, whose pressures have any sign.
+  // With patches (groups of tets that share a pressure of any sign), the projected Hessian has no negative eigenvalues
+  // either.
   for (unsigned seed = 0; seed < 3; ++seed) {
     Shaken shaken(2.0, seed);
     NodePositions g;
@@ -293,7 +294,7 @@ TEST_CASE("step bound: the step ends where the first tet has a tenth of its volu
     const NodePositions step =
         (round < 30 ? 0.15 : 2.0) * NodePositions::NullaryExpr(x.rows(), 3, [&] { return uniform(random); });
     const double limit = 8;
-    for (const double must : {0.0, 0.3, 0.7}) {  // share of its volume that every other tet must keep
+    for (const double must : {0.0, 0.3, 0.7}) {  // share of its volume that every second tet must keep
       CAPTURE(must);
       std::vector<double> keep, least;
       for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {

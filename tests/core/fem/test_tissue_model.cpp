@@ -80,8 +80,8 @@ TEST_CASE("moving tissue: what bends lies around the joint, in a rim that is hel
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
       const bool is_free = has(moving.free, body.tissue, v), is_meshed = has(moving.meshed, body.tissue, v);
       const int off = std::abs(v.z - length / 2);
-      // In voxels of 1 mm: weights blend up to 6 from the joint; then come the margin of 10, two cells of 4, and the
-      // rim of 8.
+      // Lengths in voxels of 1 mm: weights blend up to 6 from the joint. The margin of 10 follows, then at most two
+      // cells of 4, then the held rim of 8.
       if (off < 8) inside &= is_free;
       if (off > 6 + 10 + 8) near &= !is_free;
       if (off > 6 + 10 + 8 + 8) rim &= !is_meshed;
@@ -137,7 +137,7 @@ TEST_CASE("moving tissue: what the pose brings together later moves as a rigid b
   CHECK(voxels.begin()->first == 0);
   for (const auto& [from, count] : voxels) {
     if (from == 0 || from == INFINITY) continue;
-    // If the pose ends at the position `from` of the path, the voxels that become free there are not free.
+    // If the pose ends at the position `from` of the path, voxels that become free only there are not free yet.
     const DeformingRegion part = body.moving(kWhole * from, settings);
     bool still = true;
     body.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {

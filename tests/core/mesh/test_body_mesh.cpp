@@ -193,7 +193,7 @@ TEST_CASE("untangle: tets that were turned inside out are upright again, and nod
   for (Eigen::Index v = 0; v < mesh.V.rows(); ++v)
     if (fixed[v] || (mesh.V.row(v).array() > 13.5).all()) CHECK(one.row(v) == folded.row(v));
 
-  // A tet between nodes that do not move stays as it is, and is counted.
+  // If all nodes are fixed, the mesh does not change, and untangle() returns the number of inverted tets.
   Eigen::MatrixX3d V = folded;
   CHECK(untangle(V, mesh.V, mesh.T, std::vector<bool>(V.rows(), true)) == std::int64_t(before));
   CHECK(V == folded);

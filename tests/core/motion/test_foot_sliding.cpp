@@ -56,7 +56,7 @@ TEST_CASE(
     CHECK(std::abs(moved.z) < 1);
   }
 
-  // A straight leg that leans reaches the position, but cannot keep its height.
+  // With a straight, leaning leg the foot reaches the horizontal position, but cannot keep its height.
   const glm::dvec3 leaning(200, 0, -350);
   const TurnsOfLeg turns = turns_of_leg(leaning, leaning, {10, 0});
   const glm::dvec3 moved = turned(turns.thigh, leaning) + turned(turns.shank, leaning) - 2.0 * leaning;

@@ -112,7 +112,7 @@ TEST_CASE("rest stance: palms that no finger shows face as is said") {
   const glm::dvec3 forward(0, -1, 0), down(0, 0, -1);
   for (const char* hand : {"LeftHand", "RightHand"}) {
     CHECK(glm::degrees(angle_between(palm({RestStance::TPose, RestStance::Anatomical}, forward, hand), down)) < 8);
-    // Without stances, the palm keeps the direction to which the arm turns it.
+    // If the rest stances are not given, the palm keeps the direction to which the arm turns it.
     CHECK(glm::degrees(angle_between(palm({}, forward, hand), forward)) < 8);
   }
   const glm::dvec3 inward(-1, 0, 0);  // the left palm faces inwards at rest, with the thumb forward

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Strips that touch and go on with one another play as one.
+// Tests strips that touch and continue each other's clip: they play like one strip.
 #include <limits>
 #include <random>
 
@@ -111,10 +111,11 @@ TEST_CASE("strips: a strip inside a longer one of its track fades in and out aga
   CHECK(at(strips, 50) == at(wave, 20));
   CHECK(at(strips, 70) == at(walk, 70));
   CHECK(at(strips, 100) == at(walk, 100));
-  double step = 0;  // no frame goes further than the fastest of either take and the fade do
+  // largest change of the pose from one frame to the next
+  double step = 0;
   for (int frame = 20; frame < 90; ++frame) step = std::max(step, far(at(strips, frame), at(strips, frame + 1)));
   CHECK(step < 0.5 * far(at(wave, 40), at(walk, 71)));
-  // Its own fades count.
+  // The strip's fades of 4 and 6 frames are used.
   strips.tracks[0].strips[1].blend_in = 4;
   strips.tracks[0].strips[1].blend_out = 6;
   CHECK(at(strips, 34) == at(wave, 4));
@@ -129,7 +130,8 @@ TEST_CASE("strips: a strip that overlaps another one is moved along it, and not 
   const auto fits = [&](int frames) { return fitting_move(strips, {"b"}, {frames, 0}, 30, Overlaps::Avoided).frames; };
   CHECK(fits(3) == 3);
   CHECK(fits(-25) == -25);
-  CHECK(fits(70) == 60);  // it stops beside the one that it has not overlapped
+  // A move of 70 frames would overlap strip "c", so strip "b" stops after 60 frames, where the two touch.
+  CHECK(fits(70) == 60);
 }
 
 TEST_CASE("strips: a speed that a strip cannot have is refused") {

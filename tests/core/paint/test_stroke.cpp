@@ -381,7 +381,7 @@ TEST_CASE(
   CHECK(blocked.blocked_by() == 0);
   const std::int64_t kept = blocked.blocked_count();
   CHECK(kept > 0);
-  // Repeated dabs on the same voxels count them once.
+  // A voxel that several dabs reach is counted once.
   settings.brush.accumulate = true;
   Stroke again(painted.weighted_body(), painted.weights, settings);
   for (int i = 0; i < 3; ++i) again.dab({6, 6, 20});

@@ -83,7 +83,7 @@ TEST_CASE("every bone of the body phantom is a piece of its own, with marrow cor
     const auto sizes = connected_components(volume).voxels;
     return std::count_if(sizes.begin(), sizes.end(), [&](std::int64_t size) { return size >= least; });
   };
-  // Of 118 parts, the smallest toe bones may vanish at 3 mm.
+  // The phantom has 118 bone parts, but the smallest toe bones may vanish in voxels of 3 mm.
   CHECK(large(bone, 4) >= 90);
   CHECK(large(marrow, 30) >= 12);  // humeri, radii, ulnae, femora, tibiae, fibulae
 }

@@ -242,7 +242,8 @@ TEST_CASE("history: clips that strips play count once, and strips with them") {
   Document alone = document;
   alone.clips = {document.clips[2]};
   alone.clip = 0;
-  // The strips still hold the two clips that this document does not list, so it needs about the same memory.
+  // The document `alone` does not list the first two clips, but its strips still hold them, so it needs about the same
+  // memory.
   CHECK(bytes_of(document) - bytes_of(alone) < 200);
 }
 

@@ -298,7 +298,7 @@ TEST_CASE("worker: a cancel does not wait until a busy machine has time to end o
   const auto asked = Clock::now();
   progress.cancel();
   waiting.join();
-  // The cancel does not wait for the worker to end, which takes seconds. On an idle machine it takes 75 ms.
+  // The cancel does not wait for the worker to end, which takes seconds. On an idle machine a cancel takes 75 ms.
   CHECK(Clock::now() - asked < std::chrono::milliseconds(700));
   over = true;
   for (std::thread& each : busy) each.join();

@@ -93,7 +93,8 @@ TEST_CASE("bands: a bone far away is none of the two, though it moves as the pul
   PulledBar bar = pulled_bar(140, 16, 3, {15, 15, 20});
   const glm::dvec3 far(15, 1500, 20);
   bar.armature.bones.push_back(bone_between("Far", 0, far, far + glm::dvec3(0, 0, 40)));
-  // Far moves half as far as Upper, so half of the band's voxels move more like Far than like Upper or Lower.
+  // The bone Far moves half as far as the bone Upper, so half of the band's voxels move more like Far than like Upper
+  // or Lower.
   bar.motions.push_back({{1, 0, 0, 0}, {0, 0, 16}});
   const auto bands = bands_of(bar);
   REQUIRE(bands.size() == 1);
