@@ -65,8 +65,8 @@ def finished(out):
             for kind in ("cells", "exports") for path in out.glob(f"{kind}/[!.]*/cell.json")}
 
 
-def running():
-    """Returns the ids of the processes that run a batch."""
+def running(folder):
+    """Returns the ids of the processes that run the batch of a folder, and of no other test."""
     found = []
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
@@ -74,7 +74,8 @@ def running():
                 words = (entry / "cmdline").read_bytes().split(b"\0")
             except OSError:
                 continue
-            if len(words) > 2 and words[0].endswith(b"limber") and words[1] == b"batch":
+            is_batch = len(words) > 2 and words[0].endswith(b"limber") and words[1] == b"batch"
+            if is_batch and words[2] == os.fsencode(folder / "batch.json"):
                 found.append(int(entry.name))
     return found
 
@@ -152,7 +153,7 @@ PartitionName=all Nodes={self.host} Default=YES MaxTime=INFINITE State=UP
         self.processes["slurmd"].kill()
         self.processes["slurmd"].wait()
         subprocess.run(["pkill", "-KILL", "slurmstepd"], check=False)
-        for process in running():
+        for process in running(self.folder.parent):
             kill(process)
         self.wait_until(lambda: "down" in self.ask("sinfo", "-h", "-o", "%T"), "the node counts as down")
 
@@ -243,8 +244,8 @@ class Cluster(unittest.TestCase):
             if way == "node":
                 slurm.end_node()
                 slurm.start_node()
-            elif way == "process" and running():
-                kill(self.random.choice(running()))
+            elif way == "process" and running(self.folder):
+                kill(self.random.choice(running(self.folder)))
             else:
                 slurm.ask("scancel", job)
             if not slurm.ask("squeue", "-h"):
@@ -277,7 +278,7 @@ class Cluster(unittest.TestCase):
             seen.append(finished(out))
             os.killpg(run.pid, signal.SIGKILL)
             run.wait()
-            for process in running():
+            for process in running(self.folder):
                 kill(process)
             run = self.snakemake(*settings)
         self.assertEqual(run.wait(PATIENCE), 0, (self.folder / "snakemake.log").read_text()[-2000:])
