@@ -1,23 +1,22 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# check_shared_names.sh NM LIBRARY...: no name stands for functions of more than 8 sources, else it says nothing. Counted
-# are free functions that other sources can call; members (of types, which begin with a capital) and operators are not.
+# check_shared_names.sh NM LIBRARY...: no name stands for more than 8 functions, else it says nothing. Counted are free
+# functions that other sources can call; members (of types, which begin with a capital) and operators are not.
 set -euo pipefail
 nm=$1
 shift
 "$nm" -C -A --defined-only "$@" 2>/dev/null | awk '
   $2 == "T" {
-    split($1, place, ":")
-    source = place[2]
     name = $0
     sub(/^[^ ]+ T /, "", name)
+    whole = name
     if (name !~ /^limber::/ || name ~ /operator/) next
     sub(/[(<[].*/, "", name)
     if (name ~ /::[A-Z][A-Za-z0-9]*::/) next
     sub(/.*::/, "", name)
-    if (!((name, source) in seen)) {
-      seen[name, source] = 1
-      sources[name] = sources[name] " " source
+    if (!(whole in seen)) {
+      seen[whole] = 1
+      functions[name] = functions[name] "\n  " whole
       ++count[name]
       ++all
     }
@@ -25,7 +24,7 @@ shift
   END {
     for (name in count)
       if (count[name] > 8) {
-        printf "%s: %d sources:%s\n", name, count[name], sources[name]
+        printf "%s: %d functions:%s\n", name, count[name], functions[name]
         bad = 1
       }
     if (all < 1000) {
