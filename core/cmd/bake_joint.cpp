@@ -20,7 +20,7 @@ namespace limber::cmd {
 
 namespace {
 
-struct Options {
+struct BakeJointOptions {
   BodyOptions body;
   std::string weights, bone, seams, glide, quality = "normal", output;
   std::vector<double> range;
@@ -29,7 +29,7 @@ struct Options {
   RunOptions run;
 };
 
-BakeSettings settings_of(const Options& options) {
+BakeSettings settings_of(const BakeJointOptions& options) {
   BakeSettings settings;
   if (!options.range.empty()) settings.low = options.range[0], settings.high = options.range[1];
   settings.angles = options.angles;
@@ -60,7 +60,7 @@ void print_bake(const BakedJoint& joint) {
       worst.flesh_mm, worst.skin_mm);
 }
 
-void bake(const Options& options) {
+void bake(const BakeJointOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -87,7 +87,7 @@ void add_bake_joint(CLI::App& app) {
   auto* command = app.add_subcommand("bake-joint",
                                      "solves a joint by finite elements once and stores the shapes, which resample "
                                      "--baked then uses as fast as blending");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BakeJointOptions>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone below the joint")->required();
   command

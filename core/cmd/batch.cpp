@@ -14,7 +14,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct BatchOptions {
   std::string batch, out, shard, cells;
   bool plan = false;
   RunOptions run;
@@ -56,7 +56,7 @@ void print_plan(const Batch& batch, const std::vector<BatchOutcome>& cells, cons
   }
 }
 
-void run(const Options& options) {
+void run_batch(const BatchOptions& options) {
   CommandProgress progress(options.run.progress);
   const Batch batch = read_batch(options.batch);
   const int cell_count = int(cells_of(batch).size());
@@ -93,7 +93,7 @@ void add_batch(CLI::App& app) {
   auto* command = app.add_subcommand("batch",
                                      "computes all combinations (cells) of bodies, poses or frames, methods and "
                                      "exports; finished cells are kept, and several machines may share a folder");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BatchOptions>();
   command->add_option("BATCH", options->batch, "description (JSON): bodies, poses, methods, exports")->required();
   writes(command->add_option(
              "-o,--output", options->out,
@@ -114,7 +114,7 @@ void add_batch(CLI::App& app) {
       ->type_name("i/n")
       ->excludes(cells);
   add_run_options(*command, options->run);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_batch(*options); });
 }
 
 }  // namespace limber::cmd

@@ -24,7 +24,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct CleanMotionOptions {
   std::string rig, output;
   PoseOptions motion;
   double smooth = 0, ease = 0.15;
@@ -115,7 +115,8 @@ void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, 
 }
 
 // Mirrors the poses, changes their speed and repeats them, as the options say.
-std::vector<Pose> changed(const Options& options, const Armature& rig, double rate, std::vector<Pose> poses) {
+std::vector<Pose> changed(const CleanMotionOptions& options, const Armature& rig, double rate,
+                          std::vector<Pose> poses) {
   if (options.mirror)
     for (Pose& pose : poses) pose = flipped(pose, rig);
   if (options.speed != 1) poses = at_speed(poses, options.speed);
@@ -134,7 +135,7 @@ std::vector<Pose> changed(const Options& options, const Armature& rig, double ra
   return std::move(loop.poses);
 }
 
-void clean(const Options& options) {
+void clean(const CleanMotionOptions& options) {
   if (!options.cleans() && !options.mirror && options.speed == 1 && options.repeats == 0)
     throw Error("there is nothing to clean", "clean-motion",
                 "add --smooth HZ, --plant-feet, --hold, --mirror, --speed or --loop");
@@ -170,7 +171,7 @@ void clean(const Options& options) {
 void add_clean_motion(CLI::App& app) {
   auto* command =
       app.add_subcommand("clean-motion", "removes jitter from a motion on a rig, and keeps feet and hands in place");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CleanMotionOptions>();
   options->motion.root_motion = true;
   command->add_option("RIG", options->rig, "the rig that the motion moves")->required();
   auto* motion = command->add_option("--motion", options->motion.motion, "the motion (BVH)")->required();

@@ -21,13 +21,13 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct ConvertOptions {
   std::string in, out;
   RunOptions run;
   MaterialOptions material;
 };
 
-void export_body(const Exporter& exporter, const VolumeFile& file, const Options& options, Progress& progress) {
+void export_body(const Exporter& exporter, const VolumeFile& file, const ConvertOptions& options, Progress& progress) {
   const TissueTable tissues = tissues_of(file, options.material.tissues);
   std::vector<std::string> warnings;
   std::vector<TissueMaterial> materials;
@@ -41,7 +41,7 @@ void export_body(const Exporter& exporter, const VolumeFile& file, const Options
 }
 
 // Converts a volume. Labels keep their values. A grey volume with fractional values is written as float.
-void convert_volume(const Options& options) {
+void convert_volume(const ConvertOptions& options) {
   const Exporter* exporter = exporter_for(options.out);
   if (exporter && !exporter->takes_voxels)
     throw Error("this format stores a tet mesh, which a volume does not have", options.out,
@@ -83,7 +83,7 @@ OptionFiles files_of_output(const std::string& name) {
   return files;
 }
 
-void convert(const Options& options) {
+void convert(const ConvertOptions& options) {
   const Path in = options.in;
   if (is_volume_path(in)) return convert_volume(options);
   if (is_tissue_table(in)) return write_tissue_table(read_tissue_table(in), options.out);
@@ -95,7 +95,7 @@ void add_convert(CLI::App& app) {
   auto* command = app.add_subcommand("convert",
                                      "converts a volume, rig or label table to another format, or a volume to surfaces "
                                      "or to the input of a simulation; OUT's extension selects the format");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ConvertOptions>();
   command->add_option("IN", options->in, "a volume, a folder with DICOM images, a rig or a label table")->required();
   writes(command->add_option("OUT", options->out,
                              "file to write; its extension selects the format: volumes " + writable_endings() + "; " +

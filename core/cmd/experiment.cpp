@@ -19,7 +19,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct ExperimentOptions {
   std::string study, folder, out, shard;
   std::vector<std::string> methods;
   bool rating_form = false, without_volumes = false;
@@ -42,7 +42,7 @@ void tell_cell(const Study& study, const CellOutcome& outcome, int done, int of,
 }
 
 // Writes tables, report and the requested extra files, and compares the results with expected ones if they are given.
-void write(const Options& options, const Study& study, const std::vector<CellOutcome>& outcomes,
+void write(const ExperimentOptions& options, const Study& study, const std::vector<CellOutcome>& outcomes,
            const std::string& commit, const StartPictures& pictures, Progress& progress) {
   const std::vector<CellResult> cells = read_results(study, outcomes);
   const std::string command = "limber experiment " + options.study +
@@ -61,7 +61,7 @@ void write(const Options& options, const Study& study, const std::vector<CellOut
   if (!options.expect.empty()) print("%s\n", check_results(study, cells, options.expect, progress).c_str());
 }
 
-void run(const Options& options, const std::string& commit, const StartPictures& pictures) {
+void run_experiment(const ExperimentOptions& options, const std::string& commit, const StartPictures& pictures) {
   CommandProgress progress(options.run.progress);
   if (options.study != "arm" && !options.folder.empty())
     throw Error("only the built-in study arm takes a folder", options.folder,
@@ -104,7 +104,7 @@ void add_experiment(CLI::App& app, const std::string& commit, const StartPicture
   auto* command = app.add_subcommand("experiment",
                                      "computes a study of poses, techniques and spacings, with tables and a report; "
                                      "finished cells are kept, run it again to continue");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExperimentOptions>();
   command
       ->add_option(
           "STUDY", options->study,
@@ -147,7 +147,7 @@ void add_experiment(CLI::App& app, const std::string& commit, const StartPicture
       "--expect", options->expect,
       "compares the results with expected.json of a bundle, and fails unless every voxel and every number is the same");
   add_run_options(*command, options->run);
-  command->callback([options, commit, pictures] { run(*options, commit, pictures); });
+  command->callback([options, commit, pictures] { run_experiment(*options, commit, pictures); });
 }
 
 }  // namespace limber::cmd

@@ -16,7 +16,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct ExportGltfOptions {
   BodyOptions body;
   std::string weights, map, output, progress, up = "y";
   std::vector<std::string> motions;
@@ -25,7 +25,7 @@ struct Options {
   GltfSettings settings;
 };
 
-std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::string& file, const Armature& rig,
+std::shared_ptr<const Clip> clip_of_file(const ExportGltfOptions& options, const std::string& file, const Armature& rig,
                                          const std::vector<std::shared_ptr<const Clip>>& before) {
   auto motion = std::make_shared<const Motion>(read_motion(file, options.up));
   if (motion->frame_count == 0) throw Error("this motion has no frames", file, "use another file");
@@ -36,7 +36,7 @@ std::shared_ptr<const Clip> clip_of_file(const Options& options, const std::stri
   return std::make_shared<const Clip>(std::move(clip));
 }
 
-void export_gltf(const Options& options) {
+void export_gltf(const ExportGltfOptions& options) {
   check_place(options.output);
   CommandProgress progress(options.progress);
   const Body body = read_body(options.body, progress);
@@ -52,7 +52,7 @@ void export_gltf(const Options& options) {
 void add_export_gltf(CLI::App& app) {
   auto* command = app.add_subcommand(
       "export-gltf", "exports the body's surface, skeleton and weights, and motions as animations, to one .glb file");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportGltfOptions>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "weights: W.nrrd, or a folder with Bender's weights")->required();
   auto* motion =

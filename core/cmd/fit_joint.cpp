@@ -17,14 +17,14 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct FitJointOptions {
   BodyOptions body;
   std::string bone, output;
   std::vector<double> range{0, 90};
   RunOptions run;
 };
 
-void run(const Options& options) {
+void run_fit_joint(const FitJointOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -53,7 +53,7 @@ void run(const Options& options) {
 void add_fit_joint(CLI::App& app) {
   auto* command =
       app.add_subcommand("fit-joint", "moves a joint's axis so that bones do not collide, and stores it as a hinge");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FitJointOptions>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone whose head is the joint")->required();
   command
@@ -64,7 +64,7 @@ void add_fit_joint(CLI::App& app) {
       ->expected(2);
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps the hinge)"))->required();
   add_run_options(*command, options->run);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_fit_joint(*options); });
 }
 
 }  // namespace limber::cmd

@@ -23,7 +23,7 @@ namespace limber::cmd {
 
 namespace {
 
-struct Options {
+struct FitRigOptions {
   std::string volume, rig, tissues, output, report;
   std::vector<double> bones;
   RunOptions run;
@@ -73,7 +73,7 @@ void print_fit(const AutoFit& fitted) {
   print("%.1f %% of the length of all bones lies in tissue\n", 100 * fitted.check.whole);
 }
 
-void run(const Options& options) {
+void run_fit_rig(const FitRigOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -101,7 +101,7 @@ void add_fit_rig(CLI::App& app) {
   auto* command = app.add_subcommand(
       "fit-rig",
       "fits a rig to a volume automatically; finds joints from named bones, bone tissue, or the body's shape");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<FitRigOptions>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command
       ->add_option("--template", options->rig,
@@ -118,7 +118,7 @@ void add_fit_rig(CLI::App& app) {
   writes(command->add_option("-o,--output", options->output, "rig to write (.json keeps joint limits)"))->required();
   writes(command->add_option("--report", options->report, "JSON file to write: how each joint was found"));
   add_run_options(*command, options->run);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_fit_rig(*options); });
 }
 
 }  // namespace limber::cmd

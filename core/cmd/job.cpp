@@ -97,14 +97,14 @@ Json read_job(const Path& path) {
   return job;
 }
 
-struct Options {
+struct JobOptions {
   std::string file;
   std::string progress;
   int memory_limit = 0, parent = 0;
   bool yields = false;
 };
 
-void run(const Options& options) {
+void run_job(const JobOptions& options) {
   become_worker(options.memory_limit, options.yields, options.parent);
   std::optional<Heartbeat> heartbeat;  // empty without a parent process to read it
   if (options.parent > 0) heartbeat.emplace();
@@ -131,7 +131,7 @@ void run(const Options& options) {
 
 void add_job(CLI::App& app) {
   auto* command = app.add_subcommand("job", "runs a command that a file describes, such as resample");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<JobOptions>();
   command
       ->add_option("JOB", options->file,
                    "job file (JSON): {\"command\": \"resample\", \"volume\": FILE, \"rig\": FILE, ...}, with the "
@@ -148,7 +148,7 @@ void add_job(CLI::App& app) {
   command->add_flag("--yield", options->yields, "run at the lowest priority");
   command->add_option("--parent", options->parent,
                       "process ID of the program that started the job; the job stops when that program ends");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_job(*options); });
 }
 
 }  // namespace limber::cmd

@@ -17,7 +17,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct MeshCommandOptions {
   std::string volume, tissues, output;
   MeshOptions mesh;
   RunOptions run;
@@ -45,7 +45,7 @@ void print_tissues(const TetMesh& mesh, const LabelVolume& volume, const TissueT
 
 void add_mesh(CLI::App& app) {
   auto* command = app.add_subcommand("mesh", "fills a whole body with tetrahedra, organs and bones included");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<MeshCommandOptions>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   add_mesh_options(*command, options->mesh, "--");

@@ -14,13 +14,13 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct PhantomOptions {
   std::string subject, folder;
   std::optional<double> spacing;
   RunOptions run;
 };
 
-void make_phantom(const Options& options) {
+void make_phantom(const PhantomOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -49,7 +49,7 @@ OptionFiles files_of_folder(const std::string& folder) {
 void add_phantom(CLI::App& app) {
   auto* command =
       app.add_subcommand("phantom", "makes a procedural sample: volume.nrrd, tissues.json, rig.json, motion.bvh");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PhantomOptions>();
   command->add_option("SUBJECT", options->subject, "sample to make: arm or body")
       ->required()
       ->check(CLI::IsMember({"arm", "body"}));

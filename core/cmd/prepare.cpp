@@ -29,7 +29,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct PrepareOptions {
   std::string in, out, tissues, statistics, orientation, flip, seams, rig, close_skin, skin_label;
   std::vector<std::string> merges;
   bool from_ct = false;
@@ -116,7 +116,7 @@ void warn_of_cuts(const ClosedSkin& closed) {
             " voxels that are not skin) and stays open there; if the body ends there, add air with --pad 1"});
 }
 
-LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, const Options& options) {
+LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, const PrepareOptions& options) {
   const bool inward = options.close_skin == "inward";
   const auto label = skin_label_of(tissues, options.skin_label);
   ClosedSkin closed = close_skin(volume, tissues, inward ? SkinGrowth::Inward : SkinGrowth::Outward, label);
@@ -146,7 +146,7 @@ void keep_present(TissueTable& tissues, const LabelVolume& volume) {
 }
 
 // Finds the seams of the prepared volume and writes them to a file.
-void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, const Options& options,
+void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, const PrepareOptions& options,
                        Progress& progress) {
   const ArmatureFile rig = read_armature_file(options.rig);
   warn(rig.warnings);
@@ -158,7 +158,7 @@ void write_seams_found(const LabelVolume& volume, const TissueTable& tissues, co
 }
 
 // Returns the labels that thresholds make of a CT, as if they had been read from a file.
-VolumeFile labels_of(const Options& options, Progress& progress) {
+VolumeFile labels_of(const PrepareOptions& options, Progress& progress) {
   CtThresholds thresholds;
   if (!options.thresholds.empty()) {
     thresholds.body = options.thresholds[0];
@@ -172,7 +172,7 @@ VolumeFile labels_of(const Options& options, Progress& progress) {
   return {std::move(labels.volume), std::move(labels.tissues), {"NRRD", "uint8", true}, ct.warnings};
 }
 
-void prepare(const Options& options) {
+void prepare(const PrepareOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -210,7 +210,7 @@ void add_prepare(CLI::App& app) {
       app.add_subcommand("prepare",
                          "prepares a label volume; the options are applied in this order: --from-ct, --orient, --flip, "
                          "--merge, --spacing, --drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PrepareOptions>();
   command->add_option("IN", options->in, "label volume; with --from-ct a CT")->required();
   writes(command->add_option("-o,--output", options->out, "label volume to write; its extension selects the format"))
       ->required();

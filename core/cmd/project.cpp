@@ -39,7 +39,7 @@ namespace {
 
 constexpr int kFarthestFrame = 1 << 28;  // larger frame numbers are refused: a project cannot store them
 
-struct Options {
+struct ProjectOptions {
   std::string file, action = "inspect", part;
   std::string tissues, rig, weights, pose, motion, seams, bone_map, output, progress, up = "y";
   PoseRequest body;  // values of --pose-name and --joint
@@ -65,7 +65,7 @@ void require_new(const Path& path, bool replace) {
 
 // ---- limber project NAME.limber create
 
-void read_body_parts(const Options& options, Document& document, Progress& progress) {
+void read_body_parts(const ProjectOptions& options, Document& document, Progress& progress) {
   VolumeFile file = read_volume(options.part, progress);
   warn(file.warnings);
   std::optional<TissueTable> user;
@@ -76,7 +76,7 @@ void read_body_parts(const Options& options, Document& document, Progress& progr
   document.volume = shared(std::move(file.volume));
 }
 
-Document read_parts(const Options& options, Progress& progress) {
+Document read_parts(const ProjectOptions& options, Progress& progress) {
   Document document;
   require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true,
           "tissues and weights need a volume", options.file, "name the volume's file after create");
@@ -116,7 +116,7 @@ Document read_parts(const Options& options, Progress& progress) {
   return document;
 }
 
-void create(const Options& options) {
+void create(const ProjectOptions& options) {
   require_new(options.file, options.replace);
   CommandProgress progress(options.progress);
   DocumentWriter writer;
@@ -125,7 +125,7 @@ void create(const Options& options) {
 
 // ---- limber project NAME.limber verify, and recover
 
-void verify(const Options& options) {
+void verify(const ProjectOptions& options) {
   CommandProgress progress(options.progress);
   const auto wrong = verify_project(options.file, progress);
   for (const std::string& line : wrong) warn(line);
@@ -152,7 +152,7 @@ class DocumentChunks final : public ChunkSource, public ChunkSink {
 
 // Adds the file FILE of the command line as a source of lost chunks. FILE is another copy of the project, damaged or
 // not, or the volume from which the project was made.
-void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) {
+void add_help(CarvedChunks& chunks, const ProjectOptions& options, Progress& progress) {
   if (options.part.empty()) return;
   if (is_project(options.part)) {
     chunks.add(std::make_unique<CarvedChunks>(options.part, progress));
@@ -165,7 +165,7 @@ void add_help(CarvedChunks& chunks, const Options& options, Progress& progress) 
 
 // Reads the project. If it is damaged, rebuilds it from its undamaged chunks and stores these in `chunks`, which must
 // then outlive the returned project.
-Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chunks, Progress& progress) {
+Project read_or_carve(const ProjectOptions& options, std::unique_ptr<CarvedChunks>& chunks, Progress& progress) {
   std::string failure;
   try {
     Project project = read_project(options.file, progress);
@@ -189,7 +189,7 @@ Project read_or_carve(const Options& options, std::unique_ptr<CarvedChunks>& chu
   return project;
 }
 
-void recover(const Options& options) {
+void recover(const ProjectOptions& options) {
   require(!options.output.empty(), "recover needs a file to write", options.file, "name it with -o OUT.limber");
   require_new(options.output, options.replace);
   CommandProgress progress(options.progress);
@@ -216,14 +216,14 @@ void recover(const Options& options) {
 // ---- limber project NAME.limber export
 
 template <class T>
-const T& there(const std::shared_ptr<const T>& part, const Options& options) {
+const T& there(const std::shared_ptr<const T>& part, const ProjectOptions& options) {
   require(part != nullptr, "the project has no such part", options.file + ", " + options.part,
           "list its contents: limber project " + options.file);
   return *part;
 }
 
 // Returns the shown clip's motion. A clip with keys, constraints or strips is written as it plays on the rig.
-Motion motion_in(const Document& document, const Options& options) {
+Motion motion_in(const Document& document, const ProjectOptions& options) {
   const Clip* clip = document.shown_clip();
   if (document.armature && clip && (!clip->keys.empty() || clip->constraints || clip->strips))
     return played_motion(document.clips[static_cast<std::size_t>(document.clip)], document.armature);
@@ -231,7 +231,7 @@ Motion motion_in(const Document& document, const Options& options) {
 }
 
 // Returns the pose that the project stores, or that of a frame of the shown clip, as the editor shows it.
-Pose pose_in(const Document& document, const Options& options) {
+Pose pose_in(const Document& document, const ProjectOptions& options) {
   if (!options.frame) return there(document.pose, options);
   require(document.armature && !document.clips.empty(), "the project has no clip on a rig", options.file,
           "leave --frame out");
@@ -240,7 +240,7 @@ Pose pose_in(const Document& document, const Options& options) {
   return clip.at(*options.frame);
 }
 
-const LabelVolume& result_named(const Document& document, const Options& options) {
+const LabelVolume& result_named(const Document& document, const ProjectOptions& options) {
   for (const auto& result : document.results)
     if (result->name == options.part && result->volume) return *result->volume;
   throw Error(
@@ -249,7 +249,7 @@ const LabelVolume& result_named(const Document& document, const Options& options
           options.file + " lists");
 }
 
-void export_part(const Options& options) {
+void export_part(const ProjectOptions& options) {
   require(!options.part.empty() && !options.output.empty(), "export needs a part and a file to write", options.file,
           "as in: export volume -o volume.nrrd");
   check_place(options.output);
@@ -275,7 +275,7 @@ void export_part(const Options& options) {
   else write_volume(result_named(document, options), options.output, tissues, type);
 }
 
-void run(const Options& options) {
+void run_project(const ProjectOptions& options) {
   require(!options.frame || (options.action == "export" && options.part == "pose"), "only export pose takes a frame",
           options.file, "leave --frame out");
   if (options.action == "create") return create(options);
@@ -290,7 +290,7 @@ void run(const Options& options) {
 void add_project(CLI::App& app) {
   auto* command =
       app.add_subcommand("project", "creates, inspects, verifies or recovers a project file, or exports its parts");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ProjectOptions>();
   writes(command->add_option("NAME", options->file, "NAME.limber"), [options](const std::string& name) {
     return options->action == "create" ? OptionFiles{{}, {name}} : OptionFiles{{name}, {}};
   })->required();
@@ -325,7 +325,7 @@ void add_project(CLI::App& app) {
       ->add_option("--progress", options->progress,
                    "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")
       ->check(CLI::IsMember({"json"}));
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_project(*options); });
 }
 
 }  // namespace limber::cmd

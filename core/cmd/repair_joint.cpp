@@ -19,7 +19,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct RepairJointOptions {
   BodyOptions body;
   std::string weights, bone, method = deformation_methods().front().word, seams, output;
   std::vector<double> range;
@@ -46,7 +46,7 @@ void print_figures(const JointRepair& repair) {
   }
 }
 
-void repair(const Options& options) {
+void repair(const RepairJointOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -72,7 +72,7 @@ void repair(const Options& options) {
 void add_repair_joint(CLI::App& app) {
   auto* command = app.add_subcommand(
       "repair-joint", "changes the weights around a joint so that skin, fat and muscle keep their volumes");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RepairJointOptions>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone whose head is the joint")->required();
   command->add_option("--weights", options->weights,

@@ -39,7 +39,7 @@ void renumber(VolumeFile& file, TissueTable& table) {
   for (Label& label : file.volume.voxels) label = of[label];
 }
 
-struct Options {
+struct ReportOptions {
   std::string before, after, tissues, field, rig, bone_map;
   PoseOptions pose;
   bool json = false, strict = false;
@@ -63,7 +63,7 @@ VectorVolume read_field(const std::string& path, const LabelVolume& after, Repor
 
 // Measures, for the report, all figures that need the displacement field, and those that need rig and pose if these are
 // given.
-void measure_with_field(const Options& options, const LabelVolume& before, const LabelVolume& after,
+void measure_with_field(const ReportOptions& options, const LabelVolume& before, const LabelVolume& after,
                         const TissueTable& tissues, Report& report) {
   JudgedPose judged{.rest = before, .posed = after, .tissues = tissues};
   const VectorVolume field = read_field(options.field, after, report);
@@ -85,7 +85,7 @@ void measure_with_field(const Options& options, const LabelVolume& before, const
   measure_body(judged, map, report);
 }
 
-void run(const Options& options) {
+void run_report(const ReportOptions& options) {
   const Stopwatch total;
   Report report;
   report.inputs = {describe_input(options.before), describe_input(options.after)};
@@ -120,7 +120,7 @@ void run(const Options& options) {
 
 void add_report(CLI::App& app) {
   auto* command = app.add_subcommand("report", "reports what changed between two label volumes");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReportOptions>();
   command->add_option("BEFORE", options->before, "label volume")->required();
   command->add_option("AFTER", options->after, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table: names, kinds, densities");
@@ -142,7 +142,7 @@ void add_report(CLI::App& app) {
   add_pose_options(*command, options->pose);
   command->add_flag("--strict", options->strict, "exit with code 5 when a quality gate fails");
   command->add_flag("--json", options->json, "print the report as JSON (schema limber-report/1)");
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_report(*options); });
 }
 
 }  // namespace limber::cmd

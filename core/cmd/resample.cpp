@@ -46,7 +46,7 @@ namespace limber::cmd {
 
 namespace {
 
-struct Options {
+struct Resampling {
   BodyOptions body;
   PoseOptions pose;
   RunOptions run;
@@ -63,8 +63,8 @@ struct Options {
 };
 
 // Returns the options for one frame of a sequence, with the frame's number in the names of all output files.
-Options of_frame(const Options& options, int frame) {
-  Options one = options;
+Resampling of_frame(const Resampling& options, int frame) {
+  Resampling one = options;
   one.pose.frame = frame;
   one.fem = std::make_shared<FemOptions>(*options.fem);
   for (std::string* output : {&one.output, &one.report, &one.grey, &one.field, &one.jacobian, &one.overlap,
@@ -73,7 +73,7 @@ Options of_frame(const Options& options, int frame) {
   return one;
 }
 
-FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
+FilesOfValue files_of_mesh(const std::shared_ptr<Resampling>& options) {
   return [options](const std::string& value) {
     OptionFiles files;
     for (const std::string& name : names_of(value, options->frames))
@@ -84,7 +84,8 @@ FilesOfValue files_of_mesh(const std::shared_ptr<Options>& options) {
 
 // Returns a function that lists the files that an output option writes: the option's value with each of `endings`, or,
 // if `endings` is empty, the files of a volume.
-FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std::vector<const char*>& endings = {}) {
+FilesOfValue files_written_to(const std::shared_ptr<Resampling>& options,
+                              const std::vector<const char*>& endings = {}) {
   return [options, endings](const std::string& value) {
     OptionFiles files;
     for (const std::string& name : names_of(value, options->frames)) {
@@ -97,7 +98,7 @@ FilesOfValue files_written_to(const std::shared_ptr<Options>& options, const std
 }
 
 // Returns a function that lists the files of an option with the value IN=OUT.
-FilesOfValue files_of_pair(const std::shared_ptr<Options>& options) {
+FilesOfValue files_of_pair(const std::shared_ptr<Resampling>& options) {
   return [options](const std::string& value) {
     const Companion pair = companion(value, "input", "IN=OUT");
     OptionFiles files{{pair.from}, {}};
@@ -108,7 +109,7 @@ FilesOfValue files_of_pair(const std::shared_ptr<Options>& options) {
 }
 
 // Checks that every output can be written, before any computation.
-void check_outputs(const Options& options) {
+void check_outputs(const Resampling& options) {
   check_writable(options.output);
   std::vector<std::string> outputs = {options.output, options.field, options.jacobian, options.overlap};
   if (!options.grey.empty()) outputs.push_back(grey_paths(options.grey).to);
@@ -130,7 +131,7 @@ void note(Report& report, const std::vector<std::string>& warnings) {
   report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
 
-void check_sequence(const Options& options) {
+void check_sequence(const Resampling& options) {
   if (options.frames.empty()) return;
   if (options.pose.motion.empty())
     throw Error("--frames needs a motion", "--frames " + options.frames, "add --motion F.bvh");
@@ -150,7 +151,7 @@ void check_sequence(const Options& options) {
 }
 
 // Throws Error for options that need other options or exclude each other.
-void check_method(const Options& options) {
+void check_method(const Resampling& options) {
   if (options.mass_exact && options.nearest)
     throw Error("--mass-exact needs interpolated labels, which --nearest does not compute", "--mass-exact",
                 "leave one of the two out");
@@ -174,7 +175,7 @@ void check_method(const Options& options) {
 // step to a file for another program.
 class SolveProgress {
  public:
-  SolveProgress(CommandProgress& progress, const Options& options, const std::vector<std::string>& bones)
+  SolveProgress(CommandProgress& progress, const Resampling& options, const std::vector<std::string>& bones)
       : progress_(progress),
         name_(options.steps),
         bones_(bones) {}
@@ -212,7 +213,7 @@ class SolveProgress {
 };
 
 // Adds to the report the pose options and the input files, which only this command knows.
-void describe(Report& report, const Options& options) {
+void describe(Report& report, const Resampling& options) {
   auto& settings = report.settings;
   if (!options.field.empty()) settings["field_direction"] = options.field_direction;
   if (!options.pose.body.name.empty())
@@ -230,7 +231,7 @@ void describe(Report& report, const Options& options) {
 }
 
 // Writes the mesh of the whole body in the pose: the tets of the body at rest, with the nodes moved to the pose.
-void write_body_mesh(const Options& options, const Body& body, const BoundBody& bound, const BakedJoints& baked,
+void write_body_mesh(const Resampling& options, const Body& body, const BoundBody& bound, const BakedJoints& baked,
                      BodyInPose& posed, Progress& progress) {
   TissueVoxels tissue = bound.tissue;
   tissue.set_seams(seams_and_joints(body.file.volume, tissue, body.tissues, bound.weights));
@@ -243,7 +244,7 @@ void write_body_mesh(const Options& options, const Body& body, const BoundBody& 
   write_mesh(std::move(mesh.mesh), posed.posed.volume, body.tissues, options.mesh.unit, options.mesh_out, progress);
 }
 
-void write_outputs(const Options& options, const Body& body, Posed& posed, Outputs& outputs) {
+void write_outputs(const Resampling& options, const Body& body, Posed& posed, Outputs& outputs) {
   const FieldDirection direction =
       options.field_direction == kToRest ? FieldDirection::ToRest : FieldDirection::ToPosed;
   outputs.write(options.output, [&] { write_volume(posed.volume, options.output, body.tissues, body.file.type); });
@@ -266,7 +267,7 @@ void write_outputs(const Options& options, const Body& body, Posed& posed, Outpu
   outputs.write(to, [&] { write_grey_volume(posed.grey, to); });
 }
 
-std::vector<Landmark> posed_landmarks(std::vector<Landmark> landmarks, const Options& options, const Body& body,
+std::vector<Landmark> posed_landmarks(std::vector<Landmark> landmarks, const Resampling& options, const Body& body,
                                       const BoundBody& bound, const BakedJoints& baked, const BodyInPose& posed) {
   std::vector<glm::dvec3> places;
   for (const Landmark& landmark : landmarks) places.push_back(landmark.position);
@@ -277,7 +278,7 @@ std::vector<Landmark> posed_landmarks(std::vector<Landmark> landmarks, const Opt
   return landmarks;
 }
 
-PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
+PosingSettings posing_settings(const Resampling& options, const GreyVolume* grey) {
   BakedJoints baked;
   for (const std::string& file : options.baked)
     baked.push_back(std::make_shared<const BakedJoint>(read_baked_joint(file)));
@@ -304,7 +305,7 @@ PosingSettings posing_settings(const Options& options, const GreyVolume* grey) {
 }
 
 // Writes the outputs and the report of one posed volume. Returns false if a gate failed for which --strict fails.
-bool finish(const Options& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
+bool finish(const Resampling& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
             const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total, Progress& progress) {
   const std::shared_ptr<const FemShape> shape = posed.posed.shape;
   Report& report = posed.report;
@@ -341,7 +342,7 @@ struct RequestedPoses {
   std::vector<Pose> poses;
   std::vector<int> frames;
 };
-RequestedPoses read_poses(const Options& options, const Armature& rig) {
+RequestedPoses read_poses(const Resampling& options, const Armature& rig) {
   if (options.frames.empty()) return {{read_pose_options(options.pose, rig)}, {}};
   const std::vector<Pose> all = read_all_poses(options.pose, rig);
   RequestedPoses requested{{}, frames_in(options.frames, int(all.size()), "--frames " + options.frames)};
@@ -349,7 +350,7 @@ RequestedPoses read_poses(const Options& options, const Armature& rig) {
   return requested;
 }
 
-void run(const Options& options) {
+void run_resample(const Resampling& options) {
   Stopwatch total;
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
@@ -407,7 +408,7 @@ void run(const Options& options) {
 
 void add_resample(CLI::App& app) {
   auto* command = app.add_subcommand("resample", "moves the tissue of a label volume into a pose of its rig");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<Resampling>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "weights, W.nrrd (default: computed by heat diffusion)");
   add_seam_option(*command, options->seams);
@@ -493,7 +494,7 @@ void add_resample(CLI::App& app) {
                              "volume ratio at each posed voxel (Jacobian determinant; 1 = unchanged)"),
          files_written_to(options));
   add_run_options(*command, options->run);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run_resample(*options); });
 }
 
 }  // namespace limber::cmd

@@ -18,7 +18,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct SurfacesOptions {
   std::string volume, tissues, output, progress;
   SurfaceChoice choice;
 };
@@ -84,7 +84,7 @@ void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, co
 void add_surfaces(CLI::App& app) {
   auto* command = app.add_subcommand(
       "surfaces", "writes the surfaces of tissues, closed and smooth; neighbouring tissues share their borders");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<SurfacesOptions>();
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--only", options->choice.tissues, "write only these tissues, by name or label (default: all)")

@@ -17,7 +17,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct TissuesOptions {
   std::string volume, output, progress;
   MaterialOptions material;
   bool json = false;
@@ -86,7 +86,7 @@ TissueTable rows_as_tissues(const DielectricTable& table) {
   return rows;
 }
 
-void list_tissues(const Options& options) {
+void list_tissues(const TissuesOptions& options) {
   if (!options.output.empty()) check_place(options.output);
   CommandProgress progress(options.progress);
   const DielectricTable table = read_dielectric_table(options.material.properties);
@@ -112,7 +112,7 @@ void list_tissues(const Options& options) {
 void add_tissues(CLI::App& app) {
   auto* command =
       app.add_subcommand("tissues", "lists the permittivity, conductivity and density of each tissue at a frequency");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TissuesOptions>();
   command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
   add_material_options(*command, options->material)->required();
   command->add_flag("--json", options->json, "print as JSON");

@@ -19,7 +19,7 @@
 namespace limber::cmd {
 
 namespace {
-struct Options {
+struct WeightsOptions {
   BodyOptions body;
   std::string method = "heat", output, bender_folder, seams;
   bool strict = false;
@@ -77,7 +77,7 @@ OptionFiles files_of_bender_folder(const std::string& folder) {
   return files;
 }
 
-void make_weights(const Options& options) {
+void make_weights(const WeightsOptions& options) {
   std::optional<ThreadCount> threads;
   if (options.run.threads > 0) threads.emplace(options.run.threads);
   CommandProgress progress(options.run.progress);
@@ -110,7 +110,7 @@ void make_weights(const Options& options) {
 void add_weights(CLI::App& app) {
   auto* command = app.add_subcommand(
       "weights", "computes skin weights: for each voxel up to four bones that it follows, and their weights");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<WeightsOptions>();
   add_body_options(*command, options->body);
   command
       ->add_option("--method", options->method,
