@@ -259,10 +259,11 @@ TEST_CASE("repair joint: the real elbow keeps its tissues within 8 % at 45 degre
 TEST_CASE("repair joint: knee, hip and shoulder of a whole body change less and overlap no more" *
           doctest::test_suite("slow")) {
   NEEDS_SHARED("data/bp3d/body_3mm_tissue.nrrd");
+  Limb body = shared_limb("data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json",
+                          "data/bp3d/tissue.labels.json", "LeftShank", 4);
   for (const auto& [name, share] : {std::pair{"LeftShank", 0.5}, {"LeftThigh", 0.5}, {"LeftUpperArm", 0.8}}) {
     const std::string bone = name;
-    const Limb body = shared_limb("data/bp3d/body_3mm_tissue.nrrd", "data/bp3d/body.armature.json",
-                                  "data/bp3d/tissue.labels.json", bone, 4);
+    body.bone = require_bone(body.rig, bone);
     const JointRepair repair = repair_joint(body.body(), body.heat, body.bone, {.blend = Blend::DualQuaternion});
     REQUIRE(repair.is_better);
     const Counted heat = mean_counted(body, body.heat, Blend::DualQuaternion),
