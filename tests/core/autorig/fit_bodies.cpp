@@ -26,10 +26,12 @@ glm::dvec3 shift_of(const glm::dvec3& p, const Build& build, const StandingLandm
   return shift + build.larger_head * ramp(at.neck - 40, at.neck + 60, p.z) * (p - at.head);
 }
 
-glm::dvec3 place_before(const glm::dvec3& after, const Build& build, const StandingLandmarks& at) {
+//   guess  where the search begins
+glm::dvec3 place_before(const glm::dvec3& after, const glm::dvec3& guess, const Build& build,
+                        const StandingLandmarks& at) {
   // The search ends when the position changes by less than this, mm.
   constexpr double kNear = 1e-3;
-  glm::dvec3 p = after;
+  glm::dvec3 p = guess;
   for (int k = 0; k < 25; ++k) {
     const glm::dvec3 next = after - shift_of(p, build, at);
     const bool is_near = glm::distance(p, next) < kNear;
@@ -84,10 +86,15 @@ FitBody rebuilt(const FitBody& body, const Build& build, const StandingLandmarks
   result.volume = {grid, ZeroedVector<Label>(grid.voxel_count(), 0)};
   const AffineTransform to_world = world_from_voxel(grid), to_voxel = voxel_from_world(from);
   for (int z = 0; z < grid.size.z; ++z)
-    for (int y = 0; y < grid.size.y; ++y)
-      for (int x = 0; x < grid.size.x; ++x)
-        result.volume.at({x, y, z}) = body.volume.at_or_air(
-            glm::ivec3(glm::floor(to_voxel * place_before(to_world * glm::dvec3(x, y, z), build, at) + 0.5)));
+    for (int y = 0; y < grid.size.y; ++y) {
+      glm::dvec3 moved_by(0);  // a voxel moves by nearly as much as the one beside it
+      for (int x = 0; x < grid.size.x; ++x) {
+        const glm::dvec3 after = to_world * glm::dvec3(x, y, z);
+        const glm::dvec3 before = place_before(after, after - moved_by, build, at);
+        moved_by = after - before;
+        result.volume.at({x, y, z}) = body.volume.at_or_air(glm::ivec3(glm::floor(to_voxel * before + 0.5)));
+      }
+    }
   for (Bone& bone : result.truth.bones)
     bone.head += shift_of(bone.head, build, at), bone.tail += shift_of(bone.tail, build, at);
   return build.size == 1 ? result : moved(result, glm::dmat3(1), build.size, glm::dvec3(0));
@@ -209,19 +216,23 @@ FitBody animal(const std::string& name, const Armature& rig, const std::vector<d
   grid.size = glm::ivec3(glm::ceil((high - low) / voxel)) + 5;
   grid.origin = low - 2 * voxel;
   body.volume.voxels.assign(grid.voxel_count(), 0);
-  for (int z = 0; z < grid.size.z; ++z)
-    for (int y = 0; y < grid.size.y; ++y)
-      for (int x = 0; x < grid.size.x; ++x) {
-        const glm::dvec3 p = grid.origin + voxel * glm::dvec3(x, y, z);
-        Label& here = body.volume.at({x, y, z});
-        for (size_t b = 0; b < radii.size() && here != kBone; ++b) {
-          Bone inner = rig.bones[b];
-          inner.head = glm::mix(rig.bones[b].head, rig.bones[b].tail, kGap),
-          inner.tail = glm::mix(rig.bones[b].tail, rig.bones[b].head, kGap);
-          if (distance_to_bone(rig.bones[b], p) < radii[b]) here = std::max(here, kFlesh);
-          if (distance_to_bone(inner, p) < std::max(kBoneRadius * radii[b], 0.7 * voxel)) here = kBone;
+  for (size_t b = 0; b < radii.size(); ++b) {
+    const Bone& bone = rig.bones[b];
+    Bone inner = bone;
+    inner.head = glm::mix(bone.head, bone.tail, kGap), inner.tail = glm::mix(bone.tail, bone.head, kGap);
+    const double inner_radius = std::max(kBoneRadius * radii[b], 0.7 * voxel), reach = std::max(radii[b], inner_radius);
+    const glm::ivec3 from((glm::min(bone.head, bone.tail) - reach - grid.origin) / voxel),
+        to = glm::min(grid.size - 1, glm::ivec3((glm::max(bone.head, bone.tail) + reach - grid.origin) / voxel) + 1);
+    for (int z = std::max(0, from.z); z <= to.z; ++z)
+      for (int y = std::max(0, from.y); y <= to.y; ++y)
+        for (int x = std::max(0, from.x); x <= to.x; ++x) {
+          const glm::dvec3 p = grid.origin + voxel * glm::dvec3(x, y, z);
+          Label& here = body.volume.at({x, y, z});
+          if (here == kBone) continue;
+          if (distance_to_bone(bone, p) < radii[b]) here = kFlesh;
+          if (distance_to_bone(inner, p) < inner_radius) here = kBone;
         }
-      }
+  }
   for (const auto& [label, kind, text] :
        {std::tuple(kFlesh, TissueKind::Muscle, "flesh"), std::tuple(kBone, TissueKind::Bone, "bone")}) {
     Tissue tissue{.label = label, .file_value = double(label), .name = text, .kind = kind};
