@@ -41,7 +41,7 @@ MeshBorder::MeshBorder(const TetMesh& mesh, const Grid& grid)
   bins_ = BoxBins(std::move(boxes), kBin);
 }
 
-std::optional<MeshBorder::Place> MeshBorder::nearest(const glm::dvec3& rest, double furthest_mm) const {
+std::optional<MeshBorder::Place> MeshBorder::nearest(const glm::dvec3& rest, double furthest_mm, int side) const {
   const glm::dvec3 world = world_from_voxel_ * rest;
   const double least_spacing = std::min({grid_.spacing.x, grid_.spacing.y, grid_.spacing.z});
   std::vector<int> near;
@@ -55,6 +55,7 @@ std::optional<MeshBorder::Place> MeshBorder::nearest(const glm::dvec3& rest, dou
     searched = reach * least_spacing;
     bins_.meeting({glm::ivec3(glm::floor(rest)) - reach, glm::ivec3(glm::ceil(rest)) + reach}, near);
     for (int f : near) {
+      if (side >= 0 && mesh_->side[faces_[f].tet] != side) continue;
       const auto& c = faces_[f].corners;
       const glm::dvec3 s =
           nearest_in_triangle(world, in_mm(mesh_->V, c[0]), in_mm(mesh_->V, c[1]), in_mm(mesh_->V, c[2]));

@@ -27,8 +27,9 @@ class MeshBorder {
 
   // Returns the border's point nearest to a rest point; nothing if there is none within `furthest_mm`.
   //   rest  voxel coordinates
-  std::optional<Place> nearest(const glm::dvec3& rest,
-                               double furthest_mm = std::numeric_limits<double>::infinity()) const;
+  //   side  only the border of tets on this side of seams counts (TetMesh::side); -1: all of the border
+  std::optional<Place> nearest(const glm::dvec3& rest, double furthest_mm = std::numeric_limits<double>::infinity(),
+                               int side = -1) const;
 
  private:
   struct Face {

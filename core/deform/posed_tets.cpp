@@ -23,7 +23,6 @@ constexpr int kCrease = 5;
 // Takes the place of kCrease for flesh that slides over bone. Such flesh may come from anywhere, so nothing counts as
 // overlapping.
 constexpr int kSlides = 1 << 20;
-constexpr int kSide = TissueVoxels::kBrick + 1;
 
 glm::dvec3 in_mm(const Eigen::MatrixX3d& places, int row) { return {places(row, 0), places(row, 1), places(row, 2)}; }
 
@@ -98,10 +97,11 @@ class PosedTets::Border {
   // Returns the posed position of a rest point outside the mesh. The point keeps its distance from the mesh's border.
   // If another part of the mesh is near, the point uses at most half of the air between the two parts; the other half
   // is for tissue outside the other part's border.
-  FixedPoint carried(const glm::dvec3& rest) const {
+  //   side  the point moves with the border of this side of seams; -1: with the nearest border
+  FixedPoint carried(const glm::dvec3& rest, int side = -1) const {
     const Grid& grid = tets_.lattice_->volume().grid;
-    const auto place = border_.nearest(rest);  // always exists, since every mesh has a border
-    glm::dvec3 from(0), moved(0);              // rest position of the border's nearest point, and its motion; mm
+    const auto place = border_.nearest(rest, INFINITY, side);  // always exists, since every mesh and side has a border
+    glm::dvec3 from(0), moved(0);  // rest position of the border's nearest point, and its motion; mm
     for (int i = 0; i < 3; ++i) {
       from += place->shares[i] * in_mm(tets_.mesh_->V, place->corners[i]);
       moved += place->shares[i] * in_mm(tets_.moved_, place->corners[i]);
@@ -128,6 +128,9 @@ class PosedTets::Border {
                                      [&](int t) { return tets_.rest_corners(t); });
     return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
   }
+
+  // Returns the side of seams of the border nearest to a rest point.
+  int side_near(const glm::dvec3& rest) const { return tets_.mesh_->side[border_.nearest(rest)->tet]; }
 
  private:
   // Range of the search for another part of the mesh, as a multiple of the point's distance from the border. Two is
@@ -302,30 +305,29 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
     });
   }
 
-  // The tet that contains each corner of the brick's voxels at rest, and a bit for each voxel whose centre lies in a
-  // tet.
-  std::array<int, kSide * kSide * kSide> tet_of;
-  tet_of.fill(-1);
-  std::array<std::uint64_t, 8> centre_held{};
+  // The tet that contains each corner of the brick's voxels at rest, and the tet that contains each voxel's centre.
+  CornerTets tet_of, tet_at;  // tet_at: the tet that contains a voxel's centre
+  tet_of.fill(-1), tet_at.fill(-1);
   std::vector<int> near;
-  rest_bins.meeting({cells.corner - 1, cells.corner + kSide}, near);
+  rest_bins.meeting({cells.corner - 1, cells.corner + kCorners}, near);
   for (int t : near) {
     const auto rest = rest_corners(t);
     std::array<FixedPoint, 4> from_brick;
     for (int i = 0; i < 4; ++i) from_brick[i] = FixedPoint((rest[i] - glm::dvec3(cells.corner)) * double(kFixedOne));
     rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(TissueVoxels::kBrick - 1)},
-                  [&](const glm::ivec3& v, int) { centre_held[v.z] |= std::uint64_t{1} << (v.x + 8 * v.y); });
+                  [&](const glm::ivec3& v, int) { tet_at[PosedLattice::place(v.x, v.y, v.z)] = t; });
     for (FixedPoint& corner : from_brick) corner += kFixedOne / 2;
-    rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(kSide - 1)},
+    rasterize_tet(from_brick, {glm::ivec3(0), glm::ivec3(kCorners - 1)},
                   [&](const glm::ivec3& v, int) { tet_of[PosedLattice::place(v.x, v.y, v.z)] = t; });
   }
 
-  std::array<std::optional<FixedPoint>, kSide * kSide * kSide> posed;
+  std::array<std::optional<FixedPoint>, kCorners * kCorners * kCorners> posed;
   tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
     const glm::ivec3 v = voxel - cells.corner;
     if (!(mine[v.z] >> (v.x + 8 * v.y) & 1)) return;
     Rider rider{voxel, {}};
-    bool rides = !(centre_held[v.z] >> (v.x + 8 * v.y) & 1);
+    const int home = tet_at[PosedLattice::place(v.x, v.y, v.z)];
+    bool rides = home < 0;
     for (int i = 0; i < 8; ++i) {
       const glm::ivec3 corner = v + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
       const int at = PosedLattice::place(corner.x, corner.y, corner.z);
@@ -336,8 +338,24 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
       outcome.low = glm::min(outcome.low, *posed[at]);
       outcome.high = glm::max(outcome.high, *posed[at]);
     }
-    if (rides) outcome.riders.push_back(rider);
+    if (rides) outcome.riders.push_back(mesh_->side.empty() ? rider : on_one_side(rider, home, tet_of, border));
   });
+}
+
+// Returns a rider all of whose corners move with the side of seams on which its centre lies. So a voxel at a seam goes
+// with one side, and is not stretched from one to the other.
+//   home    the tet that contains the voxel's centre; -1: none
+//   tet_of  the tet that contains each corner of the brick's voxels; -1: none
+PosedTets::Rider PosedTets::on_one_side(Rider rider, int home, const CornerTets& tet_of, const Border& border) const {
+  const int side = home >= 0 ? mesh_->side[home] : border.side_near(glm::dvec3(rider.voxel));
+  const glm::ivec3 v = rider.voxel & (TissueVoxels::kBrick - 1);
+  for (int i = 0; i < 8; ++i) {
+    const glm::ivec3 up(i & 1, i >> 1 & 1, i >> 2);
+    const int tet = tet_of[PosedLattice::place(v.x + up.x, v.y + up.y, v.z + up.z)];
+    if (tet < 0 || mesh_->side[tet] != side)
+      rider.corners[i] = border.carried(glm::dvec3(rider.voxel + up) - 0.5, side);
+  }
+  return rider;
 }
 
 bool PosedTets::reaches(const VoxelRange& range) const {

@@ -64,9 +64,12 @@ class PosedTets {
  private:
   struct BrickOutcome;
   class Border;
+  static constexpr int kCorners = TissueVoxels::kBrick + 1;            // number of corners along the edge of a brick
+  using CornerTets = std::array<int, kCorners * kCorners * kCorners>;  // a tet for each corner; -1: none
 
   void place_nodes();
   void run_brick(std::int64_t brick, const BoxBins& rest_bins, const Border& border, BrickOutcome& outcome) const;
+  Rider on_one_side(Rider rider, int home, const CornerTets& tet_of, const Border& border) const;
   bool is_in_mesh(const glm::ivec3& voxel) const;
   void find_instead_of();
   FixedPoint carried(int tet, const glm::dvec3& rest) const;

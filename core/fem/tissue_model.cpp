@@ -8,6 +8,7 @@
 #include <Eigen/LU>
 
 #include "core/deform/box_bins.h"
+#include "core/mesh/lattice_net.h"
 
 namespace limber {
 
@@ -250,6 +251,18 @@ void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
     if (std::size_t& left = free[bone[node]]; left > 0) marked[node] = 1, --left;
 }
 
+// Returns the side of seams on which the tets around each node lie; -1: on several, or there are no seams.
+std::vector<int> sides_of_nodes(const TetMesh& mesh) {
+  const std::vector<std::uint16_t>& side = mesh.side;
+  std::vector<int> sides(mesh.V.rows(), kSeveral);
+  if (side.empty()) return sides;
+  std::fill(sides.begin(), sides.end(), kNone);
+  for (int t = 0; t < mesh.T.rows(); ++t)
+    for (const int node : mesh.T.row(t))
+      sides[node] = sides[node] == kNone || sides[node] == side[t] ? side[t] : kSeveral;
+  return sides;
+}
+
 // Selects the bone that holds each node: the bone of the bone tets around the node or, in soft tissue that moves
 // rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints. Returns the nodes of
 // bone over which soft tissue slides (sliding_nodes.h).
@@ -288,10 +301,15 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
   }
 
   const Surroundings around(volume);
+  const std::vector<int> side = sides_of_nodes(mesh);
   for (int i = 0; i < mesh.V.rows(); ++i) {
     glm::ivec3 voxel(0);
-    const bool found = around.nearest(
-        mesh.V.row(i), [&](const glm::ivec3& v) { return is_in(moving.meshed, tissue, v); }, voxel);
+    // A node at a seam must not follow tissue on the other side of it.
+    const auto is_near = [&](const glm::ivec3& v) {
+      return is_in(moving.meshed, tissue, v) &&
+             (side[i] < 0 || settings.side_of_bone[influence_at(weights, tissue, v).bone[0]] == side[i]);
+    };
+    const bool found = around.nearest(mesh.V.row(i), is_near, voxel);
     int holder = bone[i] == kSeveral || in_joint[i] ? kNone : bone[i];
     if (const float from = found && bone[i] == kNone ? moving.free_from_at(tissue, voxel) : 0; from > 0) {
       const int with = moving.moves_as[influence_at(weights, tissue, voxel).bone[0]];
@@ -309,14 +327,17 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
 }  // namespace
 
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const DeformingRegion& moving) {
+                            const SkinWeights& weights, const DeformingRegion& moving,
+                            const std::vector<std::uint16_t>& side_of_bone) {
   LabelVolume regions{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     auto influence = weights.chunk(brick).begin();
     tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
       const int bone = (*influence++).bone[0];
       if (is_in(moving.meshed, tissue, v))
-        regions.at(v) = is_bone[volume.at(v)] ? static_cast<Label>(2 + moving.moves_as[bone]) : Label{1};
+        regions.at(v) = is_bone[volume.at(v)]  ? static_cast<Label>(2 + moving.moves_as[bone])
+                        : side_of_bone.empty() ? Label{1}
+                                               : static_cast<Label>(1 + soft_region(side_of_bone[bone]));
     });
   }
   return regions;

@@ -9,6 +9,7 @@
 // one cell of soft tissue, so no node belongs to two bones.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -22,11 +23,28 @@ namespace limber {
 // then moves with the mesh's border.
 inline constexpr int kNearVoxels = 2;
 
-// The region of each tissue voxel: TetMesh::kSoft, or 1 + the index of the rig bone to which the voxel belongs.
+// Where seams separate parts of the body, soft tissue has a region by its side of the seams: TetMesh::kSoft on side 0,
+// kSide + s on side s > 0. The surface net then also separates the sides.
+inline constexpr std::uint16_t kSide = 0x4000;
+inline std::uint16_t soft_region(std::uint16_t side) {
+  return side == 0 ? TetMesh::kSoft : static_cast<std::uint16_t>(kSide + side);
+}
+inline bool is_soft_region(std::uint16_t region) {
+  return region == TetMesh::kSoft || (region > kSide && region != RegionSurface::kAir);
+}
+
+// The region of each tissue voxel: that of soft tissue, or 1 + the index of the rig bone to which the voxel belongs.
 struct VoxelRegions {
   const Grid& grid;
   const TissueVoxels& tissue;
-  const std::vector<std::uint16_t>& region;  // region of each tissue voxel, in brick order
+  const std::vector<std::uint16_t>& region;                  // region of each tissue voxel, in brick order
+  const std::vector<std::uint16_t>* side_of_bone = nullptr;  // side of the seams of each rig bone; null: no sides
+
+  // Returns the side of the seams on which tissue of a region lies.
+  std::uint16_t side_of(std::uint16_t of) const {
+    if (is_soft_region(of)) return of == TetMesh::kSoft ? 0 : static_cast<std::uint16_t>(of - kSide);
+    return side_of_bone ? (*side_of_bone)[TetMesh::bone_of(of)] : std::uint16_t{0};
+  }
 };
 
 struct LatticeNetSettings {
@@ -52,6 +70,8 @@ struct LatticeNet {
   // cross. world_from_lattice rotates and translates; it does not scale.
   Eigen::MatrixX3d low, high;
   AffineTransform world_from_lattice;
+  // Triangles of the surface, as their three nodes, at which seams separate the tissue on both sides.
+  std::vector<std::array<int, 3>> cut;
   double spacing_mm = 0;  // the spacing in use, which may be larger than requested
   double covered = 0;     // share of tissue voxels inside the surface
   double near = 0;        // share of tissue voxels inside the surface or within kNearVoxels of voxels inside

@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/mesh/improve.h"
 #include "core/mesh/mesh_quality.h"
+#include "core/mesh/split_at_seams.h"
 
 namespace limber {
 
@@ -14,6 +15,8 @@ namespace {
 
 // Edge of the lattice's cells relative to the node spacing: a body-centred cubic cell contains two nodes.
 const double kLatticePerSpacing = std::cbrt(2.0);
+// Distance by which each side of a seam moves away from it, as a share of the lattice's spacing. Contact needs a gap.
+constexpr double kOpen = 0.04;
 
 std::string find_fault_of(const TetMesh& mesh, const LatticeNet& net) {
   return find_fault(mesh, enclosed_volumes(net.surface, mesh.V));
@@ -31,6 +34,20 @@ std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const Mesh
   return {};
 }
 
+// Cuts the mesh open where seams separate tissue, and gives all soft tissue the region kSoft.
+void cut_open(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels) {
+  if (!voxels.side_of_bone) return;
+  TetMesh& mesh = result.mesh;
+  const Eigen::MatrixX4i before = mesh.T;
+  split_at_faces(mesh, net.cut);
+  open_faces(mesh, net.cut, before, kOpen * net.spacing_mm);
+  remove_crossing(mesh);
+  for (std::uint16_t& region : mesh.region) {
+    mesh.side.push_back(voxels.side_of(region));
+    if (is_soft_region(region)) region = TetMesh::kSoft;
+  }
+}
+
 void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSettings& settings, Progress& progress) {
   const bool by_tetgen = settings.mesher == Mesher::tetgen;
   LatticeNet net = lattice_net(voxels,
@@ -43,13 +60,14 @@ void make_mesh(TissueMesh& result, const VoxelRegions& voxels, const MeshSetting
   progress.update("tetrahedra", 0);
   if (by_tetgen) {
     const std::string failure = fill_by_tetgen(result, net, settings, progress);
-    if (failure.empty()) return;
+    if (failure.empty()) return cut_open(result, net, voxels);
     result.warning = "the mesh is made of the lattice's own tetrahedra: TetGen failed on its surface: " + failure;
   }
   result.mesh = std::move(net.mesh);
   improve(result.mesh, net, ImproveSettings{}, progress);
   if (const std::string fault = find_fault_of(result.mesh, net); !fault.empty())
     throw Error("the tet mesh has a fault", fault, "try another node spacing");
+  cut_open(result, net, voxels);
 }
 
 }  // namespace
@@ -63,11 +81,14 @@ TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings,
   return result;
 }
 
-TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings, Progress& progress) {
-  const TissueVoxels tissue(regions);
+TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings, Progress& progress,
+                       const SeamCut& cut) {
+  TissueVoxels tissue(regions);
+  tissue.set_seams(cut.seams);
   std::vector<std::uint16_t> region(tissue.size());
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { region[place] = regions.at(v) - 1; });
-  return mesh_tissue({regions.grid, tissue, region}, settings, progress);
+  return mesh_tissue({regions.grid, tissue, region, cut.side_of_bone.empty() ? nullptr : &cut.side_of_bone}, settings,
+                     progress);
 }
 
 }  // namespace limber

@@ -5,7 +5,9 @@
 // user.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/base/progress.h"
 #include "core/mesh/lattice_net.h"
@@ -42,8 +44,15 @@ struct TissueMesh {
 TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings = {},
                        Progress& progress = no_progress());
 
-// Meshes a volume whose labels are regions: 0 is not meshed, 1 is soft tissue, 2 + i is bone i.
+// The seams at which the mesh is cut open: the two sides get nodes of their own, with a narrow gap between them.
+struct SeamCut {
+  std::shared_ptr<const Seams> seams;
+  std::vector<std::uint16_t> side_of_bone;  // side of the seams of each rig bone's tissue; empty: the mesh is not cut
+};
+
+// Meshes a volume whose labels are regions: 0 is not meshed, 1 is soft tissue, 2 + i is bone i. With `cut`, soft tissue
+// on side s has the label 1 + soft_region(s).
 TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings = {},
-                       Progress& progress = no_progress());
+                       Progress& progress = no_progress(), const SeamCut& cut = {});
 
 }  // namespace limber

@@ -183,7 +183,7 @@ Filling fill(const SampleLattice& lattice, const VoxelRegions& voxels, int strid
                              nearest_sample(fine.z, stride));
           const std::int64_t at = lattice.index(p);
           filling.tissue[at] += part;
-          if (region == TetMesh::kSoft) continue;
+          if (is_soft_region(region)) continue;
           const std::uint64_t key = std::uint64_t(at) << 16 | region;
           if (!filling.bone.empty() && filling.bone.back().first == key) filling.bone.back().second += part;
           else filling.bone.push_back({key, part});
@@ -192,6 +192,37 @@ Filling fill(const SampleLattice& lattice, const VoxelRegions& voxels, int strid
   });
   sum_up(filling.bone);
   return filling;
+}
+
+// Returns SampleLattice::soft. A sample without tissue around it takes the side of a sample beside it.
+std::vector<std::uint16_t> find_sides(const SampleLattice& lattice, const VoxelRegions& voxels) {
+  constexpr int kBeside = 3;  // number of samples over which a side spreads
+  std::vector<std::pair<std::uint64_t, float>> parts;
+  voxels.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    const glm::dvec3 fine = lattice.fine_from_voxel * glm::dvec3(v);
+    const std::int64_t at =
+        lattice.index({nearest_sample(fine.x, 1), nearest_sample(fine.y, 1), nearest_sample(fine.z, 1)});
+    const std::uint64_t key = std::uint64_t(at) << 16 | voxels.side_of(voxels.region[place]);
+    if (!parts.empty() && parts.back().first == key) parts.back().second += 1;
+    else parts.push_back({key, 1});
+  });
+  sum_up(parts);
+  constexpr std::uint16_t kUnknown = kAir;
+  std::vector<std::uint16_t> soft(lattice.label.size(), kUnknown);
+  std::vector<float> most(lattice.label.size(), 0);
+  for (const auto& [key, count] : parts)
+    if (const std::uint64_t at = key >> 16; count > most[at])
+      most[at] = count, soft[at] = soft_region(static_cast<std::uint16_t>(key & 0xffff));
+  const std::int64_t strides[3] = {1, lattice.size.x, std::int64_t{lattice.size.x} * lattice.size.y};
+  for (int round = 0; round < kBeside; ++round) {
+    const std::vector<std::uint16_t> before = soft;
+    for (std::int64_t at = 0; at < std::ssize(soft); ++at)
+      for (const std::int64_t stride : strides)
+        for (const std::int64_t beside : {at - stride, at + stride})
+          if (soft[at] == kUnknown && beside >= 0 && beside < std::ssize(soft)) soft[at] = before[beside];
+  }
+  std::replace(soft.begin(), soft.end(), kUnknown, TetMesh::kSoft);
+  return soft;
 }
 
 int smallest_around(const SampleLattice& lattice, const glm::ivec3& p) {
@@ -353,6 +384,11 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
     if (lattice.usual == 1) break;
   }
   give_bones(lattice, bones, settings);
+  if (voxels.side_of_bone) {
+    lattice.soft = find_sides(lattice, voxels);
+    for (std::size_t at = 0; at < lattice.label.size(); ++at)
+      if (lattice.label[at] == TetMesh::kSoft) lattice.label[at] = lattice.soft[at];
+  }
   for (int size = lattice.usual; size < kLargest * lattice.usual; size *= 2) coarsen(lattice, size);
   return lattice;
 }

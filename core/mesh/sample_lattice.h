@@ -26,6 +26,9 @@ struct SampleLattice {
   int usual = 1;                        // size in steps of cells whose samples are spacing_mm apart
   std::vector<std::uint8_t> cell_size;  // size in steps of the cell around each smallest cell, by its lowest corner
   std::vector<std::uint16_t> label;     // #samples: the sample's region; kAir also for positions without a sample
+  // #samples: the region of a sample that is or becomes soft tissue, by the side of seams on which most of the tissue
+  // around it lies; empty: kSoft.
+  std::vector<std::uint16_t> soft;
   // Rotates and translates without scaling; takes lattice coordinates in mm, not in steps.
   AffineTransform world_from_lattice;
   AffineTransform fine_from_voxel;
@@ -41,6 +44,7 @@ struct SampleLattice {
     return p.x + std::int64_t{size.x} * (p.y + std::int64_t{size.y} * p.z);
   }
   std::uint16_t at(const glm::ivec3& p) const { return label[index(p)]; }
+  std::uint16_t soft_at(std::int64_t index) const { return soft.empty() ? TetMesh::kSoft : soft[index]; }
   Cell cell(const glm::ivec3& smallest) const {
     const int s = cell_size[index(smallest)];
     return {smallest & ~(s - 1), s};

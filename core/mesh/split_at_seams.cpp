@@ -3,7 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
+
+#include <Eigen/Geometry>
+
+#include "core/mesh/crossings.h"
 
 namespace limber {
 
@@ -23,18 +28,18 @@ struct Corner {
 
 }  // namespace
 
-std::vector<int> split_at_seams(TetMesh& mesh, const SampleLattice& lattice, const SurfaceNet& net) {
+std::vector<int> split_at_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces) {
   std::set<std::array<int, 3>> cut;
-  std::vector<std::uint8_t> is_at_seam(mesh.V.rows(), 0);
-  net.for_each_triangle([&](int a, int b, int c, const SurfaceNet::Edge& edge) {
-    if (edge.length != 1 || !lattice.is_cut(edge.from, edge.axis)) return;
+  std::vector<std::uint8_t> is_at_cut(mesh.V.rows(), 0);
+  int end = 0;  // above the index of every node of a face
+  for (const auto& [a, b, c] : faces) {
     cut.insert(sorted_face(a, b, c));
-    for (const int node : {a, b, c}) is_at_seam[node] = 1;
-  });
-  std::vector<std::vector<Corner>> corners(net.nodes().size());
+    for (const int node : {a, b, c}) is_at_cut[node] = 1, end = std::max(end, node + 1);
+  }
+  std::vector<std::vector<Corner>> corners(end);
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
     for (int i = 0; i < 4; ++i)
-      if (is_at_seam[mesh.T(t, i)]) corners[mesh.T(t, i)].push_back({t, i, -1});
+      if (is_at_cut[mesh.T(t, i)]) corners[mesh.T(t, i)].push_back({t, i, -1});
 
   const Eigen::MatrixX4i before = mesh.T;
   std::vector<int> copied;  // the node of which each new node is a copy
@@ -71,10 +76,119 @@ std::vector<int> split_at_seams(TetMesh& mesh, const SampleLattice& lattice, con
   const Eigen::Index old = mesh.V.rows();
   mesh.V.conservativeResize(old + std::ssize(copied), 3);
   for (std::size_t i = 0; i < copied.size(); ++i) mesh.V.row(old + i) = mesh.V.row(copied[i]);
-  std::vector<int> nodes;
-  for (std::size_t node = 0; node < corners.size(); ++node)
-    if (!corners[node].empty()) nodes.push_back(static_cast<int>(node));
-  for (std::size_t i = 0; i < copied.size(); ++i) nodes.push_back(static_cast<int>(old + i));
+  return copied;
+}
+
+namespace {
+
+// Returns the unit vector that points away from the fronts of all faces as far as possible: the largest of its products
+// with the faces' unit normals is least.
+Eigen::RowVector3d away_from(const std::vector<Eigen::RowVector3d>& normals) {
+  constexpr int kSteps = 60;
+  Eigen::RowVector3d way = Eigen::RowVector3d::Zero(), best = way;
+  for (const Eigen::RowVector3d& normal : normals) way -= normal;
+  double least = 1;
+  for (int step = 0; step < kSteps; ++step) {
+    way.normalize();
+    const auto worst = std::max_element(normals.begin(), normals.end(), [&](const auto& one, const auto& other) {
+      return one.dot(way) < other.dot(way);
+    });
+    if (worst->dot(way) < least) least = worst->dot(way), best = way;
+    way -= 0.5 / (1 + step) * *worst;
+  }
+  return best;
+}
+
+// Returns for each node at a split the way into its own side, a unit vector; zero for other nodes.
+Eigen::MatrixX3d ways_inwards(const TetMesh& mesh, const std::vector<std::array<int, 3>>& faces,
+                              const Eigen::MatrixX4i& before) {
+  std::set<std::array<int, 3>> cut;
+  for (const auto& [a, b, c] : faces) cut.insert(sorted_face(a, b, c));
+  // A node was split if tets around it have different nodes at its place.
+  std::vector<char> is_split(mesh.V.rows(), 0);
+  for (Eigen::Index t = 0; t < before.rows(); ++t)
+    for (int i = 0; i < 4; ++i)
+      if (mesh.T(t, i) != before(t, i)) is_split[mesh.T(t, i)] = is_split[before(t, i)] = 1;
+  std::map<int, std::vector<Eigen::RowVector3d>> normals;
+  for (Eigen::Index t = 0; t < before.rows(); ++t)
+    for (const auto& [i, j, k] : kTetFaces) {
+      if (!cut.contains(sorted_face(before(t, i), before(t, j), before(t, k)))) continue;
+      const Eigen::RowVector3d a = mesh.V.row(mesh.T(t, i)), b = mesh.V.row(mesh.T(t, j)) - a,
+                               c = mesh.V.row(mesh.T(t, k)) - a;
+      for (const int corner : {i, j, k})
+        if (is_split[mesh.T(t, corner)]) normals[mesh.T(t, corner)].push_back(b.cross(c).normalized());
+    }
+  Eigen::MatrixX3d ways = Eigen::MatrixX3d::Zero(mesh.V.rows(), 3);
+  for (const auto& [node, of_node] : normals) ways.row(node) = away_from(of_node);
+  return ways;
+}
+
+}  // namespace
+
+void open_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces, const Eigen::MatrixX4i& before,
+                double mm) {
+  constexpr double kLeft = 0.5;  // share of a tet's volume that must be left
+  constexpr int kHalvings = 5;
+  const Eigen::MatrixX3d rest = mesh.V;
+  const Eigen::MatrixX3i border = boundary_of(mesh.T);
+  Eigen::MatrixX3d shift = mm * ways_inwards(mesh, faces, before);
+  for (int round = 0; round < kHalvings; ++round) {
+    mesh.V = rest + shift;
+    std::vector<char> too_far(mesh.V.rows(), 0);
+    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+      if (signed_volume(mesh.V, mesh.T.row(t)) < kLeft * signed_volume(rest, mesh.T.row(t)))
+        for (const int node : mesh.T.row(t)) too_far[node] = 1;
+    for (const auto& [one, other] : crossing_pairs(mesh.V, border))
+      for (int i = 0; i < 3; ++i) too_far[border(one, i)] = too_far[border(other, i)] = 1;
+    bool any = false;
+    for (Eigen::Index v = 0; v < shift.rows(); ++v)
+      if (too_far[v] && shift.row(v).squaredNorm() > 0) shift.row(v) *= 0.5, any = true;
+    if (!any) break;
+  }
+}
+
+void remove_crossing(TetMesh& mesh) {
+  constexpr int kRounds = 8;
+  for (int round = 0; round < kRounds; ++round) {
+    const auto neighbours = neighbours_of(mesh.T);
+    const Eigen::MatrixX3i border = boundary_of(mesh.T, neighbours);
+    const auto crossing = crossing_pairs(mesh.V, border);
+    if (crossing.empty()) return;
+    std::vector<Eigen::Index> tet_of;  // the tet of each triangle of the border
+    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+      for (const int next : neighbours[t])
+        if (next == -1) tet_of.push_back(t);
+    std::vector<char> lost(mesh.T.rows(), 0);
+    for (const auto& [one, other] : crossing) {
+      const auto a = tet_of[one], b = tet_of[other];
+      const bool is_soft_a = is_soft_region(mesh.region[a]), is_soft_b = is_soft_region(mesh.region[b]);
+      if (is_soft_a && (!is_soft_b || mesh.region[a] >= mesh.region[b])) lost[a] = 1;
+      else if (is_soft_b) lost[b] = 1;
+    }
+    Eigen::Index kept = 0;
+    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
+      if (lost[t]) continue;
+      mesh.T.row(kept) = mesh.T.row(t).eval();
+      mesh.region[kept++] = mesh.region[t];
+    }
+    if (kept == mesh.T.rows()) return;
+    mesh.T.conservativeResize(kept, 4);
+    mesh.region.resize(kept);
+  }
+}
+
+std::vector<int> split_at_seams(TetMesh& mesh, const SampleLattice& lattice, const SurfaceNet& net) {
+  std::vector<std::array<int, 3>> faces;
+  std::set<int> at_seam;
+  net.for_each_triangle([&](int a, int b, int c, const SurfaceNet::Edge& edge) {
+    if (edge.length != 1 || !lattice.is_cut(edge.from, edge.axis)) return;
+    faces.push_back({a, b, c});
+    at_seam.insert({a, b, c});
+  });
+  const Eigen::Index old = mesh.V.rows();
+  const std::vector<int> copied = split_at_faces(mesh, faces);
+  std::vector<int> nodes(at_seam.begin(), at_seam.end());
+  for (std::size_t i = 0; i < copied.size(); ++i) nodes.push_back(static_cast<int>(old) + static_cast<int>(i));
   return nodes;
 }
 

@@ -21,6 +21,9 @@ struct TetMesh {
   // of their own. The entry of such a node of soft tissue is the bone's node at the same place at rest; the entry of
   // any other node is the node itself.
   std::vector<int> copy_of;
+  // #T: on which side of seams the tet lies; empty if the mesh is not cut along seams. Tets of two sides that touch at
+  // rest may have nodes of their own there.
+  std::vector<std::uint16_t> side;
 
   static int bone_of(std::uint16_t region) { return int(region) - 1; }  // -1: soft tissue
 };

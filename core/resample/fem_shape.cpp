@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/fem/contact_gap.h"
+#include "core/fem/seam_sides.h"
 #include "core/mesh/crossings.h"
 #include "core/mesh/mesh_tissue.h"
 #include "core/resample/limb_thickness.h"
@@ -289,14 +290,17 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   // The size of the limb for which tets of this size are right. Differences due to rounding alone are ignored below.
   const double of_tets = reach_ / (fem_.quality == FemQuality::Draft ? kDraft : kUsual);
   solver_size_ = (!fem_.spacing_mm || fem_.reach_mm) && of_tets > 1.001 * size_ ? of_tets : size_;
-  TissueMesh meshed = mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving), settings, progress);
+  SeamCut cut{tissue.shared_seams(), sides_of_seams(tissue, weights, moving.moves_as)};
+  TissueMesh meshed =
+      mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving, cut.side_of_bone), settings, progress, cut);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   sliding.tet_mm = finest_;
   last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
                              {.joint_mm = kJoint * reach_,
                               .motions = motions_on(way),
                               .closing_mm = kClosing * reach_,
-                              .sliding = std::move(sliding)});
+                              .sliding = std::move(sliding),
+                              .side_of_bone = std::move(cut.side_of_bone)});
   if (!fem_.is_exact) waiting_ = last_.model.fem.waiting;
   if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
   if (!objects_.empty()) {
