@@ -546,7 +546,7 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   if (!moved && !recoloured && !overlay_changed && my.complete()) return;
 
   const KeepFramebuffer keep;
-  // What another body costs is not known yet, so its first picture is as coarse as pictures get.
+  // The drawing time of a new body is not known yet, so its first picture has the coarsest scale.
   const LabelVolume *last = my.scene.volume.get(), *next = scene.volume.get();
   if (next && (!last || last->grid.size != next->grid.size) && my.resources.pictures_at_rest > 0)
     my.moving_scale = kCoarsest;

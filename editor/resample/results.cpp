@@ -27,7 +27,8 @@ namespace limber::editor {
 
 namespace {
 
-// Replaces command line options that are named in a report's warning by the corresponding commands of the editor.
+// Returns the text of a warning with the words for users of the editor: options and commands of the command line that
+// it names are replaced by the names of the same functions in the editor.
 std::string in_words_of_the_editor(std::string warning) {
   for (const auto& [said, here] : {std::pair<std::string_view, std::string_view>{
                                        "--glide MM allows longer shifts", "Keep bones apart allows longer shifts"},

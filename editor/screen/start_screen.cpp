@@ -64,7 +64,8 @@ Plan plan_of(const Context& context) {
 //   picture  the picture's aspect ratio, which is its width divided by its height
 void draw_picture(Ui& ui, unsigned texture, const Rect& rect, float picture, float rounding) {
   ImDrawList& canvas = *ImGui::GetWindowDrawList();
-  // Behind a picture, the corners of the gradient, which are not rounded, would show.
+  // Draws the gradient only if there is no picture: the gradient's corners are not rounded and would show behind the
+  // picture's rounded corners.
   if (!texture) {
     canvas.AddRectFilledMultiColor(im(rect.low), im(rect.high), ui.look.theme.view_top, ui.look.theme.view_top,
                                    ui.look.theme.view_bottom, ui.look.theme.view_bottom);

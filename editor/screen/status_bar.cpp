@@ -226,7 +226,7 @@ float draw_hover(Context& context, const Rect& bar, float right) {
   if (hover.inside) {
     const Tissue* tissue = context.document().tissues ? context.document().tissues->find(hover.label) : nullptr;
     words = tissue ? shown_name(*tissue) : "Unknown";
-    // The name that is shown for a tissue without a name tells its label.
+    // A tissue without a name is shown as "Label" and a number, so its label is not added again.
     if (!tissue || !tissue->name.empty()) words += " \u00b7 label " + std::to_string(hover.label);
     if (!hover.weights.empty()) {
       char weight[16];

@@ -151,8 +151,8 @@ bool points_at_toasts(const Ui& ui) {
   });
 }
 
-// Returns the rectangles that toasts leave free. Where there is no room for that, they leave the first `needed` free,
-// in which the user may have to do something at the same time.
+// The rectangles that toasts should not cover. If there is no free room outside all of them, toasts stay clear of only
+// the first `needed` rectangles, which contain controls that the user may need meanwhile.
 struct Kept {
   std::vector<Rect> rects;
   std::size_t needed = 0;
@@ -200,8 +200,8 @@ std::optional<Rect> free_rect(const Rect& area, const glm::vec2& size, std::span
   return best;
 }
 
-// Returns where the lowest toast is drawn: where it was, as long as it covers nothing there, so that it does not jump
-// about while the gizmo moves.
+// Returns the rectangle of the lowest toast. The toast keeps its position of the last frame while it covers nothing
+// there, so that it does not jump while the gizmo moves.
 Rect place_of_lowest(const Ui& ui, const Rect& area, const glm::vec2& size, const Kept& kept, bool held) {
   if (const Widget* before = ui.widgets.find("toast 0/box")) {
     const Rect rect{before->rect.high - size, before->rect.high};

@@ -20,9 +20,10 @@ namespace {
 
 constexpr float kWidth = 320, kPadding = 14, kArrow = 10;
 
-// The position of the tour's bubble. The bubble is below a widget of the header and left of the sidebar for a widget in
-// it, so that it hides no button beside the widget. Elsewhere it is below, right or left of the widget that it
-// explains, depending on the free room. If the widget is as large as a view, the bubble is inside the widget.
+// The position of the tour's bubble, which points to the widget that it explains. For a widget in the header, the
+// bubble is below the widget; for a widget in the sidebar, it is left of the sidebar. So it covers no neighbouring
+// button. For other widgets it is below, right or left, wherever there is room. If the widget is as large as a view,
+// the bubble is inside the widget.
 struct Place {
   Rect rect;
   glm::vec2 tip, base;  // ends of the arrow: its tip at the widget, its base at the bubble

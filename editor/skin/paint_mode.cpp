@@ -250,8 +250,8 @@ void follow_brush(Context& context) {
 
 namespace {
 
-// What the held modifier keys make of the next stroke, or of the stroke that runs: it does what the brush does, takes
-// away, or smooths.
+// The effect of the stroke that is being painted or, between strokes, of the next stroke. It depends on the modifier
+// keys that are held: the stroke has the effect of the selected brush, subtracts, or smooths.
 enum class StrokeEffect { OfBrush, TakesAway, Smooths };
 
 StrokeEffect effect_of_kind(BrushKind brush, BrushKind stroke) {

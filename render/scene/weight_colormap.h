@@ -28,7 +28,7 @@ inline constexpr std::array<glm::vec3, 4> kInfluenceCounts = {srgb(0x5E6269), sr
 
 // These functions return sRGB colours in [0, 1].
 glm::vec3 ramp_colour(double weight);  // returns a colour of the ramp for a weight in [0, 1], also for exactly 0 and 1
-// Returns the colour of a weight in 1/65535; exactly 0 and 65535 have special colours.
+// Returns the colour of a weight given in steps of 1/65535; exactly 0 and 65535 have special colours.
 glm::vec3 weight_colour(int weight);
 glm::vec3 count_colour(int bones);  // returns the colour of a voxel that has weights of 1 to 4 bones
 // Mixes the swatches of the voxel's bones by weight. The colour is darker where the largest weight is smaller.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the field of visible tissue and the labels from their ATLASES textures. `atlas` is the last channel of the
-// index texture, which counts from 1. GLSL 3.30 cannot select a sampler by a variable, so the functions compare `atlas`
-// with each number.
+// Reads the field of visible tissue and the labels from their ATLASES textures. `atlas` is the number of an atlas
+// texture, counted from 1, as the last channel of the index texture stores it. GLSL 3.30 cannot select a sampler by a
+// variable, so the functions compare `atlas` with each number.
 uniform sampler3D u_field0;
 uniform usampler3D u_labels0;
 #if ATLASES > 1

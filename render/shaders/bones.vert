@@ -2,7 +2,7 @@
 // Places the corners of the bones' triangles, which are given in pixels from the picture's top left corner.
 layout(location = 0) in vec2 pixel;
 layout(location = 1) in float depth_in;
-layout(location = 2) in vec3 local_in;  // distance from the shape's axis or centre (x, y), and reach, pixels
+layout(location = 2) in vec3 local_in;  // xy: distance from the shape's axis or centre; z: the shape's radius; pixels
 layout(location = 3) in vec4 colour_in;
 uniform vec2 u_size;
 out float depth;

@@ -151,8 +151,9 @@ void main() {
   vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
 #ifdef POSED
   // The rest of this function works in rest positions. The matrix that turns directions is computed from differences
-  // between the rest positions at the four corners of a tetrahedron. A mirrored sheet is defined only in the cube on
-  // the other side of its node, so the tetrahedron lies around the centre of that cube.
+  // between the rest positions at the four corners of a tetrahedron. On a mirrored sheet, rest positions are
+  // extrapolated from the cube on the other side of the node. The tetrahedron therefore lies around the centre of a
+  // cube, so that its mirror image lies in one cube too.
   vec3 node = node_of(p);
   if (sheet.mirrored) node = sheet.node + 0.5 * sign(node - sheet.node);
   vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap),

@@ -40,8 +40,8 @@ Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 // the hit and the field's value there.
 struct Meeting { float s, value, s_before, value_before; };
 
-// Marches from s to s_end along the straight line base + d s in rest positions. A voxel has the length 1 / rate in s.
-// Advances s. Stores a hit in `found`, at s_start or later.
+// Marches from s to s_end along the straight line base + d s in rest positions, and advances s. A voxel has the length
+// 1 / rate in s. If the line hits the surface at s_start or later, stores the hit in `found`.
 void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout float s, inout Meeting found) {
   float voxel = 1.0 / rate;
   vec3 safe = mix(d, vec3(1e-9), lessThan(abs(d), vec3(1e-9)));
