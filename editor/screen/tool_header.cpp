@@ -167,7 +167,7 @@ class Header {
     ImGui::EndPopup();
   }
   bool dropped_any() const { return !dropped_.empty(); }
-  int groups() const { return groups_; }  // so far
+  int groups() const { return groups_; }  // number of groups so far, including those that did not fit
   // Returns the width of a toggle button in the next group, px at scale 1.
   //   labelled  the button's width with a label, for a group that has room for labels
   float toggle_width(float labelled) const { return is_short(groups_ + 1) ? 36 : labelled; }
@@ -311,7 +311,7 @@ void put_options(Context& context, Header& header) {
   }
 }
 
-// Draws all buttons but the one of the menu.
+// Draws all buttons of the header except the "..." button.
 void put_buttons(Context& context, Header& header) {
   put_options(context, header);
   if (context.screen->layout.several()) {
@@ -325,7 +325,8 @@ void put_buttons(Context& context, Header& header) {
     if (header.fits(header.toggle_width(120), {id})) header.toggle(id);
 }
 
-// Returns how many groups have labels: as many as there are, or from the left as many as leave room for all groups.
+// Returns how many groups of buttons, counted from the left, have labels: all groups if they fit into the header,
+// otherwise as many as still leave room for all groups.
 int labelled_groups(Context& context) {
   Header all(context, false, false, 1000);
   put_buttons(context, all);

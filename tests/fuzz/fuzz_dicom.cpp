@@ -66,7 +66,7 @@ std::optional<Path> find_own_program(const std::string&) { return std::nullopt; 
 std::optional<Path> find_program(const std::string&) { return std::nullopt; }
 }  // namespace limber
 
-// The input is a sequence of images. Each follows its length (two bytes).
+// The input is a sequence of images. Each image is preceded by its length (two bytes).
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace limber;
   static const Path folder = [] {

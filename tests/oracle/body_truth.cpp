@@ -105,7 +105,8 @@ class PartsOfBody {
   std::map<int, int> part_of_bone_;
 };
 
-// The limbs of a rig that are parts of the body, and where they are free.
+// Finds the parts of the body that are limbs of the rig, and tells where these limbs are free: not grown together with
+// the rest of the body.
 class FreeLimbs {
  public:
   FreeLimbs(const Json& truth, const Armature* armature) : armature_(armature) {

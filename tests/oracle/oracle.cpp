@@ -124,7 +124,8 @@ int run_limber(std::vector<std::string> words) {
   return cmd::run(app, static_cast<int>(pointers.size()), pointers.data());
 }
 
-// Runs the program's own command, with seams given as a file, and with weights if the user gave none.
+// Runs the program's own `resample` command with the seams of ToldBody in a file. If the user gave no weights, first
+// computes weights from the bones and seams of ToldBody.
 //   words  the oracle's command line
 int resample(const Options& options, std::vector<std::string> words) {
   const Scratch scratch;

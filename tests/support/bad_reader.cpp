@@ -73,7 +73,7 @@ class EarlyEnd final : public VoxelSource {
   std::vector<std::string> finish() override { return {}; }
 };
 
-// Voxels that are said to lie at some bytes of the file.
+// Claims that the volume's voxels are stored uncompressed at the given bytes of the file.
 class PlainLie final : public VoxelSource {
  public:
   explicit PlainLie(const FileBytes& bytes) : bytes_(bytes) {}
@@ -85,7 +85,7 @@ class PlainLie final : public VoxelSource {
   FileBytes bytes_;
 };
 
-// Voxels whose message holds these bytes.
+// Sends the given bytes as the content of the message with the voxels.
 class SparseLie final : public VoxelSource {
  public:
   explicit SparseLie(std::string message) : message_(std::move(message)) {}
@@ -103,8 +103,8 @@ class SparseLie final : public VoxelSource {
   std::string message_;
 };
 
-// Returns a message that announces `count` voxels in one span of `zeros` zeros and `others` other bytes, with `more`
-// after it.
+// Returns the content of a message with voxels. It announces `count` voxels in one span of `zeros` zero bytes and
+// `others` other bytes; the bytes of `more` follow.
 std::string sparse_message(std::uint64_t count, std::uint32_t zeros, std::uint32_t others, const std::string& more) {
   ByteWriter message;
   message.put(count);

@@ -34,7 +34,7 @@ class RandomNumbers {
   std::mt19937 random_;
 };
 
-// Turns each joint about a random axis. About one joint in three stays at rest.
+// Turns each joint about a random axis, except that on average one joint in three stays at rest.
 inline void turn_joints(Pose& pose, RandomNumbers& random, double most_degrees) {
   for (size_t b = 1; b < pose.rotation.size(); ++b)
     if (!random.one_in(3))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A rig of legs and arms, and a motion in which feet that should stand slide.
+// A rig of legs and arms, and a motion in which the feet slide over the ground while they should stand still.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Takes of a small body, and strips of them, for tests.
+// Random motions ("takes") of a small body, and tracks with a strip that plays such a motion, for tests.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ inline Rig rig() {
   return kRig;
 }
 
-// Returns a take in which every bone turns in its own way, and the body travels and turns.
+// Returns a motion in which every bone turns in its own way, and the body travels and turns.
 inline SharedClip take(const std::string& name, int frames, int seed, double rate = 30) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_real_distribution<double> any(-1, 1);
@@ -57,7 +57,8 @@ inline Pose at(const Strips& strips, int frame, double rate = 30) {
 }
 inline Pose at(const SharedClip& clip, int frame) { return ClipOnRig(clip, rig()).at(frame); }
 
-// The largest angle between the rotations of two poses, radians, and the distance of their roots, mm.
+// Returns how far two poses differ: the distance of their roots, mm, or the largest angle between their bones'
+// rotations, radians, whichever number is larger.
 inline double far(const Pose& a, const Pose& b) {
   double most = glm::distance(a.root_translation, b.root_translation);
   for (std::size_t bone = 0; bone < a.rotation.size(); ++bone) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A tetrahedron as the bytes of a file in every format that is read as a surface, and what it takes to write others.
+// The bytes of a file with a tetrahedron in each surface format that the program reads, and functions that write other
+// test files.
 #pragma once
 
 #include <algorithm>
@@ -114,7 +115,7 @@ inline std::string tetrahedron_ply(const std::string& format) {
   return bytes;
 }
 
-// Returns the bytes of a file for each name.
+// Returns the tetrahedron in each format, as file name and bytes.
 inline std::map<std::string, std::string> tetrahedron_files() {
   std::string obj;
   for (const glm::dvec3& v : tetrahedron().V)

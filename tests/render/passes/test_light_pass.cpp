@@ -141,8 +141,8 @@ TEST_CASE(
   const auto scene = scene_of(painted(grid_of({96, 96, 48}), [&](const glm::dvec3& p) {
     return Label(p.z < 10.5 || glm::length(p - ball) < 12 ? 1 : 0);
   }));
-  // In the picture x points right and y points down, so light from the upper left shifts the shadow to the right and
-  // down, by the ball's height times 0.428 / 0.713 and 0.556 / 0.713.
+  // In the picture x points right and y points down, and the direction to the key light is (-0.428, 0.556, 0.713) with
+  // y up. So the shadow is shifted to the right and down, by the ball's height times 0.428 / 0.713 and 0.556 / 0.713.
   const Found found = light_of(studio, scene, above({47.5, 47.5, 20}, 90), {180, 180}, 6);
   const double lift = ball.z - 10.5;
   const glm::dvec2 middle(89.5, 89.5), fallen = middle + 2.0 * lift * glm::dvec2(0.428, -0.556) / 0.713;
