@@ -26,7 +26,8 @@ Pose finished(const Context& context, Pose pose, const JointAngles& moved) {
   for (const auto& [joint, motions] : moved) {
     if (is_finger(joint.joint)) continue;
     for (const int bone : bones_of_joints(frames, {{joint, motions}})) bones.push_back(bone);
-    // Pronation of the forearm also turns the hand, and raising the arm also turns the collarbone.
+    // Pronation of the forearm also turns the hand, and raising the arm also turns the collarbone, so the limits of
+    // these bones apply too.
     std::optional<int> along;
     if (joint.joint == BodyJoint::Forearm) along = pronating_hand(frames, joint.side);
     if (joint.joint == BodyJoint::Shoulder) along = frames.find(BodyPart::Clavicle, joint.side);

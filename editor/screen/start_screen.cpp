@@ -27,7 +27,7 @@ namespace limber::editor {
 namespace {
 
 constexpr float kWidth = 1100, kHeight = 716, kPadding = 32, kMargin = 8;
-// In a smaller window, the start screen has less space between its parts, px at scale 1.
+// In a window that is narrower or lower than this, the start screen has less space between its parts, px at scale 1.
 constexpr float kSmallWidth = 1180, kSmallHeight = 800;
 // Heights of sample buttons: largest and smallest in two rows, and in a single row; px at scale 1.
 constexpr float kSample = 162, kLeastSample = 120, kSampleInRow = 112;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr int kRingSteps = 96;
-constexpr double kBehind = 0.15;      // a ring is drawn to this depth behind its centre, fraction of its radius
+constexpr double kBehind = 0.15;      // parts of a ring farther behind its centre are not drawn, fraction of its radius
 constexpr float kUnderStroke = 1.6f;  // the dark line under each drawn line is wider by this, pixels at scale 1
 constexpr Colour kUnder = 0x59000000;
 

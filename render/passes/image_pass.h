@@ -40,7 +40,7 @@ class ImagePass {
  private:
   void upload_transfer(const ShownGrey& shown);
 
-  // The programs by two switches: true if the body is posed, and true if the picture is a maximum intensity projection.
+  // The shader programs. First key: true if the body is posed; second key: true for a maximum intensity projection.
   std::map<std::pair<bool, bool>, std::unique_ptr<gl::Program>> programs_;
   gl::Texture transfer_;
   std::optional<ShownGrey> transfer_of_;

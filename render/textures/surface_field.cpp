@@ -80,8 +80,8 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
       }
     }
 
-  // Returns true if the blur made a voxel vanish and no neighbour is inside the surface. Such a voxel is raised: a
-  // bump on a thick body may vanish, but a thin sheet or thread may not.
+  // Returns true if no neighbour of a voxel that the blur made vanish is inside the surface. Such a voxel gets the
+  // value kRaised: a bump on a thick body may vanish, but a thin sheet or thread may not.
   const auto stands_alone = [&](int at) {
     for (const int step : {1, kSlot, kSlot * kSlot})
       for (const int next : {at - step, at + step})

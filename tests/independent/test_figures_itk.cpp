@@ -55,7 +55,8 @@ std::vector<std::int64_t> pieces_of(Image::Pointer mask, bool across_corners) {
 }
 
 std::int64_t enclosed_air(const LabelVolume& volume) {
-  // With a margin of air around the volume, the outside air is one piece, and here the largest.
+  // A margin of 8 voxels of air is added around the volume, so that all outside air is connected. In these volumes it
+  // is the largest piece of air.
   const auto pieces = pieces_of(image_of(
                                     volume, [](Label label) -> Label { return label == 0; }, 8),
                                 false);

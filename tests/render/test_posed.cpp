@@ -157,9 +157,10 @@ std::shared_ptr<const PreviewMap> dense_map(const LabelVolume& volume, const Pos
   return map;
 }
 
-// Compares the outline of the preview with that of the dense map and with that of the posed labels, from three sides.
-// Resampling the labels alone moves the outline by 0.2 to 1.1 % of its area even if an arm only rotates. So the preview
-// may differ from the labels by as much as the dense map does, and 0.2 % more.
+// Compares three outlines, from three sides: that of the preview, that of the body drawn by the dense map (the
+// displacement of every voxel), and that of the resampled labels. Resampling the labels alone moves the outline by 0.2
+// to 1.1 % of its area even if an arm only rotates. So the preview may differ from the labels by as much as the dense
+// map does, and 0.2 % more.
 void check_outline(const std::shared_ptr<const LabelVolume>& volume, const TissueTable& tissues, const Armature& rig,
                    const TissueVoxels& tissue, const SkinWeights& weights, const Pose& pose, bool linear) {
   Studio studio;
@@ -215,7 +216,8 @@ TEST_CASE("posed body: at rest the light by rays is that of the volume itself") 
     return view.read();
   };
   const Scene still = arm().scene(), posed = arm().posed(rest_pose(arm().rig), Blend::Linear);
-  // A posed body's light is computed at every second pixel and averaged over a larger square.
+  // The light of a posed body is computed at only every second pixel and averaged over a larger square, so it may
+  // differ a little from the light of the same body drawn at rest.
   const Difference apart = difference(rested(posed, Light::Fine), rested(still, Light::Fine)),
                    without = difference(rested(still, Light::Draft), rested(still, Light::Fine));
   INFO("mean ", apart.mean, ", share ", apart.share, "; of the light itself ", without.mean, ", ", without.share);

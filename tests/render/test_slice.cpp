@@ -93,7 +93,7 @@ TEST_CASE("slice: at twice the scale outlines are twice as wide") {
     return glm::length(p - glm::dvec3(20)) < 15 ? 1 : 0;
   }));
   const SliceCamera camera{.centre = glm::dvec3(20), .millimetres_per_pixel = 0.6};
-  // Returns the number of pixels of the middle row that outlines of two sides cover.
+  // Returns how many pixels of the middle row the outline covers, at both sides of the tissue together.
   const auto covered = [&](float scale, SliceDisplay display) {
     scene.line_scale = scale;
     view.draw(scene, camera, display, kSize);

@@ -217,7 +217,7 @@ TEST_CASE("view: the arm looks the same when textures may have 256 texels an axi
 }
 
 TEST_CASE("view: a volume too large for the driver is drawn coarser, and says so") {
-  Studio studio(36);  // textures of one block each, so four textures are used
+  Studio studio(36);  // 36 texels per axis: a texture holds one block, so four textures are used
   const Grid grid = grid_of({90, 90, 90});
   const Scene scene = scene_of(ball(grid, 38));
   const Camera camera = camera_of(grid, Projection::Orthographic);
@@ -243,7 +243,7 @@ TEST_CASE("view: a volume beyond the limit of memory is drawn coarser, and says 
   const Image half = picture(whole - 1, "1/2");
   CHECK(difference(full, half).share > 0);
   CHECK(difference(full, half).share < 0.05);
-  picture(1, "1/8");  // this is the coarsest resolution, so it is drawn even if it takes too long
+  picture(1, "1/8");  // 1/8 is the coarsest resolution, so it is drawn although it needs more than one byte
 }
 
 TEST_CASE("view: a volume for which there is no room at all is refused in one sentence") {
