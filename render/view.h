@@ -113,7 +113,7 @@ class View3D {
   // the body covers.
   std::int64_t rays_followed() const;
   unsigned texture() const;  // returns the picture as an RGBA8 texture of `size` pixels; its top row is at v = 1
-  Image read() const;        // the finished picture
+  Image read() const;        // returns the finished picture
 
   // Returns the labels that the last picture shows on at least `pixels` of its pixels, in ascending order. Tissue
   // behind an opaque one is not shown, but tissue behind a transparent one is.

@@ -30,12 +30,13 @@ namespace {
 // Returns the text of a warning with the words for users of the editor: options and commands of the command line that
 // it names are replaced by the names of the same functions in the editor.
 std::string in_words_of_the_editor(std::string warning) {
-  for (const auto& [said, here] : {std::pair<std::string_view, std::string_view>{
-                                       "--glide MM allows longer shifts", "Keep bones apart allows longer shifts"},
-                                   {"the command limber fit-joint moves the axis of a joint",
-                                    "Fit joint axis in the Rig workspace moves the axis of a joint"},
-                                   {"limber fit-joint, a command of its own, moves the axis of a joint",  // until 0.1.0
-                                    "Fit joint axis in the Rig workspace moves the axis of a joint"}})
+  for (const auto& [said, here] :
+       {std::pair<std::string_view, std::string_view>{"--glide MM allows longer shifts",
+                                                      "Keep bones apart allows longer shifts"},
+        {"the command limber fit-joint moves the axis of a joint",
+         "Fit joint axis in the Rig workspace moves the axis of a joint"},
+        {"limber fit-joint, a command of its own, moves the axis of a joint",  // wording of older reports
+         "Fit joint axis in the Rig workspace moves the axis of a joint"}})
     if (const auto place = warning.find(said); place != std::string::npos) warning.replace(place, said.size(), here);
   return warning;
 }

@@ -28,7 +28,7 @@ POSES = {
     "knee120": ["--joint", "knees flexion=120"],
     "squat": ["--pose-name", "squat"],
 }
-# What a rig must have for a pose to count: words of which one stands in the name of a bone that the pose turns.
+# A pose counts for a rig only if it turns a bone whose name contains one of these words.
 NEEDS = {
     "walk": ("thigh", "shank", "leg"),
     "arms-up": ("arm", "humerus"),
@@ -42,8 +42,8 @@ EXPOSED_PERCENT = 0.1
 # Limits on the change of a label's volume by mesh, in percent, for labels of at least this many voxels.
 LARGE_SOFT = (5000, 0.3)
 OTHER_SOFT = (500, 3.0)
-CORDS = 5.0  # cartilage and tendon of at least 500 voxels
-# Cavities hold gas and fluid; their Poisson ratio of 0.45 lets them change where flesh hardly does.
+CORDS = 5.0  # limit for cartilage and tendon of at least 500 voxels, percent
+# Limit for cavities, percent. They hold gas and fluid; their Poisson ratio of 0.45 lets them change more than flesh.
 CAVITIES = 5.0
 
 

@@ -18,7 +18,8 @@ shift
 say() { printf '%s\n' "$*" >&2; }
 fail() { say "FAILED: $*"; exit 1; }
 
-# in_root ROOT COMMAND...: in a namespace of mounts of its own, so that proc is mounted for the command alone.
+# in_root ROOT COMMAND...: runs the command in the root, in its own mount namespace, so that only the command sees the
+# mounted proc.
 in_root() {
   local root=$folder/$1
   shift
@@ -27,10 +28,11 @@ in_root() {
     /usr/bin/env -i HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 bash -euc "$*"
 }
 
-# without_network ROOT COMMAND...: likewise, with no network but a loopback that is down.
+# without_network ROOT COMMAND...: as in_root, but in a network namespace whose only interface, the loopback, is down.
 without_network() { unshare -n bash -euc "$(declare -f in_root); folder=\$1; shift; in_root \"\$@\"" bash "$folder" "$@"; }
 
-# new_root ROOT PACKAGE...: Debian 12 with nothing but PACKAGEs; packages come from FOLDER/cache where they were once fetched.
+# new_root ROOT PACKAGE...: makes a root of a minimal Debian 12 with the PACKAGEs. Packages that were downloaded before
+# come from FOLDER/cache.
 new_root() {
   local root=$folder/$1
   shift
@@ -51,7 +53,7 @@ clone_into() {
   in_root "$1" "git clone -q /root/limber.git /root/limber"
 }
 
-# made PATTERN: the package or the archive that was built.
+# made PATTERN: prints the path of the package or archive that was built.
 made() { find "$folder/one/root/limber/out/package" -name "$1"; }
 
 build() {

@@ -32,12 +32,12 @@ gio launch "$entry" "$@" >"$work/log" 2>&1 || fail "gio launch refuses $entry"
 window=$(timeout 60 xdotool search --sync --onlyvisible --class limber | head -1) || fail "no window appears"
 echo "a window after $((($(date +%s%N) - start) / 1000000)) ms"
 
-# Desktops put a window under its entry's icon by this name.
+# Desktops find the menu entry, and thus the icon, of a window by this name.
 expected=$(sed -n 's/^StartupWMClass=//p' "$entry")
 found=$(xprop -id "$window" WM_CLASS | sed -n 's/.*, "\(.*\)"$/\1/p')
 [ "$found" = "$expected" ] || fail "the window's class is $found, the entry says $expected"
 
-# The picture is taken when it has stayed the same for five seconds, with more than a few colours in it.
+# Saves the picture of the display when it has not changed for five seconds and has more than a few colours.
 same=0 colours=0
 import -window root "$picture"
 for _ in $(seq 90); do

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Fails where a source is not as clang-format makes it. Other versions than 14 format otherwise: they are not asked.
+# Fails if clang-format 14 would change a source file. Skipped with other versions, which format differently.
 #   check_format.sh CLANG_FORMAT
 set -eu
 cd "$(dirname "$0")/../.."

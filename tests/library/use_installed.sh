@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs the library into a folder of its own, builds a program outside the tree with it, and compares what that makes
-# with what the command line makes.
+# Installs the library into a temporary folder, builds a program outside the source tree with it, and checks that this
+# program and the command line write the same posed volume.
 #   use_installed.sh CMAKE BUILD_FOLDER LIMBER CXX
 set -eu
 cmake=$1 build=$2 limber=$3 compiler=$4

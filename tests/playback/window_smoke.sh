@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# The editor in a real window of a virtual display: it starts, takes a click, a drag and keys, rests without using the
-# processor, and quits with exit code 0.
+# Runs the editor in a real window of a virtual display. Checks that it starts, survives a click, a drag and keys, uses
+# nearly no processor time at rest, and quits with exit code 0.
 #   usage: window_smoke.sh PROGRAM
-# Exit code 77, and a loud line, where there is no Xvfb or xdotool.
+# If Xvfb or xdotool is not installed, prints a line and ends with exit code 77 (skipped).
 set -euo pipefail
 program=$1
 for tool in Xvfb xdotool; do
@@ -20,7 +20,7 @@ finish() {
 trap finish EXIT
 fail() { echo "FAILED: $*"; sed 's/^/  editor: /' "$work/log"; exit 1; }
 
-# Without a display: one line, exit code 1.
+# Without a display, the editor must print one line and fail.
 if env -u DISPLAY -u WAYLAND_DISPLAY "$program" 2>"$work/log"; then fail "it should refuse to start without a display"; fi
 [ "$(wc -l <"$work/log")" = 1 ] || fail "one line should say that there is no display"
 
@@ -46,7 +46,7 @@ xdotool key Num_Lock; xdotool key KP_1; xdotool key n; xdotool key n
 sleep 0.5
 alive "after a click, a drag and keys"
 
-# At rest: user and system time in hundredths of a second.
+# Prints the editor's user and system time, hundredths of a second, to measure it at rest.
 ticks() { awk '{print $14 + $15}' "/proc/$editor/stat"; }
 for _ in $(seq 60); do
   before=$(ticks); sleep 1

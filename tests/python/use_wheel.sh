@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes a wheel without a network, installs it into an environment of its own, and runs tests with what is installed.
+# Makes a wheel without a network, installs it into a new virtual environment, and runs the tests in this environment.
 #   use_wheel.sh PYTHON BUILD_FOLDER LIMBER
 set -eu
 python=$1 build=$2 limber=$3

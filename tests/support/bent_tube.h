@@ -40,7 +40,7 @@ inline Grid oblique_grid() {
   grid.spacing = {0.7, 2.1, 1.3};
   grid.origin = {-31.7, 12.9, 1003.3};
   grid.direction = glm::mat3_cast(glm::angleAxis(0.61, glm::normalize(glm::dvec3(1, -2, 0.5))));
-  grid.direction[1] = -grid.direction[1];  // mirrored
+  grid.direction[1] = -grid.direction[1];  // mirrors the grid's second axis
   return grid;
 }
 

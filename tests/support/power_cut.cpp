@@ -239,7 +239,7 @@ class Log final : public LogFile {
         file_(limber::open_log(path)) {
     const std::lock_guard lock(disk_.mutex);
     Path last_name = path;
-    last_name.replace_extension();  // without ".new"
+    last_name.replace_extension();  // removes ".new" from the name
     disk_.logs.push_back({image_, path, last_name, inode_of(path)});
   }
   ~Log() override {

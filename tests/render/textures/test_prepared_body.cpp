@@ -95,7 +95,7 @@ TEST_CASE("prepared body: one whose upload fails is drawn all the same, one that
   auto volume = ball();
   const Scene scene = scene_of(volume);
   const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
-  body->volume.layout.slots = glm::ivec3(1000);  // larger than drivers allow
+  body->volume.layout.slots = glm::ivec3(1000);  // a texture of so many slots is larger than drivers allow
   studio.renderer.begin_frame(0);
   CHECK_THROWS_AS(studio.renderer.upload(*body), Error);
   const Image shown = picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
