@@ -87,7 +87,7 @@ struct Context {
 
   // Stored on disk between runs of the program
   ContextPart<Preferences> preferences;             // context/preferences.h
-  ContextPart<PreferencesState> preferences_state;  // their file (context/preferences_state.h)
+  ContextPart<PreferencesState> preferences_state;  // the preferences' file (context/preferences_state.h)
   ContextPart<Folders> folders;                     // context/user_folders.h
   ContextPart<RecentFiles> recent_files;            // context/recent_files.h
   ContextPart<Pictures> pictures;                   // small pictures of files (ui/texture_cache.h)
@@ -102,7 +102,7 @@ struct Context {
   ContextPart<ConsoleState> console;      // screen/console_state.h
   ContextPart<Comparison> comparison;     // two results side by side (context/comparison.h)
 
-  // The rooms
+  // Settings and state of single tools and panels
   ContextPart<TransformSettings> transform_settings;  // how tools transform bones (context/transform_settings.h)
   ContextPart<BoneTable> bone_table;                  // which rig bone each bone label follows (rig/bone_table.h)
   ContextPart<SkinDisplay> skin;                      // how the Skin workspace shows weights (skin/weight_display.h)

@@ -3,7 +3,7 @@
 
 namespace limber::editor {
 
-// A reference to a part of the editor's state. Its owner may set it later. Who gets a constant Context cannot change
+// A reference to a part of the editor's state. Its owner may set it later. Code that gets a constant Context cannot change
 // the part either. T may be an incomplete type; only who uses the part includes its header.
 template <class T>
 class ContextPart {

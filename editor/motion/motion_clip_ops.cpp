@@ -173,7 +173,7 @@ void delete_shown(Context& context) {
   commit(context, "Delete clip " + name, std::move(next));
 }
 
-// Deletes the shown clip; asks before if strips play it, because they go with it.
+// Deletes the shown clip; asks before if strips play it, because these strips are deleted too.
 void delete_clip(Context& context) {
   const auto clip = context.document().clips[static_cast<std::size_t>(context.document().clip)];
   const std::vector<StripUse> uses = strip_uses(context.document(), clip);

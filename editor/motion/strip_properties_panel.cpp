@@ -203,7 +203,7 @@ void draw_strip_properties(Context& context, Column& column) {
   if (!active_strip(context)) return;
   if (column.begin_section("Strip", active_strip(context)->name)) {
     column.space(4);
-    // Read again before each row, because an edit replaces the strips.
+    // The active strip is read again before each row, because an edit replaces the strips.
     draw_name(context, column, *active_strip(context));
     if (const Strip* strip = active_strip(context)) draw_clip(context, column, *strip);
     if (const Strip* strip = active_strip(context)) draw_time(context, column, *strip);

@@ -33,10 +33,10 @@ StripView& strip_view(Timeline& timeline);  // creates the state if there is non
 bool strips_are_shown(const Context& context);
 void show_strips(Context& context, bool on);
 
-// the strips, with a drag in progress; nullptr: the shown clip has none
+// Returns the shown clip's strips, during a drag as they are dragged; nullptr if the clip has none.
 const Strips* shown_strips(const Context& context);
 double strips_rate(const Document& document);  // the shown clip's rate, frames per second
-// names of the selected strips that exist; empty while the view is hidden
+// Returns the names of the selected strips that exist; empty while the view is hidden.
 std::set<std::string> chosen_strips(const Context& context);
 const Strip* active_strip(const Context& context);  // returns the active strip; nullptr: none is active
 std::optional<std::size_t> active_track(const Context& context);
