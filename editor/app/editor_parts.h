@@ -54,7 +54,8 @@
 
 namespace limber::editor {
 
-// The order matters: parts are destroyed in reverse order, and what waits for threads comes after what they use.
+// Members are destroyed in reverse order of their declaration. A member whose destructor waits for threads is therefore
+// declared after the members that those threads use.
 struct Editor::Parts {
   Parts(Host& host, const Preferences& preferences);
 

@@ -15,7 +15,8 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kRestBeforeWriting = 1;  // the state is written after this time without changes, s
+// Time from a change of the recent files until they are written, s. Changes in that time are written with the first.
+constexpr double kRestBeforeWriting = 1;
 
 Path file_of(const Editor& editor) { return editor.folders->config / "remembered.json"; }
 

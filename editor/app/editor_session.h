@@ -13,7 +13,7 @@ struct Folders;
 // Reads the recent files, preferences and other state that earlier runs stored. Call it before the first frame.
 //   files  files to open; if there are any, the start screen is not shown
 void begin_editor_session(Editor& editor, const Folders& folders, std::vector<Path> files);
-// Writes the stored state when it has not changed for a second. Call it once per frame.
+// Writes the stored state a second after it has changed. Call it once per frame.
 void keep_recent_files(Editor& editor);
 // Writes the stored state if it has changed. Call it when the editor ends.
 void end_editor_session(Editor& editor);

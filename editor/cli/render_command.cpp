@@ -203,7 +203,8 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
   const BakedJoints baked = baked_joints_for(options.baked, options.method, document, tissue, weights);
-  cmd::warn(doubts_of_baked(report_of_baked(baked, *document.armature, pose), "off"));  // pictures do not glide
+  // "off": in pictures, joints rotate but do not glide (shift).
+  cmd::warn(doubts_of_baked(report_of_baked(baked, *document.armature, pose), "off"));
   if (options.preview) {
     LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));
     scene.pose = preview.update(scene.posed_from_rest, blend, {}, joints_in_pose(baked, *document.armature, pose));

@@ -81,9 +81,9 @@ struct Context {
   // The open project
   ContextPart<OpenProject> project;        // its name and files (context/open_project.h)
   ContextPart<History> history;            // core/project/history.h
-  ContextPart<ProjectLife> life;           // what is saved (context/project_life.h)
+  ContextPart<ProjectLife> life;           // how much of the project is on the disk (context/project_life.h)
   ContextPart<Jobs> jobs;                  // core/project/job.h
-  ContextPart<BackgroundWork> background;  // what follows a job (context/background_task.h)
+  ContextPart<BackgroundWork> background;  // tasks, and what is done when a job ends (context/background_task.h)
 
   // Stored on disk between runs of the program
   ContextPart<Preferences> preferences;             // context/preferences.h

@@ -19,7 +19,7 @@ class ContextPart {
   const T* operator->() const { return part_; }
   T& operator*() { return *part_; }
   const T& operator*() const { return *part_; }
-  // A function that takes one part gets it as `context.ui`.
+  // Converts to T&, so that for example `context.ui` can be passed to a function that takes a Ui&.
   operator T&() { return *part_; }
   operator const T&() const { return *part_; }
 

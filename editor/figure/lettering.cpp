@@ -44,7 +44,7 @@ std::size_t after_character(const std::string& text, std::size_t at) {
 }  // namespace
 
 void draw_over(std::uint8_t* rgba, const glm::ivec3& colour, int alpha) {
-  // How much the old pixel contributes to the opacity, and the opacity of the resulting pixel; 255 * 255 is opaque.
+  // `under` is the old pixel's share of the new opacity, `sum` the whole new opacity; 255 * 255 is opaque.
   const int under = rgba[3] * (255 - alpha), sum = alpha * 255 + under;
   if (sum == 0) return;
   for (int c = 0; c < 3; ++c)

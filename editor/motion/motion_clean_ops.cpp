@@ -186,8 +186,9 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
 
 bool keeps_in_place(const Clip& clip) { return clip.motion && clip.retarget.travel != Travel::Free; }
 
-// Returns whether feet are planted in the poses of the body that travels. While root motion keeps the body in place no
-// foot stands. Keys of the body's shift and constraints hold where the body is, so with these it is not let go.
+// Returns true if the cleaning lets the body travel, although the clip's root motion keeps it in place: planted feet
+// are found only in a travelling body, because a foot slides over the ground while the body stays in place. Returns
+// false if keys of the body's shift or constraints rely on the body's position.
 bool is_let_go(const Clip& clip, const Cleaning& cleaning) {
   return cleaning.plants_feet && keeps_in_place(clip) && clip.keys.root.empty() && !clip.constraints;
 }

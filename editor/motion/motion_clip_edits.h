@@ -30,9 +30,10 @@ RetargetMap map_in_use(const ClipOnRig& clip);
 Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
 
 // Adds a clip that a background task has computed from another clip of the document, or replaces that other clip. Then
-// goes to `frame`, or without `frame` stays at the current frame; both are clamped to the playing range. Throws Error
-// if the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
-//   ratio  how many frames each frame of the source has become; strips of the source go on playing the same
+// goes to `frame`; without `frame`, stays at the current frame. Both are clamped to the playing range. Throws Error if
+// the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
+//   ratio  number of frames of the new clip for each frame of the source. When the source is replaced, strips of it
+//          then play the same part of the motion in the new clip
 void take_in_clip(Context& context, const std::shared_ptr<const Clip>& source,
                   const std::shared_ptr<const Armature>& rig, const std::string& label, Clip clip, bool is_new,
                   std::optional<double> frame = {}, double ratio = 1);

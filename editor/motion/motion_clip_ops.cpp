@@ -165,7 +165,8 @@ void delete_shown(Context& context) {
   Document next = context.document();
   const std::string name = next.shown_clip()->name;
   next.clips.erase(next.clips.begin() + next.clip);
-  relink_strips(context.document(), next);  // the pose is then that of the strips that are left
+  // Removes the strips that played the deleted clip, so that the pose below is computed without them.
+  relink_strips(context.document(), next);
   next.clip = std::max(0, std::min(next.clip, static_cast<int>(next.clips.size()) - 1));
   if (const Clip* clip = next.shown_clip())
     next.frame = std::clamp(next.frame, all_frames(*clip).low, all_frames(*clip).high);

@@ -108,9 +108,10 @@ std::size_t track_for(Strips& strips, const Strip& strip, std::size_t from, doub
   return strips.tracks.size() - 1;
 }
 
-// Adds a strip of the clip at the frame, and returns its name. A strip on the lowest track begins where the body is, so
-// that one take goes on where another ends; one on a higher track lets go of the body at its ends.
-//   from  the lowest track on which it may lie
+// Adds a strip of the clip at the frame, and returns the strip's name. On the lowest track, the strip holds its last
+// pose after its end. If that track has an earlier strip and the rig has one root bone, the new strip begins at the
+// position and heading that the body has at that frame. A strip on a higher track holds no pose after its end.
+//   from  index of the lowest track on which the strip may lie
 std::string add_strip_to(Strips& strips, const std::shared_ptr<const Clip>& source, int frame, std::size_t from,
                          const std::shared_ptr<const Armature>& armature, double rate) {
   const auto roots = armature ? std::count_if(armature->bones.begin(), armature->bones.end(),

@@ -20,7 +20,7 @@ namespace {
 
 constexpr float kList = 176, kSwitch = 20;  // widths of the list of tracks and of a track's switch, pixels at scale 1
 constexpr float kRounding = 4, kLeastName = 18;
-constexpr float kLeastCycle = 6;  // narrower cycles of a strip get no lines between them, pixels at scale 1
+constexpr float kLeastCycle = 6;  // px at scale 1; no lines between a strip's repeats if a repeat is narrower than this
 
 // ---- The list of tracks
 
@@ -85,7 +85,7 @@ std::string title_of(const Strip& strip) {
   return sign + strip.name;
 }
 
-// Draws lines between the cycles of a strip that repeats.
+// Draws vertical lines where one repeat of a strip ends and the next begins.
 void draw_cycles(Context& context, const Strip& strip, const Rect& place, Colour colour) {
   const double steps = strip.last - strip.first, ratio = frames_per_frame(strip, strips_rate(context.document()));
   const Look& look = context.ui->look;

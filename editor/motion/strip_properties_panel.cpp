@@ -160,7 +160,7 @@ void draw_blend(Context& context, Column& column, const Strip& strip) {
 }
 
 void draw_flags(Context& context, Column& column) {
-  // Each row has its whole width for the check boxes, as their names need more room than a field has.
+  // The check boxes share the whole width of a row, because their labels do not fit into the width of a field.
   const auto row = [&] {
     const Rect all = column.row(26);
     const float edge = context.ui->look.px(10), gap = context.ui->look.px(2);

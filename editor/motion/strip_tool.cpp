@@ -50,8 +50,8 @@ std::optional<int> snap_of(const Context& context, const std::vector<int>& targe
   return least;
 }
 
-// The strips at the beginning of a drag, which changes them. If a job that ends during the drag shows another clip, the
-// drag is dropped.
+// The clip, its strips and the selection when a drag of strips began; Escape restores this selection. If a job ends
+// during the drag and another clip is then shown, the drag ends without an edit.
 struct Begun {
   std::shared_ptr<const Clip> clip;
   Strips strips;

@@ -18,7 +18,8 @@ namespace {
 
 constexpr float kGap = 1;  // free height above and below a strip in its track, pixels at scale 1
 
-// Applies an edit of the strips. If the playing range was the range of the strips before, it is so afterwards.
+// Applies an edit of the clip's strips. If the clip had no strips, or its playing range was the range of frames that
+// the strips filled, the playing range becomes the range that the changed strips fill.
 void change_clip(Clip& clip, const std::function<void(Strips&)>& edit) {
   Strips strips = clip.strips ? *clip.strips : Strips{};
   const auto before = span_of(strips, clip.rate);

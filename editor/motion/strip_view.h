@@ -33,7 +33,7 @@ StripView& strip_view(Timeline& timeline);  // creates the state if there is non
 bool strips_are_shown(const Context& context);
 void show_strips(Context& context, bool on);
 
-// Returns the shown clip's strips, during a drag as they are dragged; nullptr if the clip has none.
+// Returns the shown clip's strips, or their preview while they are dragged; nullptr if the clip has none.
 const Strips* shown_strips(const Context& context);
 double strips_rate(const Document& document);  // the shown clip's rate, frames per second
 // Returns the names of the selected strips that exist; empty while the view is hidden.
@@ -45,7 +45,8 @@ void choose_strip(Context& context, const std::string& name);
 
 // ---- Edits of the shown clip's strips
 
-// Commits an edit of the strips. If the playing range was the range of the strips before, it is so afterwards.
+// Commits an edit of the strips. If the clip had no strips, or its playing range was the range of frames that the
+// strips filled, the playing range becomes the range that the changed strips fill.
 void change_strips(Context& context, const std::string& label, const std::function<void(Strips&)>& edit);
 // Shows these strips instead of the clip's, in the view and in the body's pose, until drop_strip_preview() is called.
 void preview_strips(Context& context, Strips strips);
@@ -57,8 +58,8 @@ void preview_active_strip(Context& context, const std::function<void(Strip&)>& e
 // ---- Places in the view
 Rect track_rect(const Context& context, std::size_t track);  // the track's row over its whole width, pixels
 Rect strip_rect(const Context& context, const StripPlace& place);
-// Returns the number of the track at a height of the view, counted from the lowest; beyond the tracks it is outside
-// their range.
+// Returns the index of the track at the y coordinate `y` of the window, pixels. The lowest track has the index 0. Above
+// and below the tracks, the returned index belongs to no track.
 int track_at(const Context& context, float y);
 void scroll_tracks(Context& context, float by);  // moves the tracks by this distance, pixels at scale 1
 
