@@ -37,7 +37,7 @@ constexpr int kMostTurns = 200;
 // Panels are drawn at most this many extra times per frame because a widget moved under the pointer.
 constexpr int kMostAgain = 3;
 constexpr float kTurnSeconds = 1e-5f;  // ImGui's time step in an extra draw of the panels, s: almost no time passes
-constexpr double kUploadTime = 0.008;  // time per frame in which weights are uploaded to the GPU, s
+constexpr double kUploadTime = 0.008;  // time limit per frame for uploading to the GPU, s: weights, images, bodies
 
 // Returns the picture, and creates it first if it does not exist yet.
 template <class Picture>

@@ -183,7 +183,7 @@ void Window::set_callbacks() {
   glfwSetCursorPosCallback(
       window_, [](GLFWwindow* w, double x, double y) { of(w).events.push(PointerMoved{of(w).pixels(x, y)}); });
   glfwSetCursorEnterCallback(window_, [](GLFWwindow* w, int entered) {
-    // While a button is held, a drag continues outside the window, so the event that the pointer left is not sent.
+    // While a button is held, a drag continues outside the window, so nothing is sent when the pointer leaves it.
     for (int button = 0; button <= GLFW_MOUSE_BUTTON_MIDDLE; ++button)
       if (glfwGetMouseButton(w, button) == GLFW_PRESS) return;
     if (!entered) of(w).events.push(PointerMoved{glm::vec2(-1e6f)});

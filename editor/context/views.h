@@ -32,7 +32,7 @@ render::Camera between(const render::Camera& from, const render::Camera& to, dou
 struct BodyView {
   render::Camera camera;
   std::optional<CameraMove> move;
-  // Name of the standard view that the camera shows, such as "Front"; empty between the standard views.
+  // Name of the standard view that the camera shows, such as "Front"; empty if the camera was turned away from them.
   std::string name;
   std::unique_ptr<render::View3D> picture;
   std::unique_ptr<render::View3D> other;  // picture of result A (Views::other_scene) in a comparison
@@ -72,6 +72,7 @@ struct PosedImage {
 struct Views {
   // Creates the renderer and the pictures of the views. Needs a current OpenGL context. Throws Error when the context
   // is older than OpenGL 3.3.
+  //   largest_texture  largest number of texels per axis of a 3D texture; 0: the driver's limit
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;

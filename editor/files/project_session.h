@@ -30,7 +30,7 @@ struct Opened {
   std::string editor;                      // views and layout, as JSON (view_state_json.h)
   std::shared_ptr<const Extents> extents;  // bounding boxes of the tissues; null: computed when needed
   bool unsaved = false;                    // true: the project has unsaved edits, as after a recovery
-  std::int64_t agreed = 0;                 // revision of the open project that the user agreed to replace
+  std::int64_t agreed = 0;                 // revision of the open project when the user agreed to replace it
   bool recover = false;                    // true: recover edits left by a crash without asking
   Then then;                               // called after the project is open
   std::vector<NamedFile> inputs;           // files that were read if there is no project file

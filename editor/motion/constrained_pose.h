@@ -35,10 +35,10 @@ struct HandPoses {
 bool is_constrained(const Document& document);
 // Returns the document's free pose: the pose before constraints are applied.
 Pose unconstrained_pose(Context& context);
-// Returns the new free pose after the user has changed the document's pose to `changed`. A bone that constraints have
-// turned is turned by the same rotation as in the document's pose. Other bones get their rotation in `changed`.
-//   set  bones whose rotations the user has set to a value. They also get their rotation in `changed`: otherwise,
-//   setting the same value again would turn them further.
+// Returns the new free pose after the user has changed the document's pose to `changed`. The user's rotation of a bone
+// (from the document's pose to `changed`) is also applied to the bone in the free pose.
+//   set  bones whose rotations the user has set to a value. They get exactly their rotation in `changed`, because
+//        setting the same value again must not turn them further.
 Pose unconstrained_pose(Context& context, const Pose& changed, const std::vector<int>& set = {});
 // Applies the clip's constraints to the pose `free` and returns the result. Returns `free` if the clip has no
 // constraints.
