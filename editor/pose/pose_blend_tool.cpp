@@ -30,7 +30,7 @@ glm::dquat along(const glm::dquat& from, const glm::dquat& to, double share) {
 
 class Blending final : public TransformTool {
  public:
-  Blending(Context& context, Blend blend)
+  Blending(Context& context, PoseBlend blend)
       : TransformTool(context, {}),
         blend_(std::move(blend)),
         armature_(context.document().armature),
@@ -90,7 +90,7 @@ class Blending final : public TransformTool {
   void show(Context& context) override { preview_pose(context, pose(context)); }
   void keep(Context& context) override { commit_pose(context, blend_.label, pose(context)); }
 
-  Blend blend_;
+  PoseBlend blend_;
   std::shared_ptr<const Armature> armature_;
   const Pose before_;
   std::vector<int> bones_;
@@ -100,7 +100,7 @@ class Blending final : public TransformTool {
 
 }  // namespace
 
-std::unique_ptr<TransformTool> begin_blending(Context& context, const Blend& blend) {
+std::unique_ptr<TransformTool> begin_blending(Context& context, const PoseBlend& blend) {
   return std::make_unique<Blending>(context, blend);
 }
 

@@ -54,11 +54,11 @@ void blend_to_neighbours(Context& context) {
   const ClipOnRig* clip = clip_on_rig(context);
   const auto next = frames.upper_bound(now), here = frames.lower_bound(now);
   const Pose pose = pose_of(context.document());
-  Blend blend{.label = "Blend to neighbour",
-              .words = "to the key before or after",
-              .from = pose,
-              .to = next == frames.end() ? pose : clip->at(*next),
-              .back = here == frames.begin() ? pose : clip->at(*std::prev(here))};
+  PoseBlend blend{.label = "Blend to neighbour",
+                  .words = "to the key before or after",
+                  .from = pose,
+                  .to = next == frames.end() ? pose : clip->at(*next),
+                  .back = here == frames.begin() ? pose : clip->at(*std::prev(here))};
   begin_tool(context, begin_blending(context, blend));
 }
 
@@ -116,7 +116,7 @@ void apply_as_rest(Context& context) {
 
 }  // namespace
 
-std::optional<Blend> between_keys(Context& context) {
+std::optional<PoseBlend> between_keys(Context& context) {
   settle_frame(context);
   const int now = context.document().frame;
   const std::set<int> frames = key_frames(context);
@@ -124,11 +124,11 @@ std::optional<Blend> between_keys(Context& context) {
   if (next == frames.end() || here == frames.begin()) return std::nullopt;
   const int before = *std::prev(here);
   const ClipOnRig* clip = clip_on_rig(context);
-  return Blend{.label = "Breakdown",
-               .words = "from frame " + std::to_string(before) + " to " + std::to_string(*next),
-               .from = clip->at(before),
-               .to = clip->at(*next),
-               .begin = 0.5};
+  return PoseBlend{.label = "Breakdown",
+                   .words = "from frame " + std::to_string(before) + " to " + std::to_string(*next),
+                   .from = clip->at(before),
+                   .to = clip->at(*next),
+                   .begin = 0.5};
 }
 
 std::vector<Operator> pose_neighbour_operators() {

@@ -16,6 +16,6 @@ std::vector<Operator> pose_neighbour_operators();
 
 // Returns a blend of the selected bones from their last key before the shown frame (amount 0) to their first key after
 // the shown frame (amount 1); nothing when one of these keys is missing.
-std::optional<Blend> between_keys(Context& context);
+std::optional<PoseBlend> between_keys(Context& context);
 
 }  // namespace limber::editor

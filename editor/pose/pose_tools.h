@@ -28,7 +28,7 @@ std::unique_ptr<TransformTool> begin_dragging(Context& context, const Grip& grip
 
 // A blend of the selected bones between two poses. At share 0 the bones have the pose `from`, at share 1 the pose `to`.
 // The share is base + slope * amount. The pointer changes the amount; a typed number is the amount in percent.
-struct Blend {
+struct PoseBlend {
   std::string label;  // name of the edit in the undo history
   std::string words;  // text shown below the amount
   Pose from, to;
@@ -36,7 +36,7 @@ struct Blend {
   double begin = 0, most = 1;     // initial amount; largest amount that the pointer can set
   std::optional<Pose> back = {};  // pose that negative amounts blend towards; none: amounts are not negative
 };
-std::unique_ptr<TransformTool> begin_blending(Context& context, const Blend& blend);
+std::unique_ptr<TransformTool> begin_blending(Context& context, const PoseBlend& blend);
 // Begins to drag the pole of the active bone's limb. The limb's middle joint turns towards the pole.
 std::unique_ptr<TransformTool> begin_dragging_pole(Context& context, const Grip& grip = {});
 
