@@ -15,6 +15,7 @@ OUT, BATCH = sys.argv[1], int(sys.argv[2])
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 TYPE = re.compile(r"(?:template <.*> )?(?:struct|class|enum class|enum|union|using)\s+(\w+)")
 VALUE = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*(?:=|\{|;)")
+FURTHER = re.compile(r",\s*[*&]?(\w+)\s*(?:\[[^\]]*\]\s*)*(?==|\{|;|,)")  # of several variables that a line declares
 LAST = re.compile(r"(\w+)\s*$")
 NAME = re.compile(r"[A-Za-z_]\w*")
 
@@ -42,6 +43,8 @@ def declared(text, everywhere):
             found = LAST.search(head) if head and not re.search("[={]", head) else VALUE.search(line)
         if found:
             names.add(found.group(1))
+            if found.re is VALUE:
+                names.update(FURTHER.findall(line))
     return names
 
 
