@@ -8,7 +8,7 @@
 namespace limber::editor {
 
 struct PreferencesState {
-  Path path;             // file of the preferences; empty: they are not written
+  Path path;             // file to which the preferences are written; empty: not written
   bool problem = false;  // true: the last attempt to write the preferences failed
   std::string shown_theme;
 };

@@ -14,7 +14,7 @@ struct FormField {
   std::string description;  // the field's tool tip
 
   enum class Kind { Number, Choice, Text, Fact } kind = Kind::Number;
-  double value = 0, low = 0, high = 1;  // of a Number field: its value and its range [low, high]
+  double value = 0, low = 0, high = 1;  // value and range [low, high] of a Number field
   const char* format = "%.0f";
   const char* unit = "";
   // Choices of a Choice field: up to four are shown as buttons in a row, more as a list.

@@ -109,7 +109,8 @@ struct ReadVolume {
   std::shared_ptr<Opened> as_project;        // project that shows the image without labels; null: there is no image
 };
 
-// Returns a project for an image without labels that was read from `path`. The caller sets its `agreed` and `then`.
+// Returns a project for an image without labels that was read from `path`. The caller sets the project's members
+// `agreed` and `then`.
 std::shared_ptr<Opened> project_for_image(const GreyLevels& image, const Path& path) {
   auto opened = std::make_shared<Opened>();
   opened->document = document_for_image(image);
