@@ -30,7 +30,7 @@ def declared(text, everywhere):
     names = set(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+)", text, re.M))
     inside = everywhere
     for line in text.split("\n"):
-        if line.startswith("namespace"):
+        if line.startswith("namespace") and "=" not in line:
             inside = everywhere or line.startswith("namespace {")
             continue
         if re.match(r'}\s+""$', line):  # its closing brace, which a comment follows
@@ -67,17 +67,32 @@ def declared_in_headers(text):
     return names
 
 
+def tests_headers(text, found):
+    """The headers in tests/ that a text includes, and those which these include. Two of them may define one name."""
+    for name in INCLUDE.findall(text):
+        path = os.path.join(ROOT, name)
+        if name.startswith("tests/") and name not in found and os.path.exists(path):
+            within = read(path)
+            found[name] = declared(COMMENT_OR_TEXT.sub('""', within), True)
+            tests_headers(within, found)
+    return found
+
+
 class Source:
     def __init__(self, path):
         written = read(path)
         text = COMMENT_OR_TEXT.sub('""', written)
         self.path = path
         self.own = declared(text, False)
+        self.tests_headers = tests_headers(written, {})
         # Members and names of a namespace are not looked up as plain names are.
         self.said = set(NAME.findall(re.sub(r"(?:\.|->)\s*\w+", " ", text))) | declared_in_headers(written)
 
 
 def clash(a, b):
+    for one, names in a.tests_headers.items():
+        if any(one != other and not names.isdisjoint(others) for other, others in b.tests_headers.items()):
+            return True
     return not a.own.isdisjoint(b.said) or not b.own.isdisjoint(a.said)
 
 
