@@ -296,24 +296,26 @@ void add_project(CLI::App& app) {
   })->required();
   command->add_option("ACTION", options->action, "inspect (default), create, verify, recover or export")
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
-  command->add_option("PART", options->part,
-                      "of create: a label volume; of recover: an earlier copy of the project, or its original volume, "
-                      "from which lost parts are taken; of export: volume, tissues, rig, weights, pose, motion, gltf, "
-                      "seams, bone-map, or a result's name");
+  command->add_option(
+      "PART", options->part,
+      "only for create: a label volume; of recover: an earlier copy of the project, or its original volume, "
+      "from which lost parts are taken; of export: volume, tissues, rig, weights, pose, motion, gltf, "
+      "seams, bone-map, or a result's name");
   command->add_flag("--json", options->json, "inspect: print as JSON");
-  command->add_option("--tissues", options->tissues, "of create: tissue table (JSON, .ctbl, ITK-SNAP)");
-  command->add_option("--rig", options->rig, "of create: rig file");
-  command->add_option("--weights", options->weights, "of create: weights, W.nrrd, or a folder with Bender's weights");
+  command->add_option("--tissues", options->tissues, "only for create: tissue table (JSON, .ctbl, ITK-SNAP)");
+  command->add_option("--rig", options->rig, "only for create: rig file");
+  command->add_option("--weights", options->weights,
+                      "only for create: weights, W.nrrd, or a folder with Bender's weights");
   add_body_pose_options(
       *command, options->body,
-      command->add_option("--pose", options->pose, "of create: pose file (JSON) (default: the rest pose)"));
+      command->add_option("--pose", options->pose, "only for create: pose file (JSON) (default: the rest pose)"));
   add_up_option(*command, options->up,
-                command->add_option("--motion", options->motion, "of create: motion file (BVH)"));
+                command->add_option("--motion", options->motion, "only for create: motion file (BVH)"));
   command->add_option(
       "--seams", options->seams,
-      "of create: file of seams, where tissue touches without being connected, from 'limber prepare --seams'");
+      "only for create: file of seams, where tissue touches without being connected, from 'limber prepare --seams'");
   command->add_option("--bone-map", options->bone_map,
-                      "of create: JSON file that says which rig bone each bone label follows");
+                      "only for create: JSON file that says which rig bone each bone label follows");
   writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
   command
       ->add_option(

@@ -129,16 +129,23 @@ class PosedTets::Border {
     return tets_.fixed(way > rest_way - kRounding ? whole : at(std::min(1.0, kApart * way / rest_way)));
   }
 
+  // Returns true if the border of tets on a side of seams is within a distance of a rest point.
+  bool is_near(const glm::dvec3& rest, double mm, int side) const {
+    return border_.nearest(rest, mm, side).has_value();
+  }
   // Returns the side of seams of the border nearest to a rest point.
-  int side_near(const glm::dvec3& rest) const { return tets_.mesh_->side[border_.nearest(rest)->tet]; }
+  int side_near(const glm::dvec3& rest) const { return tets_.mesh_->side[tet_near(rest)]; }
+  // Returns the tet of the border nearest to a rest point.
+  int tet_near(const glm::dvec3& rest) const { return border_.nearest(rest)->tet; }
 
  private:
   // Range of the search for another part of the mesh, as a multiple of the point's distance from the border. Two is
   // enough, since the point may use half of the air between the two parts.
   static constexpr double kBoth = 2;
   static constexpr double kRounding = 1.0 / 64;  // tolerance of the results of free_way()
-  // A point uses at most this share of its half of the air gap. The share is below 1, so that the tissue of the two
-  // parts never claims the same voxel centre.
+  // Where two parts of the mesh face each other across air, a point of one part may lie at most this share of the way
+  // to the middle of the gap. The share is below 1, so that the tissue of both parts never claims the same voxel
+  // centre.
   static constexpr double kApart = 0.98;
 
   // Returns where the line from `from` through `to` first enters another part of the mesh: 0 at `from`, 1 at `to`,
@@ -176,13 +183,15 @@ class PosedTets::Border {
 struct PosedTets::BrickOutcome {
   FixedPoint low{INT32_MAX}, high{INT32_MIN};  // bounding box of the brick's posed corners
   std::vector<Rider> riders;
+  std::array<std::uint64_t, 8> across{};  // the brick's voxels inside tets of the other side of a seam
 };
 
 PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice,
-                     TissueMask in_mesh, Progress& progress)
+                     TissueMask in_mesh, Progress& progress, const std::vector<std::uint16_t>* side)
     : mesh_(&mesh),
       lattice_(&lattice),
       in_mesh_(std::move(in_mesh)),
+      side_(mesh.side.empty() ? nullptr : side),
       is_slid_over_(slid_over(mesh)),
       moved_(posed - mesh.V) {
   place_nodes();
@@ -213,6 +222,7 @@ PosedTets::PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const P
     low = glm::min(low, outcome.low);
     high = glm::max(high, outcome.high);
     riders_.insert(riders_.end(), outcome.riders.begin(), outcome.riders.end());
+    if (side_) across_.push_back(outcome.across);
   }
   if (low.x <= high.x) posed_tissue_ = voxels_in_box(std::array{low, high});
   std::vector<VoxelRange> rider_boxes;
@@ -322,12 +332,14 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
   }
 
   std::array<std::optional<FixedPoint>, kCorners * kCorners * kCorners> posed;
-  tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& voxel) {
+  tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& voxel) {
     const glm::ivec3 v = voxel - cells.corner;
     if (!(mine[v.z] >> (v.x + 8 * v.y) & 1)) return;
     Rider rider{voxel, {}};
     const int home = tet_at[PosedLattice::place(v.x, v.y, v.z)];
-    bool rides = home < 0;
+    const bool is_across = side_ && lies_across(place, voxel, home, border);
+    if (is_across) outcome.across[v.z] |= std::uint64_t{1} << (v.x + 8 * v.y);
+    bool rides = home < 0 || is_across;
     for (int i = 0; i < 8; ++i) {
       const glm::ivec3 corner = v + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
       const int at = PosedLattice::place(corner.x, corner.y, corner.z);
@@ -338,16 +350,36 @@ void PosedTets::run_brick(std::int64_t brick, const BoxBins& rest_bins, const Bo
       outcome.low = glm::min(outcome.low, *posed[at]);
       outcome.high = glm::max(outcome.high, *posed[at]);
     }
-    if (rides) outcome.riders.push_back(mesh_->side.empty() ? rider : on_one_side(rider, home, tet_of, border));
+    if (!rides) return;
+    if (side_) {
+      const int side = is_across   ? (*side_)[place]
+                       : home >= 0 ? mesh_->side[home]
+                                   : border.side_near(glm::dvec3(voxel));
+      rider = on_side(side, rider, tet_of, border);
+    }
+    outcome.riders.push_back(rider);
   });
 }
 
-// Returns a rider all of whose corners move with the side of seams on which its centre lies. So a voxel at a seam goes
-// with one side, and is not stretched from one to the other.
-//   home    the tet that contains the voxel's centre; -1: none
+// Returns true if a voxel must move with the border of its own side of seams, although it is in a tet of another side
+// or outside the mesh, nearest to another side. False if no border of its own side is near: the two sides are attached
+// to each other there.
+//   place  the voxel's place in brick order    home  the tet that contains the voxel's centre; -1: none
+bool PosedTets::lies_across(std::int64_t place, const glm::ivec3& voxel, int home, const Border& border) const {
+  const int side = (*side_)[place];
+  const glm::dvec3 centre(voxel);
+  if ((home >= 0 ? mesh_->side[home] : border.side_near(centre)) == side) return false;
+  const int tet = home >= 0 ? home : border.tet_near(centre);
+  double longest = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < i; ++k)
+      longest = std::max(longest, (mesh_->V.row(mesh_->T(tet, i)) - mesh_->V.row(mesh_->T(tet, k))).norm());
+  return border.is_near(centre, longest, side);
+}
+
+// Returns a rider all of whose corners move with one side of seams, so that it is not stretched from one to the other.
 //   tet_of  the tet that contains each corner of the brick's voxels; -1: none
-PosedTets::Rider PosedTets::on_one_side(Rider rider, int home, const CornerTets& tet_of, const Border& border) const {
-  const int side = home >= 0 ? mesh_->side[home] : border.side_near(glm::dvec3(rider.voxel));
+PosedTets::Rider PosedTets::on_side(int side, Rider rider, const CornerTets& tet_of, const Border& border) const {
   const glm::ivec3 v = rider.voxel & (TissueVoxels::kBrick - 1);
   for (int i = 0; i < 8; ++i) {
     const glm::ivec3 up(i & 1, i >> 1 & 1, i >> 2);
@@ -356,6 +388,12 @@ PosedTets::Rider PosedTets::on_one_side(Rider rider, int home, const CornerTets&
       rider.corners[i] = border.carried(glm::dvec3(rider.voxel + up) - 0.5, side);
   }
   return rider;
+}
+
+bool PosedTets::is_across(const glm::ivec3& voxel) const {
+  if (across_.empty()) return false;
+  const int brick = lattice_->tissue().brick_at(voxel);
+  return across_[brick][voxel.z & 7] >> ((voxel.x & 7) + 8 * (voxel.y & 7)) & 1;
 }
 
 bool PosedTets::reaches(const VoxelRange& range) const {
@@ -380,7 +418,7 @@ void PosedTets::rasterize(InverseMap& map, const std::vector<int>& priority, con
       // Rounds the rest point to single precision, in which the inverse map stores it.
       const glm::dvec3 rest(glm::vec3(tet->rest(voxel)));
       const glm::ivec3 rest_voxel(glm::floor(rest + 0.5));
-      if (!is_in_mesh(rest_voxel)) return;
+      if (!is_in_mesh(rest_voxel) || is_across(rest_voxel)) return;
       const CellClaim claim{voxel, rest, tet->posed_per_rest};
       if (is_slid_over_[t]) claims.claim_empty(index_of(volume.grid, rest_voxel), rest_voxel, claim, kSlides);
       else claims.claim(index_of(volume.grid, rest_voxel), rest_voxel, claim);

@@ -13,6 +13,10 @@
 // overlap, unless the two were within a few voxels of each other at rest, on both sides of a crease, where the fold
 // presses them together.
 //
+// A mesh that is cut along seams (TetMesh::side) follows the seams, too, only approximately. A voxel inside a tet of
+// the other side is a rider as well, and all corners of a rider move with the side on which the voxel lies. Where two
+// sides are attached to each other, voxels move with the tets around them, whatever their side.
+//
 // Where flesh slides over bone, tets of flesh may enter those of the bone by a little. There the bone's tets fill only
 // voxels that no other tet covers, and this counts as no overlap.
 //
@@ -37,9 +41,10 @@ class PosedTets {
   //   posed     #V by 3 posed nodes, world, mm
   //   lattice   gives the volume, its tissue and the output lattice
   //   in_mesh   tissue voxels that move with the mesh
+  //   side      #tissue voxels, in brick order: on which side of seams each lies; null: the mesh is not cut along seams
   //   throws Error if the pose moves the mesh further than 32 000 output voxels or to a position that is not finite
   PosedTets(const TetMesh& mesh, const Eigen::MatrixX3d& posed, const PosedLattice& lattice, TissueMask in_mesh,
-            Progress& progress = no_progress());
+            Progress& progress = no_progress(), const std::vector<std::uint16_t>* side = nullptr);
 
   // Returns the voxels that the lattice must not pose because they move with the mesh.
   const TissueMask& instead_of() const { return instead_of_; }
@@ -69,8 +74,10 @@ class PosedTets {
 
   void place_nodes();
   void run_brick(std::int64_t brick, const BoxBins& rest_bins, const Border& border, BrickOutcome& outcome) const;
-  Rider on_one_side(Rider rider, int home, const CornerTets& tet_of, const Border& border) const;
+  Rider on_side(int side, Rider rider, const CornerTets& tet_of, const Border& border) const;
+  bool lies_across(std::int64_t place, const glm::ivec3& voxel, int home, const Border& border) const;
   bool is_in_mesh(const glm::ivec3& voxel) const;
+  bool is_across(const glm::ivec3& voxel) const;
   void find_instead_of();
   FixedPoint carried(int tet, const glm::dvec3& rest) const;
   FixedPoint fixed(const glm::dvec3& output) const;
@@ -80,11 +87,13 @@ class PosedTets {
   const TetMesh* mesh_;
   const PosedLattice* lattice_;
   TissueMask in_mesh_, instead_of_;
-  std::vector<char> is_slid_over_;  // #T: 1 for tets of bone over which flesh slides
-  std::vector<glm::dvec3> rest_;    // #V node positions at rest, voxel coordinates, rounded to 1/65536
-  std::vector<FixedPoint> posed_;   // #V posed node positions
-  Eigen::MatrixX3d moved_;          // #V motions of the nodes (posed - rest), world, mm
-  BoxBins bins_, rider_bins_;       // posed bounding boxes of the tets and of the riders, in output voxels
+  const std::vector<std::uint16_t>* side_;  // #tissue voxels: side of seams; null: the mesh is not cut along seams
+  TissueMask across_;                       // tissue voxels inside tets of the other side of a seam; empty: no sides
+  std::vector<char> is_slid_over_;          // #T: 1 for tets of bone over which flesh slides
+  std::vector<glm::dvec3> rest_;            // #V node positions at rest, voxel coordinates, rounded to 1/65536
+  std::vector<FixedPoint> posed_;           // #V posed node positions
+  Eigen::MatrixX3d moved_;                  // #V motions of the nodes (posed - rest), world, mm
+  BoxBins bins_, rider_bins_;               // posed bounding boxes of the tets and of the riders, in output voxels
   std::vector<Rider> riders_;
   VoxelRange posed_tissue_;
 };

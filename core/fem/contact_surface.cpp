@@ -99,7 +99,8 @@ double relative_motion(ContactPair::Kind kind, Corners& step) {
 using Lanes = Eigen::Array4f;             // SIMD register with x, y, z and 0
 constexpr double kRounding = 4 * 1.2e-7;  // upper limit on the rounding error, as a share of the largest coordinate
 
-// The bounds of a set of moving points: of their positions (low, high) and of their steps (slowest, fastest), per axis.
+// The bounds of a set of moving points: of their positions (low, high) and of their steps (slowest, fastest: the
+// smallest and the largest with their signs), per axis.
 struct Moving {
   Lanes low{INFINITY, INFINITY, INFINITY, 0}, high{-INFINITY, -INFINITY, -INFINITY, 0};
   Lanes slowest = low, fastest = high;

@@ -21,7 +21,9 @@ constexpr int kSettling = 3;          // factor on step_iterations for the last 
 constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers of the last solve, a share of the nodes
 constexpr double kTight = 0.25;       // factor on step_tolerance_mm for the solve before a part is tried again
 constexpr double kLeastPart = 0.1;    // a part that moves objects by less than this share of the shortest one fails
-constexpr double kRough = 0.5;        // if limits allow less than this share of an initial guess, the guess is smoothed
+// If contact or a tet about to invert allows less than this share of the way to an initial guess, the guess is
+// smoothed.
+constexpr double kRough = 0.5;
 // Strength, kPa, of the barrier that keeps tets from becoming nearly flat. It halves the iterations of a deep bend.
 constexpr double kWeakBarrier = 100;
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <numeric>
 
 #include <Eigen/LU>
 
@@ -263,6 +265,40 @@ std::vector<int> sides_of_nodes(const TetMesh& mesh) {
   return sides;
 }
 
+// Holds the parts of the mesh that no bone holds, such as flakes that were cut off at seams: nothing would determine
+// their position. Each moves rigidly with the bone that most of its nodes follow.
+void hold_loose_parts(FemModel& fem) {
+  std::vector<int> part(fem.mesh.V.rows());
+  std::iota(part.begin(), part.end(), 0);
+  const auto root = [&](int i) {
+    while (part[i] != i) i = part[i] = part[part[i]];
+    return i;
+  };
+  for (const auto& tet : fem.mesh.T.rowwise())
+    for (int i = 1; i < 4; ++i) {
+      const auto [low, high] = std::minmax(root(tet[0]), root(tet[i]));
+      part[high] = low;
+    }
+  std::vector<char> is_held(part.size(), 0);
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (fem.held_by[i] >= 0) is_held[root(static_cast<int>(i))] = 1;
+  std::map<int, std::map<int, double>> follows;  // for each loose part, the sum of its nodes' weights by bone
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (const int of = root(static_cast<int>(i)); !is_held[of])
+      for (const auto& [bone, weight] : fem.influences[i]) follows[of][bone] += weight;
+  std::map<int, int> holder;
+  for (const auto& [of, bones] : follows)
+    holder[of] = std::max_element(bones.begin(), bones.end(), [](const auto& a, const auto& b) {
+                   return a.second < b.second;
+                 })->first;
+  for (std::size_t i = 0; i < part.size(); ++i)
+    if (const auto of = holder.find(root(static_cast<int>(i))); of != holder.end()) {
+      fem.held_by[i] = of->second;
+      fem.influences[i] = {{of->second, 1.0}};
+    }
+  std::erase_if(fem.waiting, [&](const FemModel::Waiting& each) { return !is_held[root(each.node)]; });
+}
+
 // Selects the bone that holds each node: the bone of the bone tets around the node or, in soft tissue that moves
 // rigidly, the bone that this tissue follows. Also marks the tets between two bones as joints. Returns the nodes of
 // bone over which soft tissue slides (sliding_nodes.h).
@@ -307,7 +343,7 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
     // A node at a seam must not follow tissue on the other side of it.
     const auto is_near = [&](const glm::ivec3& v) {
       return is_in(moving.meshed, tissue, v) &&
-             (side[i] < 0 || settings.side_of_bone[influence_at(weights, tissue, v).bone[0]] == side[i]);
+             (side[i] < 0 || settings.sides->of_voxel[tissue.index_of(v)] == side[i]);
     };
     const bool found = around.nearest(mesh.V.row(i), is_near, voxel);
     int holder = bone[i] == kSeveral || in_joint[i] ? kNone : bone[i];
@@ -321,23 +357,23 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
     else model.fem.influences.push_back({{std::max(holder, 0), 1.0}});
     if (holder >= 0) model.fem.influences.back() = {{holder, 1.0}};
   }
+  hold_loose_parts(model.fem);
   return slides;
 }
 
 }  // namespace
 
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const DeformingRegion& moving,
-                            const std::vector<std::uint16_t>& side_of_bone) {
+                            const SkinWeights& weights, const DeformingRegion& moving, const SeamSides& sides) {
   LabelVolume regions{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     auto influence = weights.chunk(brick).begin();
-    tissue.for_each(brick, brick + 1, [&](std::int64_t, const glm::ivec3& v) {
+    tissue.for_each(brick, brick + 1, [&](std::int64_t place, const glm::ivec3& v) {
       const int bone = (*influence++).bone[0];
       if (is_in(moving.meshed, tissue, v))
-        regions.at(v) = is_bone[volume.at(v)]  ? static_cast<Label>(2 + moving.moves_as[bone])
-                        : side_of_bone.empty() ? Label{1}
-                                               : static_cast<Label>(1 + soft_region(side_of_bone[bone]));
+        regions.at(v) = is_bone[volume.at(v)]    ? static_cast<Label>(2 + moving.moves_as[bone])
+                        : sides.of_voxel.empty() ? Label{1}
+                                                 : static_cast<Label>(1 + soft_region(sides.of_voxel[place]));
     });
   }
   return regions;

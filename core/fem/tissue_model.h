@@ -24,6 +24,7 @@
 #include "core/base/rigid_transform.h"
 #include "core/fem/deforming_region.h"
 #include "core/fem/sliding_nodes.h"
+#include "core/mesh/lattice_net.h"
 #include "core/tissue/tissue_table.h"
 
 namespace limber {
@@ -36,7 +37,7 @@ struct TissueModelSettings {
   double closing_mm = 8;  // nodes of bone that are closer to another bone in one of the motions belong to a joint
   // where loose tissue slides over bone; tissue_model() sets its motions and distances from the members above
   SlidingSettings sliding = {};
-  std::vector<std::uint16_t> side_of_bone = {};  // side of seams of each bone's tissue, if the mesh has sides
+  const SeamSides* sides = nullptr;  // the sides of seams, if the mesh is cut along seams; null: it is not
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa
   double stiffest = 360;                                         // stiffer soft tissue gets this shear modulus, kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // material of tets of bone; shear modulus in kPa
@@ -56,10 +57,9 @@ struct TissueModel {
 // Returns the regions to mesh as labels: 0 for air and tissue that is not meshed, 1 for soft tissue, 2 + b for tissue
 // of bone b. Bones with the same motion count as one bone: b is an entry of DeformingRegion::moves_as. Soft tissue on
 // side s > 0 of seams gets the label 1 + soft_region(s) instead.
-//   side_of_bone  side of the seams of each bone's tissue (sides_of_seams()); empty: all on side 0
+//   sides  the sides of seams (sides_of_seams()); without any, all tissue lies on side 0
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const DeformingRegion& moving,
-                            const std::vector<std::uint16_t>& side_of_bone = {});
+                            const SkinWeights& weights, const DeformingRegion& moving, const SeamSides& sides = {});
 
 // Builds the model of the meshed tissue.
 //   weights  each voxel of bone tissue must follow one bone with weight 1

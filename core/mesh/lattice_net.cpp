@@ -2,12 +2,12 @@
 #include "core/mesh/lattice_net.h"
 
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <unordered_map>
 #include <utility>
 
 #include "core/base/parallel.h"
+#include "core/mesh/faces_at_seams.h"
 #include "core/mesh/surface_net.h"
 #include "core/mesh/voxel_ball.h"
 
@@ -171,61 +171,6 @@ bool make_room(const SurfaceNet& net, SampleLattice& lattice, const std::vector<
   return any_became;
 }
 
-// Decides where the tissue on the two sides of the seams is apart. The lattice is coarser than the voxels, so the
-// contacts between voxels of the two sides around an edge decide together.
-class Separation {
- public:
-  Separation(const VoxelRegions& voxels, const SampleLattice& lattice) : voxels_(voxels), lattice_(lattice) {
-    if (!voxels.side_of_bone) return;
-    const Seams* seams = voxels.tissue.seams();
-    voxels.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
-      for (int axis = 0; axis < 3; ++axis) {
-        glm::ivec3 next = v;
-        if (++next[axis] >= voxels.grid.size[axis]) continue;
-        const std::int64_t there = voxels.tissue.index_of(next);
-        if (there < 0) continue;
-        const std::uint16_t a = voxels.side_of(voxels.region[place]), b = voxels.side_of(voxels.region[there]);
-        if (a == b) continue;
-        Contact& contact = contacts_[{sample_near(lattice.fine_from_voxel * (0.5 * glm::dvec3(v + next))), pair(a, b)}];
-        ++contact.faces;
-        contact.cut += seams && seams->is_cut(v, axis);
-      }
-    });
-  }
-
-  // Returns true if a seam, or air, separates the regions at the ends of a lattice edge.
-  bool is_apart(const SurfaceNet::Edge& edge) const {
-    if (!voxels_.side_of_bone || edge.first == kAir || edge.second == kAir) return false;
-    const std::uint16_t a = voxels_.side_of(edge.first), b = voxels_.side_of(edge.second);
-    if (a == b) return false;
-    glm::ivec3 to = edge.from;
-    to[edge.axis] += edge.length;
-    const std::int64_t ends[2] = {sample_near(edge.from), sample_near(to)};
-    Contact sum;
-    for (int k = 0; k < (ends[0] == ends[1] ? 1 : 2); ++k)
-      if (const auto at = contacts_.find({ends[k], pair(a, b)}); at != contacts_.end())
-        sum.faces += at->second.faces, sum.cut += at->second.cut;
-    return 2 * sum.cut >= sum.faces;
-  }
-
- private:
-  struct Contact {
-    std::int64_t faces = 0, cut = 0;  // voxel faces between the two sides; those of them on a seam
-  };
-  static std::uint32_t pair(std::uint16_t a, std::uint16_t b) {
-    return std::uint32_t{std::min(a, b)} << 16 | std::max(a, b);
-  }
-  // Returns the index of the sample nearest to a place, in the lattice of the usual cells.
-  std::int64_t sample_near(const glm::dvec3& place) const {
-    const double usual = lattice_.usual;
-    return lattice_.index(glm::ivec3(glm::floor(place / usual + 0.5)) * lattice_.usual);
-  }
-
-  const VoxelRegions& voxels_;
-  const SampleLattice& lattice_;
-  std::map<std::pair<std::int64_t, std::uint32_t>, Contact> contacts_;
-};
-
 LatticeNet finished(const SurfaceNet& net, const SampleLattice& lattice, const VoxelRegions& voxels) {
   LatticeNet result;
   result.world_from_lattice = lattice.world_from_lattice;
@@ -241,16 +186,15 @@ LatticeNet finished(const SurfaceNet& net, const SampleLattice& lattice, const V
   }
   std::vector<std::array<int, 3>> triangles;
   const bool mirrored = glm::determinant(lattice.world_from_lattice.linear) < 0;
-  const Separation separation(voxels, lattice);
   net.for_each_triangle([&](int a, int b, int c, const SurfaceNet::Edge& edge) {
     if (mirrored) std::swap(b, c);
-    if (separation.is_apart(edge)) result.cut.push_back({a, b, c});
     triangles.push_back({a, b, c});
     result.surface.sides.push_back({edge.second, edge.first});
   });
   result.surface.F.resize(triangles.size(), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     result.surface.F.row(i) << triangles[i][0], triangles[i][1], triangles[i][2];
+  if (voxels.sides) result.cut = faces_at_seams(voxels, lattice, net);
   return result;
 }
 

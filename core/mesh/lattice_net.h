@@ -33,17 +33,30 @@ inline bool is_soft_region(std::uint16_t region) {
   return region == TetMesh::kSoft || (region > kSide && region != RegionSurface::kAir);
 }
 
+// On which side of seams each part of a body lies, and where two sides are attached to each other.
+struct SeamSides {
+  struct Joint {
+    glm::dvec3 place;             // position of the joint at rest, world, mm
+    std::uint16_t first, second;  // the sides of its two bones
+  };
+  std::vector<std::uint16_t> of_bone;   // side of each rig bone, from 0; empty: no seam separates tissue
+  std::vector<std::uint16_t> of_voxel;  // side of each of the body's tissue voxels, in brick order; empty: as of_bone
+  // The joints whose two bones lie on different sides. Only around a joint is the tissue of two sides attached:
+  // wherever else the two touch, the seam has a gap.
+  std::vector<Joint> joints;
+};
+
 // The region of each tissue voxel: that of soft tissue, or 1 + the index of the rig bone to which the voxel belongs.
 struct VoxelRegions {
   const Grid& grid;
   const TissueVoxels& tissue;
-  const std::vector<std::uint16_t>& region;                  // region of each tissue voxel, in brick order
-  const std::vector<std::uint16_t>* side_of_bone = nullptr;  // side of the seams of each rig bone; null: no sides
+  const std::vector<std::uint16_t>& region;  // region of each tissue voxel, in brick order
+  const SeamSides* sides = nullptr;          // the sides of seams; null: no sides
 
   // Returns the side of the seams on which tissue of a region lies.
   std::uint16_t side_of(std::uint16_t of) const {
     if (is_soft_region(of)) return of == TetMesh::kSoft ? 0 : static_cast<std::uint16_t>(of - kSide);
-    return side_of_bone ? (*side_of_bone)[TetMesh::bone_of(of)] : std::uint16_t{0};
+    return sides ? sides->of_bone[TetMesh::bone_of(of)] : std::uint16_t{0};
   }
 };
 

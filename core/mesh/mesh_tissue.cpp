@@ -36,12 +36,17 @@ std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const Mesh
 
 // Cuts the mesh open where seams separate tissue, and gives all soft tissue the region kSoft.
 void cut_open(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels) {
-  if (!voxels.side_of_bone) return;
+  if (!voxels.sides) return;
   TetMesh& mesh = result.mesh;
   const Eigen::MatrixX4i before = mesh.T;
   split_at_faces(mesh, net.cut);
   open_faces(mesh, net.cut, before, kOpen * net.spacing_mm);
-  remove_crossing(mesh);
+  if (const std::int64_t removed = remove_crossing(mesh); removed > 0) {
+    if (!result.warning.empty()) result.warning += "; ";
+    result.warning +=
+        std::to_string(removed) + (removed == 1 ? " tet" : " tets") +
+        " at seams left out, since surfaces would cross there: the tissue in them moves with the nearest tets";
+  }
   for (std::uint16_t& region : mesh.region) {
     mesh.side.push_back(voxels.side_of(region));
     if (is_soft_region(region)) region = TetMesh::kSoft;
@@ -87,7 +92,7 @@ TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings,
   tissue.set_seams(cut.seams);
   std::vector<std::uint16_t> region(tissue.size());
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { region[place] = regions.at(v) - 1; });
-  return mesh_tissue({regions.grid, tissue, region, cut.side_of_bone.empty() ? nullptr : &cut.side_of_bone}, settings,
+  return mesh_tissue({regions.grid, tissue, region, cut.sides.of_bone.empty() ? nullptr : &cut.sides}, settings,
                      progress);
 }
 

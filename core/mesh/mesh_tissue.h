@@ -34,7 +34,7 @@ struct MeshSettings {
 struct TissueMesh {
   TetMesh mesh;                     // the mesh; it has no tets if the body has no voxels
   Mesher mesher = Mesher::lattice;  // the mesher that made the mesh
-  std::string warning;              // message for the user: why the requested mesher was not used; empty if it was used
+  std::string warning;              // message for the user: what is not as requested; empty if nothing
   double spacing_mm = 0;            // the spacing in use, which may be larger than requested
   double seconds = 0;
 };
@@ -47,7 +47,7 @@ TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings 
 // The seams at which the mesh is cut open: the two sides get nodes of their own, with a narrow gap between them.
 struct SeamCut {
   std::shared_ptr<const Seams> seams;
-  std::vector<std::uint16_t> side_of_bone;  // side of the seams of each rig bone's tissue; empty: the mesh is not cut
+  SeamSides sides;  // no side of any bone: the mesh is not cut
 };
 
 // Meshes a volume whose labels are regions: 0 is not meshed, 1 is soft tissue, 2 + i is bone i. With `cut`, soft tissue

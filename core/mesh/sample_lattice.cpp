@@ -384,7 +384,7 @@ SampleLattice sample_regions(const VoxelRegions& voxels, const LatticeNetSetting
     if (lattice.usual == 1) break;
   }
   give_bones(lattice, bones, settings);
-  if (voxels.side_of_bone) {
+  if (voxels.sides) {
     lattice.soft = find_sides(lattice, voxels);
     for (std::size_t at = 0; at < lattice.label.size(); ++at)
       if (lattice.label[at] == TetMesh::kSoft) lattice.label[at] = lattice.soft[at];

@@ -147,13 +147,14 @@ void open_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces, con
   }
 }
 
-void remove_crossing(TetMesh& mesh) {
+std::int64_t remove_crossing(TetMesh& mesh) {
+  const Eigen::Index all = mesh.T.rows();
   constexpr int kRounds = 8;
   for (int round = 0; round < kRounds; ++round) {
     const auto neighbours = neighbours_of(mesh.T);
     const Eigen::MatrixX3i border = boundary_of(mesh.T, neighbours);
     const auto crossing = crossing_pairs(mesh.V, border);
-    if (crossing.empty()) return;
+    if (crossing.empty()) break;
     std::vector<Eigen::Index> tet_of;  // the tet of each triangle of the border
     for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
       for (const int next : neighbours[t])
@@ -171,10 +172,11 @@ void remove_crossing(TetMesh& mesh) {
       mesh.T.row(kept) = mesh.T.row(t).eval();
       mesh.region[kept++] = mesh.region[t];
     }
-    if (kept == mesh.T.rows()) return;
+    if (kept == mesh.T.rows()) break;
     mesh.T.conservativeResize(kept, 4);
     mesh.region.resize(kept);
   }
+  return all - mesh.T.rows();
 }
 
 std::vector<int> split_at_seams(TetMesh& mesh, const SampleLattice& lattice, const SurfaceNet& net) {

@@ -22,9 +22,9 @@ std::vector<int> split_at_faces(TetMesh& mesh, const std::vector<std::array<int,
 void open_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces, const Eigen::MatrixX4i& before, double mm);
 
 // Removes tets of soft tissue at the border whose triangles cross others, as may remain after open_faces() where the
-// faces fold sharply. Their tissue then moves with the border.
+// faces fold sharply. Their tissue then moves with the border. Returns the number of removed tets.
 //   mesh  regions by sides (soft_region()); a removed tet leaves its nodes
-void remove_crossing(TetMesh& mesh);
+std::int64_t remove_crossing(TetMesh& mesh);
 
 // Splits the nodes on seams and returns all of them. Two tets at a node are in one group if they are connected around
 // the node through faces that no seam cuts. The first group keeps the node; every further group gets a copy of it, at

@@ -13,12 +13,11 @@ namespace limber {
 
 namespace {
 
-constexpr int kFirstRings = 3;  // edges from a tet that is inside out to the nodes that may move, in the first attempt
-constexpr int kRounds = 20;     // upper limit of the rounds, each with less regularization
-constexpr int kSteps = 25;      // steps of L-BFGS in a round
-constexpr int kMemory = 6;      // number of earlier steps from which L-BFGS approximates the Hessian
-constexpr int kRings = 2;       // edges from a tet that is inside out to the nodes that may move
-constexpr int kPatience = 4;    // the rounds end after this many without a further upright tet
+constexpr int kRounds = 20;        // upper limit of the rounds, each with less regularization
+constexpr int kSteps = 25;         // steps of L-BFGS in a round
+constexpr int kMemory = 6;         // number of earlier steps from which L-BFGS approximates the Hessian
+constexpr int kRings = 2;          // edges from a tet that is inside out to the nodes that may move
+constexpr int kPatience = 4;       // the rounds end after this many without a further upright tet
 constexpr double kUpright = 1e-4;  // a tet counts as upright from this share of its volume at rest
 constexpr std::int64_t kGrain = 2048;
 

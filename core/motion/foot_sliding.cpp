@@ -20,8 +20,8 @@ constexpr double kLifted = 60;
 // 0 (lifted) to 1 (standing), plus this number, so that the sum of the weights is never 0.
 constexpr double kInTheAir = 0.02;
 constexpr double kOfToes = 0.2;  // factor on the cost of sliding toes, relative to a sliding ankle
-// Costs of correcting a foot's position. For comparison: a still foot that slides at 1 mm/s costs 1 / kStill^2 per
-// second.
+// Costs of correcting a foot's position. For comparison: a foot that should stand still but slides at 1 mm/s costs 1 /
+// kStill^2 per second.
 constexpr double kGiven = 1e-6;   // cost of the size of a correction, per mm^2 and second
 constexpr double kGiving = 1e-7;  // cost of the rate of change of a correction, per (mm/s)^2 and second
 constexpr int kMostRounds = 40;

@@ -22,7 +22,7 @@ struct Grid;
 struct FemError {
   double rms_mm = 0;      // root mean square of the distance over the volume of this flesh
   double most_mm = 0;     // 95th percentile of the distance over the volume of this flesh
-  double largest_mm = 0;  // largest distance at the centre of any tet
+  double largest_mm = 0;  // largest distance of a tet's centre
   glm::dvec3 place{0};    // posed position of the tet centre with the largest distance, world, mm
   double coarse_tet_mm = 0;
   std::string unknown;  // why there is no estimate; empty: there is one

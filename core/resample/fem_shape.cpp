@@ -290,9 +290,10 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   // The size of the limb for which tets of this size are right. Differences due to rounding alone are ignored below.
   const double of_tets = reach_ / (fem_.quality == FemQuality::Draft ? kDraft : kUsual);
   solver_size_ = (!fem_.spacing_mm || fem_.reach_mm) && of_tets > 1.001 * size_ ? of_tets : size_;
-  SeamCut cut{tissue.shared_seams(), sides_of_seams(tissue, weights, moving.moves_as)};
+  const SeamCut cut{tissue.shared_seams(), sides_of_seams(volume, tissue, is_bone, weights, armature, moving.moves_as)};
+  if (!cut.sides.of_bone.empty()) last_.sides = std::make_shared<SeamSides>(cut.sides);
   TissueMesh meshed =
-      mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving, cut.side_of_bone), settings, progress, cut);
+      mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving, cut.sides), settings, progress, cut);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   sliding.tet_mm = finest_;
   last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),
@@ -300,7 +301,7 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
                               .motions = motions_on(way),
                               .closing_mm = kClosing * reach_,
                               .sliding = std::move(sliding),
-                              .side_of_bone = std::move(cut.side_of_bone)});
+                              .sides = last_.sides.get()});
   if (!fem_.is_exact) waiting_ = last_.model.fem.waiting;
   if (fem_.gravity != glm::dvec3(0)) last_.model.fem.mass = node_masses(last_.model, tissues);
   if (!objects_.empty()) {

@@ -122,7 +122,8 @@ std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, 
   const RigidBones bones(lattice, weights, labels.bone, motions);
   std::optional<PosedTets> tets;
   if (posed.shape)
-    tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress);
+    tets.emplace(posed.shape->model.fem.mesh, posed.shape->V, lattice, posed.shape->moving.meshed, progress,
+                 posed.shape->sides ? &posed.shape->sides->of_voxel : nullptr);
   const OutputGrid output = output_grid(lattice, bones, tets ? &*tets : nullptr);
   std::optional<TissueDepth> depth;
   if (can_fold(motions)) depth.emplace(body.tissue, volume.grid.spacing);

@@ -29,7 +29,8 @@ class Falloff {
     return table_[step] + (at - static_cast<float>(step)) * (table_[step + 1] - table_[step]);
   }
   // Computes the brush strength at many distances from the centre: `strength` times the falloff at distance *
-  // per_radius, in 1/65535. A product of 1 or more is treated as the rim.
+  // per_radius. If distance * per_radius is 1 or more, the falloff at the rim is used. The results are in units of
+  // 1/65535.
   //   distance, covers  #count each
   void covers(const float* distance, int count, float per_radius, float strength, std::uint16_t* covers) const;
   bool operator==(const Falloff&) const = default;

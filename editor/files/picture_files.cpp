@@ -173,7 +173,7 @@ std::string why_no_motion_pictures(const Context& context) {
   if (!shown_clip(context.document())) return "Import a motion first, or insert a key";
   if (!document.weights) return "Compute the weights first";
   if (context.live->is_lent()) return "The pictures of a motion are being drawn";
-  if (watched_solve(context)) return "The views show a running solve: switch off Watch the solve first";
+  if (watched_solve(context)) return "The views show a running solve: switch off \"Watch the solve\" first";
   return shown_result(context) ? "A result is shown: show the volume at rest first" : "";
 }
 

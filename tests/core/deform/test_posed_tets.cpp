@@ -286,3 +286,37 @@ TEST_CASE("posed tets: where a mesh carries only a part, mesh and lattice meet w
     CHECK(furthest < 1e-3);
   }
 }
+
+TEST_CASE("posed tets: along a seam each voxel moves with its own side, however roughly the mesh follows the seam") {
+  const Carried body;
+  const Grid& grid = body.tube.volume.grid;
+  // Two boxes that touch at x = 12, and a seam that waves around this plane by up to 2 voxels.
+  TetMesh mesh = test::kuhn_mesh(grid, {-0.4, -0.3, -0.2}, {11.9, 25.1, 44.6}, {2, 5, 9});
+  const TetMesh other = test::kuhn_mesh(grid, {12.1, -0.3, -0.2}, {23.3, 25.1, 44.6}, {2, 5, 9});
+  const Eigen::Index nodes = mesh.V.rows(), tets = mesh.T.rows();
+  mesh.V.conservativeResize(nodes + other.V.rows(), 3);
+  mesh.V.bottomRows(other.V.rows()) = other.V;
+  mesh.T.conservativeResize(tets + other.T.rows(), 4);
+  mesh.T.bottomRows(other.T.rows()) = other.T.array() + static_cast<int>(nodes);
+  mesh.region.insert(mesh.region.end(), other.region.begin(), other.region.end());
+  mesh.side.assign(mesh.T.rows(), 0);
+  std::fill(mesh.side.begin() + tets, mesh.side.end(), 1);
+  std::vector<std::uint16_t> side(body.tissue.size());
+  body.tissue.for_each(
+      [&](std::int64_t place, const glm::ivec3& v) { side[place] = v.x > 12 + 2 * std::sin(0.7 * v.z + 0.4 * v.y); });
+
+  for (const int apart : {0, 40}) {
+    Eigen::MatrixX3d posed = mesh.V;
+    posed.bottomRows(other.V.rows()).col(0).array() += apart * grid.spacing.x;
+    const PosedTets tets(mesh, posed, body.lattice, body.all, no_progress(), &side);
+    const InverseMap map = map_of(tets, grown(tets.posed_tissue()), &body.depth);
+    std::int64_t misplaced = 0;
+    body.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      const glm::ivec3 at = v + glm::ivec3(side[place] ? apart : 0, 0, 0) - body.lattice.output().base;
+      misplaced += map.cell[map.index(at)] != grid.index(v);
+    });
+    CHECK(misplaced == 0);
+    CHECK(covered(map) == body.tissue.size());
+    CHECK(map.lost.empty());
+  }
+}

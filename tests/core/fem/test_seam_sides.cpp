@@ -50,6 +50,9 @@ SkinWeights halves(const TissueVoxels& tissue) {
   return weights;
 }
 
+// Position of the joint between the bones of the two bars: in the middle of their common foot, mm.
+const glm::dvec3 kJoint(kVoxel*(kWide - 0.5), 0.5 * kVoxel * kDeep, 0.5 * kVoxel * kFoot);
+
 constexpr double kTop = kVoxel * (kLong - 3);  // mm: the tops of the bars, which the bones hold
 
 // Turns the top of the second bar away from the first by 40 degrees, and returns the largest stretch of an edge.
@@ -77,16 +80,79 @@ double stretch_of(const TetMesh& mesh, SolvedPose& solved) {
   return largest;
 }
 
+// Returns the cut along seams with the joint of the two bars.
+SeamCut cut_at(std::shared_ptr<const Seams> seams) {
+  return {std::move(seams), {.of_bone = {0, 1}, .joints = {{kJoint, 1, 0}}}};
+}
+
+// Returns true if tets of both sides share a node.
+bool has_tet_across(const TetMesh& mesh) {
+  std::vector<int> side(mesh.V.rows(), -1);
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    for (const int node : mesh.T.row(t)) {
+      if (side[node] >= 0 && side[node] != mesh.side[t]) return true;
+      side[node] = mesh.side[t];
+    }
+  return false;
+}
+
 }  // namespace
 
-TEST_CASE("seam sides: the bones on both sides of a seam differ") {
+TEST_CASE("seam sides: the bones on both sides of a seam differ, and meet at the joint between them") {
   const LabelVolume volume = bars(false);
   TissueVoxels tissue(volume);
   const SkinWeights weights = halves(tissue);
-  CHECK(sides_of_seams(tissue, weights, {0, 1}).empty());
+  const LabelSet no_bone(65536, 0);
+  Armature rig;
+  rig.bones = {{"left", -1, {0, 0, 0}, {0, 0, 9}}, {"right", 0, kJoint, {60, 0, 90}}};
+  const auto sides = [&](const std::vector<int>& moves_as) {
+    return sides_of_seams(volume, tissue, no_bone, weights, rig, moves_as);
+  };
+  CHECK(sides({0, 1}).of_bone.empty());
   tissue.set_seams(seam(volume));
-  CHECK(sides_of_seams(tissue, weights, {0, 1}) == std::vector<std::uint16_t>{0, 1});
-  CHECK(sides_of_seams(tissue, weights, {0, 0}).empty());  // both halves have the same motion
+  const SeamSides found = sides({0, 1});
+  CHECK(found.of_bone == std::vector<std::uint16_t>{0, 1});
+  REQUIRE(found.joints.size() == 1);
+  CHECK(found.joints[0].place == kJoint);
+  REQUIRE(std::ssize(found.of_voxel) == tissue.size());
+  CHECK(sides({0, 0}).of_bone.empty());  // both halves have the same motion
+}
+
+TEST_CASE("seam sides: an island without bone belongs to the side around it, one with bone does not") {
+  const LabelVolume volume = bars(false);
+  TissueVoxels tissue(volume);
+  tissue.set_seams(seam(volume));
+  const glm::ivec3 island(3, 5, 30);  // two voxels of the left bar that follow the right bone
+  SkinWeights weights = halves(tissue);
+  for (const glm::ivec3& v : {island, island + glm::ivec3(0, 0, 1)}) {
+    const int brick = tissue.brick_at(v);
+    SkinWeights::Influences chunk = weights.chunk(brick);
+    chunk[tissue.index_of(v) - tissue.bricks()[brick].first] = rigid_influence(1);
+    weights.set_chunk(brick, std::move(chunk));
+  }
+  Armature rig;
+  rig.bones = {{"left", -1, {0, 0, 0}, {0, 0, 9}}, {"right", 0, kJoint, {60, 0, 90}}};
+  const auto side_of_island = [&](bool is_bone) {
+    LabelVolume labels = volume;
+    if (is_bone) labels.at(island) = 2;
+    LabelSet bones(65536, 0);
+    bones[2] = 1;
+    return sides_of_seams(labels, tissue, bones, weights, rig, {0, 1}).of_voxel[tissue.index_of(island)];
+  };
+  CHECK(side_of_island(false) == 0);
+  CHECK(side_of_island(true) == 1);
+}
+
+TEST_CASE("seam sides: gaps of a seam away from the joint do not hold the sides together") {
+  const LabelVolume whole = bars(false), sided = bars(true);
+  const MeshSettings settings{.spacing_mm = 9};
+  auto with_gaps = std::make_shared<Seams>(*seam(whole));
+  for (int z = 22; z < 31; ++z)
+    for (int y = 2; y < 10; ++y) with_gaps->join({kWide - 1, y, z}, 0);
+  const TetMesh open = mesh_tissue(sided, settings, no_progress(), cut_at(with_gaps)).mesh;
+  const TetMesh full = mesh_tissue(sided, settings, no_progress(), cut_at(seam(whole))).mesh;
+  CHECK(open.T == full.T);
+  CHECK(open.V == full.V);
 }
 
 TEST_CASE("seam sides: a mesh cut at a seam opens without tearing tissue") {
@@ -94,9 +160,10 @@ TEST_CASE("seam sides: a mesh cut at a seam opens without tearing tissue") {
   const MeshSettings settings{.spacing_mm = 9};
   const TetMesh welded = mesh_tissue(whole, settings).mesh;
   CHECK(welded.side.empty());
-  const TetMesh open = mesh_tissue(sided, settings, no_progress(), {seam(whole), {0, 1}}).mesh;
+  const TetMesh open = mesh_tissue(sided, settings, no_progress(), cut_at(seam(whole))).mesh;
   REQUIRE(std::ssize(open.side) == open.T.rows());
   CHECK(std::all_of(open.region.begin(), open.region.end(), [](auto region) { return region == TetMesh::kSoft; }));
+  CHECK(has_tet_across(open));  // in the foot the sides are one
   // Above the foot no tet has nodes on both sides, and the surfaces of the two sides do not touch.
   const double middle = kVoxel * (kWide - 0.5);
   for (Eigen::Index t = 0; t < open.T.rows(); ++t)

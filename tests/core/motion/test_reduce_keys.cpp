@@ -154,7 +154,8 @@ TEST_CASE("reducing keys: fitting again gives what fitting once gives, without a
   for (int frame = 30; frame < 60; ++frame) allowed.degrees[1][frame] = 0.01;
   CHECK(fitter.fitted(allowed, no_progress()).keys ==
         KeyFitter(armature, poses, 0).fitted(allowed, no_progress()).keys);
-  CancelledLater progress(4);  // allows one query per bone, and none while a bone is fitted
+  // Cancels at the fifth time that it is asked: once for each bone it is not, so any question within a bone cancels.
+  CancelledLater progress(4);
   CHECK_NOTHROW(fitter.fitted(allowed, progress));
   allowed.mm[7] = 0.01;
   CHECK_THROWS_AS(fitter.fitted(allowed, progress), Cancelled);

@@ -190,7 +190,7 @@ TEST_CASE("constraint panel: keys inserted where a constraint counts by half do 
   run(*test.editor, "motion.insert_key");
   for (int bone = 0; bone < 5; ++bone)
     CHECK(std::abs(glm::dot(pose_of(test.document()).rotation[bone], held.rotation[bone])) > 1 - 1e-12);
-  // Undo restores the old pose, together with the pose below the constraint.
+  // Undo restores the pose from before the edit, both as it is shown and as it is without the constraint.
   run(*test.editor, "edit.undo");
   run(*test.editor, "edit.undo");
   CHECK(pose_of(test.document()).rotation[kTrunk] == shown.rotation[kTrunk]);

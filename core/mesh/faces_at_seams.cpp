@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "core/mesh/faces_at_seams.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace limber {
+
+namespace {
+
+constexpr std::uint16_t kAir = RegionSurface::kAir;
+
+using Pair = std::pair<std::uint16_t, std::uint16_t>;  // two sides, the smaller one first
+
+Pair pair_of(std::uint16_t a, std::uint16_t b) { return {std::min(a, b), std::max(a, b)}; }
+
+// Counts, around each sample, the voxel faces between tissue of two sides and those of them that lie on a seam.
+class Contacts {
+ public:
+  Contacts(const VoxelRegions& voxels, const SampleLattice& lattice) : lattice_(lattice) {
+    const Seams* seams = voxels.tissue.seams();
+    voxels.tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+      for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 next = v;
+        if (++next[axis] >= voxels.grid.size[axis]) continue;
+        const std::int64_t there = voxels.tissue.index_of(next);
+        if (there < 0) continue;
+        const std::uint16_t a = voxels.side_of(voxels.region[place]), b = voxels.side_of(voxels.region[there]);
+        if (a == b) continue;
+        Count& count = counts_[{sample_near(lattice.fine_from_voxel * (0.5 * glm::dvec3(v + next))), pair_of(a, b)}];
+        ++count.faces;
+        count.cut += seams && seams->is_cut(v, axis);
+      }
+    });
+  }
+
+  // Returns true if a seam, or air, separates the two sides at a lattice edge.
+  bool is_apart(const SurfaceNet::Edge& edge, const Pair& sides) const {
+    glm::ivec3 to = edge.from;
+    to[edge.axis] += edge.length;
+    const std::int64_t ends[2] = {sample_near(edge.from), sample_near(to)};
+    Count sum;
+    for (int k = 0; k < (ends[0] == ends[1] ? 1 : 2); ++k)
+      if (const auto at = counts_.find({ends[k], sides}); at != counts_.end())
+        sum.faces += at->second.faces, sum.cut += at->second.cut;
+    return 2 * sum.cut >= sum.faces;
+  }
+
+ private:
+  struct Count {
+    std::int64_t faces = 0, cut = 0;
+  };
+  // Returns the index of the sample nearest to a place, in the lattice of the usual cells.
+  std::int64_t sample_near(const glm::dvec3& place) const {
+    const double usual = lattice_.usual;
+    return lattice_.index(glm::ivec3(glm::floor(place / usual + 0.5)) * lattice_.usual);
+  }
+
+  const SampleLattice& lattice_;
+  std::map<std::pair<std::int64_t, Pair>, Count> counts_;
+};
+
+// A triangle of the net between tissue of two sides that no seam separates.
+struct Attached {
+  std::array<int, 3> nodes;
+  Pair sides;
+};
+
+// Returns the group of each triangle: triangles that share an edge are in one group, whatever their sides.
+std::vector<int> groups_of(const std::vector<Attached>& triangles) {
+  std::vector<int> group(triangles.size());
+  std::iota(group.begin(), group.end(), 0);
+  const auto root = [&](int i) {
+    while (group[i] != i) i = group[i] = group[group[i]];
+    return i;
+  };
+  std::map<std::pair<int, int>, int> first_at;  // a triangle at each edge
+  for (int t = 0; t < std::ssize(triangles); ++t)
+    for (int i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(triangles[t].nodes[i], triangles[t].nodes[(i + 1) % 3]);
+      const auto [known, is_new] = first_at.emplace(std::pair{a, b}, t);
+      if (is_new) continue;
+      const auto [low, high] = std::minmax(root(t), root(known->second));
+      group[high] = low;
+    }
+  for (int t = 0; t < std::ssize(triangles); ++t) group[t] = root(t);
+  return group;
+}
+
+}  // namespace
+
+std::vector<std::array<int, 3>> faces_at_seams(const VoxelRegions& voxels, const SampleLattice& lattice,
+                                               const SurfaceNet& net) {
+  const Contacts contacts(voxels, lattice);
+  std::vector<std::array<int, 3>> cut;
+  std::vector<Attached> attached;
+  net.for_each_triangle([&](int a, int b, int c, const SurfaceNet::Edge& edge) {
+    if (edge.first == kAir || edge.second == kAir) return;
+    const Pair sides = pair_of(voxels.side_of(edge.first), voxels.side_of(edge.second));
+    if (sides.first == sides.second) return;
+    if (contacts.is_apart(edge, sides)) cut.push_back({a, b, c});
+    else attached.push_back({{a, b, c}, sides});
+  });
+
+  // Of the triangles between the two sides of a joint, the nearest one tells which group holds the sides together.
+  const std::vector<int> group = groups_of(attached);
+  std::vector<char> holds(attached.size(), 0);
+  for (const SeamSides::Joint& joint : voxels.sides->joints) {
+    int nearest = -1;
+    double distance = INFINITY;
+    for (int t = 0; t < std::ssize(attached); ++t) {
+      if (attached[t].sides != pair_of(joint.first, joint.second)) continue;
+      glm::dvec3 middle(0);
+      for (const int node : attached[t].nodes) middle += net.nodes()[node].place / 3.0;
+      const double here = glm::distance(lattice.world_from_lattice * (lattice.step * middle), joint.place);
+      if (here < distance) distance = here, nearest = t;
+    }
+    if (nearest >= 0) holds[group[nearest]] = 1;
+  }
+  for (std::size_t t = 0; t < attached.size(); ++t)
+    if (!holds[group[t]]) cut.push_back(attached[t].nodes);
+  return cut;
+}
+
+}  // namespace limber
