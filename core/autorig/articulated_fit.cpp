@@ -21,8 +21,8 @@ namespace limber {
 
 namespace {
 
-// Total weight of all point pairs, relative to the priors: it equals the weight of kPairs pairs whose distances have a
-// standard deviation of kPairSpread mm.
+// Weight of the surfaces relative to the priors. However many point pairs there are, together they weigh as much as
+// kPairs pairs whose distances have a standard deviation of kPairSpread mm.
 constexpr double kPairs = 1000, kPairSpread = 5;
 // Standard deviations of the prior on bone sizes. A log stretch is the logarithm of a bone's scale factor. The prior
 // limits its difference between neighbouring bones, and between the directions along and across one bone.

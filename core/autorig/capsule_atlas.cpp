@@ -47,8 +47,8 @@ std::vector<std::uint8_t> trunk_of(const Armature& rig, const std::vector<double
 
 std::vector<double> radii_of(const Armature& rig, const std::vector<std::uint8_t>& trunk) {
   // Radius of the flesh about a bone: in the trunk kTrunk times the trunk's length, in a limb kLimb times the bone's
-  // length. If the parent is in the limb too, it is between 0.5 and kTaper times the parent's radius. It is at least
-  // kThinnest / 4 of the length of all bones.
+  // length. If the parent is in the limb too, the radius is between 0.5 and kTaper times the parent's. It is at least
+  // kThinnest / 4 of the summed length of all bones.
   constexpr double kTrunk = 0.2, kLimb = 0.2, kThinnest = 0.012, kTaper = 0.85;
   double trunk_length = 0, whole = 0;
   for (size_t b = 0; b < rig.bones.size(); ++b)

@@ -12,8 +12,8 @@ namespace limber {
 
 namespace {
 
-// A face of the tissue's bounding box can be a cut only if the tissue in it is at least this wide, as a share of the
-// box's longest side. Tissue that merely touches the box is narrower.
+// A face of the tissue's bounding box can be a cut, a plane at which the body is cut off, only if the tissue in it is
+// at least this wide, as a share of the box's longest side. Tissue that merely touches the box is narrower.
 constexpr double kTouch = 0.03;
 // A label counts as inner (inside the body) if its share of the tissue's surface is smaller than this.
 constexpr double kRare = 0.02;

@@ -98,8 +98,8 @@ double whole_strangeness(const Fitted& fitted, const std::vector<double>& strang
 }
 
 // Sets the errors of joints for a body whose shape comes from the rig alone. The skin shows the direction and the ends
-// of limbs, but not where along them they bend. A limb that does not coincide with any skin may be anywhere around its
-// root.
+// of limbs, but not where along a limb the joints are. A limb that does not coincide with any skin may be anywhere
+// around its root.
 void doubt_capsules(FoundJoints& found, const std::vector<double>& near, const Mannequin& m, const FitTarget& target) {
   // Parts of a joint's error: kOfWhole of the tissue's diagonal, kOfBone of a bone's length, and up to kLost of a
   // bone's length in a limb that does not coincide with the skin. A limb coincides with it if the confidence is at

@@ -28,7 +28,7 @@ constexpr double kVerifyStep = 1;  // step between the joint angles at which col
 constexpr double kLever = 100;     // a shift of the axis by this length costs as much as a tilt by one radian, mm
 // Collision depth, mm, below which the cost is about quadratic; above it the cost is linear.
 constexpr double kRound = 0.2;
-// Bone that at all angles is farther than this from the bones of the other side is ignored, mm.
+// Bone that at all angles is farther than this from the bones on the other side of the joint is ignored, mm.
 constexpr double kNear = 20;
 
 // A change of the joint's axis, all in mm: shifts along the two directions perpendicular to the axis, and tilts towards

@@ -15,7 +15,8 @@ namespace {
 
 constexpr float kUnseen = std::numeric_limits<float>::max();
 constexpr double kStep = 8;  // distance between points of a path, mm
-// An end of the body gets no path if its prominence (limb_paths.h) is below this share of the longest path's length.
+// An end of the body gets no path if its prominence is below this share of the longest path's length. The prominence is
+// the distance from the end back to the point where the path to a farther end branches off.
 constexpr double kLeastShare = 0.12;
 constexpr size_t kMostEnds = 12;
 
@@ -81,9 +82,10 @@ class Body {
   }
   double distance(std::int32_t i) const { return distance_[i]; }
 
-  // Returns the local maxima of the distance, each with its prominence (limb_paths.h). Cells are visited in descending
-  // order of distance and joined to regions, one for each maximum. When two regions meet, the prominence of the lower
-  // maximum is known, and its region is merged into the other.
+  // Returns the local maxima of the distance, each with its prominence: the distance from the maximum back to the point
+  // where the path to a farther one branches off. Cells are visited in descending order of distance and joined to
+  // regions, one for each maximum. When two regions meet, the prominence of the lower maximum is known, and its region
+  // is merged into the region of the higher one.
   std::vector<std::pair<double, std::int32_t>> summits() const {
     std::vector<std::int32_t> order;
     for (std::int32_t i = 0; i < size(); ++i)

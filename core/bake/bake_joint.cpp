@@ -27,12 +27,14 @@ namespace {
 
 // Degrees: the smallest allowed extent of the range of angles, and the largest allowed angle at either end.
 constexpr double kLeastRange = 5, kWidest = 170;
-// Number of lattice nodes along an edge of a tet. The shifts are linear within a tet, but change their slope from tet
-// to tet: with half as many nodes, tens of voxels in the crease of a bent elbow overlap.
+// Number of lattice nodes along an edge of a tet of the solver's mesh. The lattice stores how far solved positions
+// differ from blended ones. This difference is linear within a tet, but its slope changes from tet to tet. With half as
+// many nodes, tens of voxels in the crease of a bent elbow overlap.
 constexpr double kNodesPerTet = 4;
-constexpr int kLargestStep = 8;      // largest distance between nodes, voxels
-constexpr double kNothing = 0.03;    // mm: a shift that is never larger counts as zero; such nodes are left out
-constexpr float kBoneCorner = 0.1f;  // weight in the fit of a corner inside bone; low, as bone is posed rigidly anyway
+constexpr int kLargestStep = 8;    // largest distance between nodes, voxels
+constexpr double kNothing = 0.03;  // mm: a lattice node whose shift is never larger is left out
+// Weight of a voxel corner inside bone in the fit; low, as bone is posed rigidly anyway.
+constexpr float kBoneCorner = 0.1f;
 
 // One angle at which the joint is solved, on one side of rest.
 struct SolvedAngle {
@@ -49,7 +51,7 @@ struct SolvedSide {
   double tet_mm = 0;
 };
 
-// The body and its data, which all solves of a joint use.
+// The body and its data, which all solves of one joint use.
 struct RigidTissue {
   const Body& body;
   const BoundBody& bound;
@@ -149,14 +151,14 @@ glm::vec3 in_half_precision(const glm::dvec3& v) {
   return half;
 }
 
-// For each corner around the joint, its position in a solve minus its position by blending, mm.
+// For each voxel corner around the joint, its position in a solve minus its position by blending of bone motions, mm.
 struct SolvedCorners {
   double degrees = 0;
   bool is_baked = false;
   std::vector<glm::vec3> difference;  // one vector for each corner
 };
 
-// Fills in the baked angles, the lattice and its shifts.
+// Fills in the baked angles, the lattice, and the shifts of its nodes, which are fitted to the solved corners.
 void fit_lattice(const JointCorners& corners, const glm::ivec3& step, const std::vector<SolvedCorners>& solved,
                  BakedJoint& joint) {
   std::vector<const SolvedCorners*> baked;
@@ -237,7 +239,7 @@ std::vector<SolvedSide> solve_sides(const RigidTissue& tissue, int bone, const B
   return sides;
 }
 
-// Returns the corners of each solved angle, ascending by angle.
+// Returns for each solved angle, in ascending order, how far the solved voxel corners are from the blended ones.
 std::vector<SolvedCorners> solved_corners(const RigidTissue& tissue, const std::vector<SolvedSide>& sides,
                                           const JointCorners& corners) {
   std::vector<SolvedCorners> solved;

@@ -35,7 +35,7 @@ struct JointBake {
 };
 
 // Throws Error for a bone without a parent or without an axis, for a bad range, when the tissue cannot be meshed, when
-// no angle can be reached, and where the joint bends nothing.
+// no angle can be reached, and when the joint bends no tissue.
 JointBake bake_joint(const Body& body, const BoundBody& bound, int bone, const BakeSettings& settings,
                      Progress& progress);
 

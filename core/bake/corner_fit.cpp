@@ -11,7 +11,8 @@ namespace limber {
 
 namespace {
 
-constexpr double kBending = 0.01;    // weight of the second sum in corner_fit.h; a corner inside tissue weighs 1
+// Weight of the term in corner_fit.h that keeps the field smooth; a corner in soft tissue has the weight 1.
+constexpr double kBending = 0.01;
 constexpr double kTolerance = 1e-6;  // the iterations end when the residual is this share of that of zero shifts
 constexpr int kMostIterations = 400;
 
@@ -43,7 +44,8 @@ CornerFit::CornerFit(std::vector<glm::ivec3> corners, std::vector<float> weight,
   add_corners();
 }
 
-// Lists the nodes with a share in some corner, and the neighbours of each of them.
+// Lists the lattice nodes that have a share in the value at some voxel corner, and the neighbours of each of these
+// nodes.
 void CornerFit::number_nodes() {
   const std::size_t row = size_.x, slice = row * size_.y;
   index_.assign(slice * size_.z, 0);  // 1 marks a node until the nodes are counted
@@ -72,7 +74,7 @@ void CornerFit::number_nodes() {
   }
 }
 
-// Fills matrix_ with the terms that the corners contribute to the equations.
+// Adds the terms that the voxel corners contribute to the equations to matrix_.
 void CornerFit::add_corners() {
   matrix_.assign(27 * nodes_.size(), 0.0);
   for (std::size_t corner = 0; corner < corners_.size(); ++corner) {
@@ -93,7 +95,8 @@ void CornerFit::add_corners() {
   }
 }
 
-// Returns the places of the nodes around a corner that have a share above zero there, and these shares.
+// Returns the lattice nodes around a voxel corner whose shares (trilinear weights) there are above zero, and the
+// shares.
 CornerFit::Shares CornerFit::shares_of(const glm::ivec3& corner) const {
   const glm::ivec3 low = floor_divided(corner, step_);
   const glm::dvec3 high = glm::dvec3(corner - low * step_) / glm::dvec3(step_), rest = 1.0 - high;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Fits a field that is given at the corners of tissue voxels by one that is trilinear between the nodes of a coarser
-// lattice. The shifts x of the nodes minimise
+// lattice. A node's share in a corner is its trilinear weight there. The values x of the nodes minimise
 //
 //    sum over corners  weight * | sum of the nodes' shares * x  -  given |^2
 //      +   kBending * sum over three nodes in a row  | x - 2 x + x |^2

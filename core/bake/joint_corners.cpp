@@ -15,7 +15,8 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 
-// Returns for each brick whether tissue in it or in a neighbouring brick bends or is meshed.
+// Returns a byte per brick of voxels: 1 if tissue in this brick or in a neighbouring one is bent by the joint or
+// meshed.
 std::vector<std::uint8_t> bricks_around_joint(const TissueVoxels& tissue, const SkinWeights& weights,
                                               const std::vector<std::vector<RigidTransform>>& motions,
                                               const std::vector<const TissueMask*>& meshed) {
@@ -44,7 +45,7 @@ std::int64_t place_of(const glm::ivec3& corner, const Grid& grid) {
   return corner.x + (grid.size.x + std::int64_t{1}) * (corner.y + (grid.size.y + std::int64_t{1}) * corner.z);
 }
 
-// Calls body(voxel) for each tissue voxel around a corner.
+// Calls body(voxel) for each of the up to eight tissue voxels that have this corner.
 template <class Body>
 void for_each_around(const TissueVoxels& tissue, const glm::ivec3& corner, const Body& body) {
   for (int i = 0; i < 8; ++i) {
@@ -71,7 +72,8 @@ JointCorners joint_corners(const LabelVolume& volume, const TissueVoxels& tissue
     CornerWeights influences(tissue, weights, itself, b);
     for (int at = 0; at < 9 * 9 * 9; ++at) {
       const glm::ivec3 in(at % 9, at / 9 % 9, at / 81), corner = tissue.bricks()[b].corner + in;
-      // A corner lies in several bricks. It is listed once, by the first brick that has tissue around it.
+      // A corner lies in several bricks. The first brick around the joint that has a tissue voxel at the corner lists
+      // it.
       std::int64_t lister = -1;
       bool is_soft = false, is_skinned = false;
       for_each_around(tissue, corner, [&](const glm::ivec3& v) {
@@ -130,7 +132,8 @@ CarriedCorners::CarriedCorners(const JointCorners& corners, const LabelVolume& v
   points_ = std::make_unique<CarriedPoints>(mesh_, volume.grid, points, furthest_mm);
 }
 
-// Sets the posed corners of voxels that stick out of the mesh and are pressed flat there (posed_tets.h).
+// Sets the posed corners of voxels that stick out of the mesh. Where another part of the mesh is near, these voxels are
+// pressed flat there (posed_tets.h).
 void CarriedCorners::press_riders(const Eigen::MatrixX3d& V, const std::vector<RigidTransform>& motions,
                                   std::vector<glm::dvec3>& posed) const {
   const PosedLattice lattice(volume_, tissue_, weights_, motions, Blend::Linear, glm::dvec3(1));

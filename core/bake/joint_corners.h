@@ -24,8 +24,8 @@ struct JointCorners {
   std::int64_t size() const { return std::ssize(corner); }
 };
 
-// Returns the corners of all tissue that blending bends in one of the poses, or that a mesh carries, and of the bricks
-// around it.
+// Returns the corners of all tissue that blending bends in one of the poses, or that a mesh carries, and those of the
+// neighbouring bricks of voxels.
 //   weights   rigid in bone tissue
 //   motions   of the bones of `weights` in each pose
 //   meshed    tissue that a mesh carries, one mask for each mesh
@@ -43,7 +43,7 @@ class CarriedCorners {
   // Keeps references to all arguments, which must outlive this object.
   //   weights      rigid in bone tissue
   //   moving       the tissue that the mesh carries
-  //   furthest_mm  corners of this tissue that are further outside the mesh follow a bone
+  //   furthest_mm  corners of this tissue that are further outside the mesh than this follow a bone
   CarriedCorners(const JointCorners& corners, const LabelVolume& volume, const TissueVoxels& tissue,
                  const SkinWeights& weights, const DeformingRegion& moving, std::shared_ptr<const TetMesh> mesh,
                  double furthest_mm);

@@ -10,7 +10,7 @@
 namespace limber {
 
 namespace {
-// More bytes are passed to the library in several calls, because it counts the bytes of a call in 32 bits.
+// Largest number of bytes passed to the library in one call, because the library counts the bytes of a call in 32 bits.
 constexpr std::size_t kMost = std::size_t{1} << 30;
 }  // namespace
 

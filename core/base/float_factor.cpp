@@ -92,7 +92,7 @@ void FloatFactor::find_updates() {
   place_.assign(nodes_.size(), -1);
 }
 
-// Finds the scale that makes the diagonal 1.
+// Sets scale_ to the factors that, applied to rows and columns, make every diagonal entry of the matrix 1.
 void FloatFactor::scale_by(const SparseColumns& matrix) {
   scale_.assign(nodes_.size(), 1);
   for (int c = 0; c < nodes_.size(); ++c)
@@ -112,7 +112,7 @@ void FloatFactor::fill(int s, const SparseColumns& matrix) {
         panel[place_[matrix.row[k]]] = static_cast<float>(matrix.value[k] * scale_[c] * scale_[matrix.row[k]]);
 }
 
-// Subtracts from a supernode's panel the products of the panels before it.
+// Subtracts from a supernode's panel the updates from all earlier supernodes, which are products of their panels.
 void FloatFactor::add_updates(int s) {
   float* panel = panels_.get() + panel_first_[s];
   const std::int64_t stride = rows_of(s);
@@ -136,7 +136,8 @@ void FloatFactor::add_updates(int s) {
   }
 }
 
-// Factorizes a panel that has all updates. Returns false when its diagonal is not positive definite.
+// Factorizes the panel of a supernode after all updates were subtracted from it. Returns false when the panel's
+// diagonal block is not positive definite.
 bool FloatFactor::finish(int s) {
   float* panel = panels_.get() + panel_first_[s];
   const int rows = rows_of(s), columns = columns_of(s), below = rows - columns;

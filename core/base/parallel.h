@@ -21,7 +21,7 @@ double parallel_sum(std::int64_t count, std::int64_t grain,
                     const std::function<double(std::int64_t, std::int64_t)>& body);
 
 // While a ThreadCount is alive, parallel loops use `threads` threads (1 or more; may exceed the number of cores).
-// Otherwise they use every core. A program's main or a test creates one.
+// Otherwise they use every core. A program's main or a test creates a ThreadCount.
 class ThreadCount {
  public:
   explicit ThreadCount(int threads);
@@ -34,9 +34,9 @@ class ThreadCount {
   std::unique_ptr<Limit> limit_;
 };
 
-// While a CancelScope is alive, the parallel loops that this thread starts check `progress`. Once it is cancelled, each
-// loop stops before its next block and throws Cancelled. A command or a job creates one around its work, so that no
-// step has to check between its own loops.
+// While a CancelScope is alive, the parallel loops that this thread starts check whether `progress` is cancelled. If
+// so, each loop stops before its next block and throws Cancelled. A command or a job creates a CancelScope around its
+// work, so that no step has to check between its own loops.
 class CancelScope {
  public:
   explicit CancelScope(const Progress& progress);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Determines the path of the file that a new file replaces (the target of symbolic links). In error messages it puts
-// the name that the user knows in place of the temporary name.
+// Determines the path of the file that a new file replaces (the target of symbolic links). Replaces the temporary name
+// of a file in error messages by the name that the user knows.
 #pragma once
 
 #include "core/base/error.h"

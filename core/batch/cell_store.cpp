@@ -107,8 +107,8 @@ double median(std::vector<double> values) {
   return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
-// Returns true if the folder contains a complete result whose cell.json has this key, the hash of all that it depends
-// on.
+// Returns true if the folder contains a complete result whose cell.json states this key. The key is the hash of
+// everything that the result depends on.
 bool is_done(const Path& folder, const std::string& key) {
   if (!fs::exists(folder / "cell.json")) return false;
   const Json json = read_facts(folder / "cell.json");

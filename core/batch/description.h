@@ -73,7 +73,7 @@ std::vector<DescribedPose> read_described_poses(const Description& description, 
 std::vector<Technique> read_techniques(const Description& description, const std::vector<std::string>& otherwise);
 // Reads those keys of a body that studies and batches have in common: volume, phantom, rig, tissues and bones.
 DescribedBody read_described_body(const Description& description, const std::string& whose);
-// Returns the flag "nearest". Throws Error if it is set and a technique makes masses exact.
+// Returns the value of the key "nearest". Throws Error if it is true although a technique makes masses exact.
 bool read_nearest(const Description& description, const std::vector<Technique>& techniques);
 // Throws Error if two of the values under a key are equal.
 void check_distinct(const Description& description, const std::string& key, std::vector<std::string> values);

@@ -49,7 +49,8 @@ std::string item_of(const Json& object) {
   return object.contains("label") ? object["label"].dump() : "";
 }
 
-// Adds the rows of a value. The quantity of a nested value is its path, joined by dots.
+// Adds a row for a single value, or for each value in an object or list. The quantity of a nested value is the path of
+// its keys and list indices, joined by dots; each object in a list is an item of its own.
 void add_value(Rows& rows, const std::vector<std::string>& fields, const std::string& group, const std::string& item,
                const std::string& quantity, const Json& value) {
   if (value.is_object()) {

@@ -40,7 +40,7 @@ struct BoneReach {
     if (cage != Cage::Arm) return own;
     return own <= kInCage * cage_width ? own / kInCage : own + (1 - kInCage) * cage_width;
   }
-  // Returns the distance from which the bone that won the comparison gives heat, mm.
+  // Returns the distance that the strength of the bone's heat depends on, mm, once the bone has won the comparison.
   //   compared  the corrected distance that was compared, mm
   float held_from(float compared) const {
     if (cage == Cage::None) return compared;

@@ -51,7 +51,7 @@ struct HeatCells {
 };
 
 // Makes the cells of a volume.
-//   shift  gives the size of blocks (HeatCells::shift)
+//   shift  cells are made in blocks of 2^shift voxels along each axis
 HeatCells make_heat_cells(const BrickWindow::Source& source, const HeatLaw& law, const glm::i16vec3& shift);
 
 // Returns the block size (as HeatCells::shift) with which at most about `most_cells` cells have to be solved for.

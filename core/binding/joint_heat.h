@@ -14,7 +14,7 @@ namespace limber {
 
 // Returns the bricks that have two or more bones nearby: within one brick for cells of 2^3 voxels, within more bricks
 // for coarser cells. The result is ascending.
-//   shift  HeatCells::shift
+//   shift  cells have 2^shift voxels along each axis (HeatCells::shift)
 std::vector<std::int32_t> bricks_between_bones(const TissueVoxels& tissue, const ZeroedVector<std::uint16_t>& held_by,
                                                const glm::i16vec3& shift);
 
