@@ -20,14 +20,15 @@ namespace limber {
 
 namespace {
 
-// Amount, in voxels, by which rounding to voxels makes the height along the smooth ridge of a thick tube vary.
+// Rounding to voxels makes the depth along the middle of a smooth, thick bone vary by up to this many voxels.
 constexpr double kWiggleVoxels = 0.6;
 // If there are more basins times rig bones than this, small basins are merged first: for each such pair a distance is
 // stored, and at this limit all distances take 64 MB.
 constexpr std::int64_t kMostDistances = 16'000'000;
 
-// Cuts a basin of the watershed that contains at least half the length of each of several rig bones: the bones of such
-// a basin have grown together, or are drawn as one tube. Each voxel goes to the nearest of those rig bones.
+// Cuts a basin of the watershed that contains at least half the length of each of several rig bones: the anatomical
+// bones in such a basin have grown together, or are drawn as one tube. Each voxel goes to the nearest of those rig
+// bones.
 void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armature, const Grid& grid,
                                  const TissueVoxels& tissue, const Hugging& hugging, std::vector<std::int32_t>& basin) {
   constexpr double kMostOfItsLength = 0.5;
@@ -284,9 +285,9 @@ class Pieces {
     return nearest;
   }
 
-  // Corrects the distances from basins to two rig bones that meet at a joint, for voxels beyond the joint: the distance
-  // to the bone beyond the joint is reduced to that to the bone before it. Then the distance to the bone before the
-  // joint is increased.
+  // Corrects the mean distances from basins to rig bones for voxels beyond a joint, which do not belong to the rig bone
+  // before the joint but may belong to the one on its far side. Lowers the distance to the far bone to that to the bone
+  // before the joint, and then raises the latter. Both change in proportion to the share of such voxels in the basin.
   void move_beyond_joints(const std::vector<std::int32_t>& basin, const std::vector<BeyondJoint>& beyond) {
     // Number of voxels beyond a joint, by basin, rig bone before the joint and rig bone beyond the joint.
     std::map<std::tuple<std::int32_t, int, int>, std::int64_t> voxels;

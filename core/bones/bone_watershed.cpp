@@ -23,8 +23,8 @@ namespace {
 // pieces find the same rig bone.
 constexpr double kMergeRatio = 0.9;
 constexpr std::int64_t kBricks = 64;  // bricks (8^3 voxels each) per block of a parallel loop
-// A height variation counts as rounding to voxels only up to this share of the summit. The limit is relative to the
-// summit because a finger bone is only two voxels deep.
+// A variation of depth counts as an effect of rounding to voxels only up to this share of the summit's depth. The limit
+// is relative to the summit because a finger bone is only two voxels deep.
 constexpr double kWiggleShare = 0.2;
 
 std::array<glm::ivec3, 26> offsets_26() {

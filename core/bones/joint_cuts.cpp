@@ -22,10 +22,13 @@ namespace {
 constexpr double kReach = 0.6;       // reach of a joint's domain along the bones, share of the shorter bone
 constexpr double kReachAside = 0.3;  // smallest reach of a joint's domain in any direction, share of the longer bone
 constexpr double kShaft = 0.2;       // distance from the joint at which the shafts begin, share of the shorter bone
-constexpr double kShaftWidth = 0.1;  // thickness of the innermost tissue that is shaft, share of the shorter bone
-constexpr double kFarAside = 0.35;   // tissue further than this from a bone is never its shaft, share of its length
-constexpr double kCoarse = 0.04;  // at this voxel size, weights of squared distances double; share of the shorter bone
-constexpr double kAway = 8;  // extra weight of cut area where shafts begin; rises with the squared distance to the cut
+// Tissue up to this much further from a rig bone than the nearest tissue is shaft too; share of the shorter bone.
+constexpr double kShaftWidth = 0.1;
+constexpr double kFarAside = 0.35;  // tissue further than this from a bone is never its shaft, share of its length
+// Voxel size at which squared distances from the expected cut count twice; share of the shorter bone.
+constexpr double kCoarse = 0.04;
+// Where the shafts begin, cut area weighs 1 + this; the addition grows with the squared distance from the expected cut.
+constexpr double kAway = 8;
 // Beyond this distance from the expected cut, as a share of the distance to the shafts, the weight of cut area rises
 // with the fourth power of the distance. Otherwise the thin shaft beside a broad joint would be the cheapest cut.
 constexpr double kSteep = 0.4;
@@ -43,7 +46,8 @@ constexpr double kMarrow = 4;         // factor on the weight of cut area throug
 constexpr double kBall = 0.02;        // a ball with a smaller radius is ignored; share of the length of its bone
 constexpr double kLargestBall = 0.1;  // a larger radius of a ball is cut to this; share of the length of its bone
 constexpr double kBallCore = 0.8;     // tissue within this share of a ball's radius certainly belongs to the ball
-constexpr double kBallWidth = 0.5;    // radii beyond a ball at which cut area weighs as much as where shafts begin
+// Distance beyond a ball, in its radii, at which cut area weighs 1 + kAway, as where shafts begin.
+constexpr double kBallWidth = 0.5;
 // Another child of the bone's parent may be attached along the bone, if its head is at least this share of the bone's
 // length away from the bone's head.
 constexpr double kSitsAlong = 0.25;

@@ -14,9 +14,10 @@ constexpr double kRound = 1.1;  // ratio of a joint's width to its depth below w
 // If the ratio of a joint's width to its depth is at least this, the direction of the width is certainly the hinge.
 constexpr double kClearlyWide = 1.25;
 
-// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. If a rig's joint is
-// not in the middle of the joint's gap, JointShape::level includes this offset. The direction of a short rig bone, such
-// as a hand's, is inexact, so the wrist's surface does not turn with the hand.
+// Joint shapes measured on the bones of the BodyParts3D atlas at several voxel sizes, and rounded. The five numbers are
+// the members of JointShape in their order. If a rig's joint is not in the middle of the joint's gap, JointShape::level
+// includes this offset. The direction of a short rig bone, such as a hand's, is inexact, so the wrist's surface does
+// not turn with the hand.
 constexpr JointShape kKnuckle{0.1, -0.22, -0.2, 0.8, 2};        // the knuckle, a ball in a shallow cup
 constexpr JointShape kFingerMiddle{0.07, -0.05, -0.4, 0.5, 2};  // a finger's middle joint, a roller across the finger
 constexpr JointShape kFingerEnd{-0.1, 0.1, -0.45, 0.4, 2};

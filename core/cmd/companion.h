@@ -11,7 +11,7 @@ struct Companion {
 };
 
 // Reads IN=OUT. Throws Error if a name is missing.
-//   what     names the file in messages        example  a whole option
+//   what     names the file in messages        example  an example of the whole option, for messages
 Companion companion(const std::string& request, const char* what, const char* example);
 Companion grey_paths(const std::string& request);
 Companion landmark_paths(const std::string& request);

@@ -6,8 +6,8 @@
 
 namespace limber::cmd {
 
-// Converts a rig or a motion. If the output is a .bvh, it keeps the frames of a motion; other formats get only the rest
-// pose. Warnings go to stderr.
+// Converts a rig or a motion. A .bvh output keeps the frames of a motion; other formats get only the rest pose.
+// Warnings go to stderr.
 void convert_rig_or_motion(const Path& in, const Path& out);
 
 }  // namespace limber::cmd

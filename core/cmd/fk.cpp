@@ -2,9 +2,9 @@
 // limber fk RIG|BVH [--frame N | --all-frames] [POSE-OPTIONS] [--json] [--angles]: prints the position of every joint,
 // or its clinical angles.
 //
-// For a BVH without a pose it prints, in the file's own axes and units, the joints' global rotations and the positions
-// of the End Sites too. For a rig (or a BVH with a pose) it prints posed heads and tails in world LPS mm, and each
-// bone's rotation from rest to posed, which is the identity for a bone that does not move.
+// For a BVH without a pose, the command prints, in the file's own axes and units, the joints' global rotations and the
+// positions of the End Sites too. For a rig (or a BVH with a pose) it prints posed heads and tails in world LPS mm, and
+// each bone's rotation from rest to posed, which is the identity for a bone that does not move.
 #include <cstdio>
 #include <functional>
 #include <memory>

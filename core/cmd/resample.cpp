@@ -304,7 +304,7 @@ PosingSettings posing_settings(const Resampling& options, const GreyVolume* grey
                        .baked = std::move(baked)}};
 }
 
-// Writes the outputs and the report of one posed volume. Returns false if a gate failed for which --strict fails.
+// Writes the outputs and the report of one posed volume. Returns false if a gate failed that --strict requires.
 bool finish(const Resampling& options, const Body& body, const BoundBody& bound, const std::vector<Landmark>& landmarks,
             const PosingSettings& settings, BodyInPose& posed, const Stopwatch& total, Progress& progress) {
   const std::shared_ptr<const FemShape> shape = posed.posed.shape;

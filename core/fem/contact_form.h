@@ -37,7 +37,7 @@ struct ContactSettings {
 class ContactForm {
  public:
   ContactForm() = default;
-  // Finds no pairs yet: build_broad_phase() does.
+  // The constructor finds no pairs; build_broad_phase() finds them.
   //   F      #F triangles of the skin and of objects
   //   rest   #V positions
   //   rigid  #V: nodes with the same number, 0 or more, never move relative to each other; -1: free

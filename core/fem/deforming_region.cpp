@@ -279,7 +279,7 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
   const std::vector<float> to_bending = cells.squared_distance_to(cells.mixed(), progress);
   const auto squared = [](double mm) { return float(mm * mm); };
   // Two cells that are near each other at a tested path position may have touched since the previous tested position.
-  // So they become free at the previous position.
+  // So their tissue may deform (is free) from the previous position on.
   std::vector<float> to_near(to_bending.size(), INFINITY), free_from(to_bending.size(), INFINITY);
   for (std::size_t at = 0; at < free_from.size(); ++at)
     if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;

@@ -116,7 +116,8 @@ DistanceField::DistanceField(const TetMesh& mesh, std::uint16_t region, std::spa
   }
   for (std::size_t i = 0; i < mm_.size(); ++i)
     if (near[i] <= kExact) mm_[i] = float(spacing_) * (inside[i] ? -near[i] : near[i]);
-  // Each pass with the weights 1/4, 1/2, 1/4 adds half a squared spacing to the variance.
+  // Each pass with the weights 1/4, 1/2, 1/4 adds half a squared spacing to the variance of the smoothing, which is to
+  // be the square of smooth_mm.
   const int passes = int(std::lround(2 * std::pow(smooth_mm / spacing_, 2)));
   for (int pass = 0; pass < passes; ++pass)
     for (int axis = 0; axis < 3; ++axis) smooth(axis);

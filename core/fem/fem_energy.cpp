@@ -11,7 +11,8 @@
 namespace limber {
 
 namespace {
-constexpr double kWeakBelow = 0.4;  // det F of flesh below which the weak barrier acts
+// If det F (posed / rest volume) of a tet of flesh is below this, the weak barrier keeps the tet from becoming flat.
+constexpr double kWeakBelow = 0.4;
 // Addition to the diagonal entries of a node in the Hessian, as a share of the smallest of the three. Flesh that hangs
 // by an edge can turn without force, so without the addition the matrix would be singular there, and rounding could
 // make it look indefinite.

@@ -71,7 +71,7 @@ std::vector<std::uint16_t> sides_of_bones(const TissueVoxels& tissue, const std:
         are_apart = between[a * count + b].cut > 0 && std::minmax(side[a], side[b]) == std::minmax(kept, lost);
     if (!are_apart) std::replace(side.begin(), side.end(), std::uint16_t{lost}, std::uint16_t{kept});
   }
-  // Numbers the sides of the bones that have tissue without gaps; bones that move as another one share its side.
+  // Numbers the sides from 0, in the order of the bones. A bone that moves as another one gets that bone's side.
   std::vector<std::uint16_t> number(count, 0);
   for (std::size_t b = 0; b < count; ++b) side[b] = side[moves_as[b]];
   std::uint16_t next = 0;

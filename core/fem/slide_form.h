@@ -46,7 +46,8 @@ struct SlideForm {
     double along = 0, off = 0;
   };
   Slide slide_of(const Node& node, const NodePositions& x) const;
-  Slide largest(const NodePositions& x) const;  // the largest of either over all nodes; 0 if there are none
+  // Returns the largest `along` and the largest `off` of all nodes; 0 without nodes.
+  Slide largest(const NodePositions& x) const;
 
  private:
   // Returns the node's position in the bone's frame.

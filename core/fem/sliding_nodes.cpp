@@ -17,12 +17,12 @@ namespace {
 
 // Cosine of the angle from a surface's normal within which another bone counts as in front of it.
 constexpr double kInFront = 0.5;
-// Distances in edges of tets. A node slides if most soft voxels on bone near it are loose tissue. The nearest of these
-// voxels must lie within kFurthest; those at most kDecides further away than the nearest one count. Where skin is thin,
-// the mesh's bone ends below the voxels' bone (LatticeNetSettings).
+// Distances, as multiples of the tets' edge length. A node slides if most soft voxels on bone near it are loose tissue.
+// The nearest of these voxels must lie within kFurthest; those at most kDecides further away than the nearest one
+// count. Where skin is thin, the mesh's bone ends below the voxels' bone (LatticeNetSettings).
 constexpr double kDecides = 0.5, kFurthest = 2;
-// For the distance field of a bone's surface, in edges of tets: the distance between samples, the distance over which
-// it is smoothed, and the margin around the sliding nodes.
+// For the distance field of a bone's surface, as multiples of the tets' edge length: the distance between samples, the
+// distance over which the field is smoothed, and the margin around the sliding nodes.
 constexpr double kSample = 0.25, kSmooth = 0.3, kMargin = 4;
 
 glm::dvec3 vec_of(const Eigen::RowVector3d& p) { return {p[0], p[1], p[2]}; }

@@ -26,7 +26,7 @@ struct SlidingSettings {
   std::vector<Near> near;  // empty: all tissue sticks
   double tet_mm = 8;       // edge length of the tets
   // Motions of the rig's bones at some positions on the path. Another bone within `joint_mm` in front of the surface at
-  // rest, or within `closing_mm` in one of these, keeps the tissue between them from sliding.
+  // rest, or within `closing_mm` in one of these motions, keeps the tissue between the two bones from sliding.
   std::vector<std::vector<RigidTransform>> motions = {};
   double joint_mm = 12, closing_mm = 8;
 };

@@ -14,7 +14,8 @@ namespace limber {
 namespace {
 constexpr std::int64_t kGrain = 4096;
 constexpr double kKept = 0.1;  // smallest share of a tet's volume that must be left after a step
-constexpr double kHalf = 0.5;  // a required volume `keep` above this share of the tet's current volume is cut to it
+// A required volume `keep` above this share of the tet's current volume is lowered to this share.
+constexpr double kHalf = 0.5;
 
 // Returns the first a in (0, limit] at which c0 + c1 a + c2 a^2 + c3 a^3 falls to zero, rounded down; `limit` if there
 // is none. c0 must be positive.

@@ -253,7 +253,8 @@ void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
     if (std::size_t& left = free[bone[node]]; left > 0) marked[node] = 1, --left;
 }
 
-// Returns the side of seams on which the tets around each node lie; -1: on several, or there are no seams.
+// Returns for each node the side of the seams on which all tets around the node lie; a negative value if they lie on
+// several sides, or if there are no seams.
 std::vector<int> sides_of_nodes(const TetMesh& mesh) {
   const std::vector<std::uint16_t>& side = mesh.side;
   std::vector<int> sides(mesh.V.rows(), kSeveral);

@@ -10,8 +10,8 @@ namespace limber {
 
 namespace {
 
-// Returns the squared distance, slightly enlarged, so that distances at the limit count as within it in spite of
-// rounding errors (distance_transform.h: 1e-6).
+// Returns the square of a limit on distances, slightly enlarged, so that distances equal to the limit count as within
+// it in spite of rounding errors (up to 1e-6 in distance_transform.h).
 float squared_limit(double mm) { return static_cast<float>(mm * mm * (1 + 4e-6)); }
 
 // Returns one byte for each voxel of the box, 1 if the voxel has the label (`has` 1) or another label (`has` 0).

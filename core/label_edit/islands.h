@@ -18,8 +18,8 @@ struct RemovedIslands {
   int removed = 0, kept = 0;  // number of components that were removed, and of those that were kept
 };
 
-// Removes the components that `kept` does not keep. Of components with equally many voxels, the one with the earlier
-// first voxel counts as larger.
+// Removes the components that `kept` does not keep. Of components with equally many voxels, the one whose first voxel
+// comes earlier in the volume counts as larger.
 RemovedIslands remove_islands(const LabelVolume& volume, Label label, const KeptIslands& kept);
 
 }  // namespace limber

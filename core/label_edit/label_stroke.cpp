@@ -43,7 +43,8 @@ std::vector<std::int64_t> LabelStroke::reached(const glm::dvec3& from, const glm
     for (int axis = 0; axis < 3; ++axis)
       if (std::abs(glm::dot(grid.direction[axis], *settings_.flat)) > 1 - 1e-9) {
         const int layer = static_cast<int>(std::floor(a[axis] + 0.5));
-        // A flat brush paints this layer even if its centre is further from the layer than the radius.
+        // A flat brush paints the layer that contains its centre, even if its radius is too small to reach the voxel
+        // centres.
         if (layer < 0 || layer >= grid.size[axis]) return box = {}, std::vector<std::int64_t>();
         low[axis] = high[axis] = layer;
         slab = false;

@@ -16,7 +16,7 @@ namespace limber {
 namespace {
 
 constexpr double kBeside = 2;  // a point farther than this from tissue is refused, voxels
-// The cells are enlarged so that the plane has about this many along each axis at most.
+// The cells of a plane are made so large that the plane has at most about this many of them along each axis.
 constexpr int kMostCells = 4096;
 constexpr double kFine = 0.5;  // cell size for the tape that is returned, in shortest voxel edges
 constexpr double kCoarse = 2;  // cell size while planes are compared, in shortest voxel edges
@@ -90,8 +90,8 @@ class PlaneCut {
     side_ = 2 * half_ + 1;
   }
 
-  // Returns the tape's corners in the plane. Returns nothing if the section reaches the volume's border, or if the tape
-  // is certainly longer than `most` cells.
+  // Returns the corners of the tape around the section, in the plane's coordinates. Returns nothing if the section
+  // reaches the volume's border, or if the tape is certainly longer than `most` cells.
   std::optional<std::vector<glm::dvec2>> tape(double most = std::numeric_limits<double>::infinity()) const {
     std::vector<bool> seen(static_cast<std::size_t>(side_) * side_);
     struct Open {
