@@ -113,7 +113,7 @@ RodShare rod_share(const Mannequin& mannequin, const std::vector<glm::dvec3>& ce
 
 // Returns the mean squared distance between atlas and surfaces, mm2: from atlas points to the surfaces and back. Each
 // distance is capped at `cap` mm.
-//   within  selects the points by its stride, points, around and reach
+//   within  its stride, points, around and reach select the points that are compared
 double residual(const Mannequin& mannequin, const FitSurface* skin, const FitSurface* bone, double cap,
                 const FitStage& within);
 

@@ -43,7 +43,8 @@ std::vector<std::uint8_t> without_digits(const Armature& rig) {
   return free;
 }
 
-// Fits every initial guess of the pose roughly and the kInEarnest best of them more exactly. Keeps the best result.
+// Fits every initial guess of the pose roughly and the kInEarnest best of them more exactly. Stores the best fit in
+// `result`.
 void take_best_start(Fitted& result, const FitTarget& target, std::vector<Mannequin> starts) {
   constexpr size_t kInEarnest = 5;
   const auto main = without_digits(result.atlas->rig);
@@ -93,7 +94,8 @@ bool follow_rods(Mannequin& m, const FitTarget& target) {
 }
 
 // Fits the segments of a body whose shape comes from the rig alone to the volume's bone tissue. Returns false and
-// changes nothing unless after the fit most of the bone is close to the segments, and at least as much as before it.
+// changes nothing unless after the fit most of the bone is close to the segments, and at least as much as before the
+// fit.
 bool follow_bones(Mannequin& m, const FitTarget& target) {
   // kClose: bone up to this distance from a segment counts as close, as a share of the tissue's diagonal. kMost:
   // smallest share of the bone that must be close.

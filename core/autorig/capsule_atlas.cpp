@@ -101,8 +101,8 @@ BodyAtlas capsule_atlas(const Armature& rig) {
   atlas.rig = rig;
   for (int b = 0; b < std::ssize(rig.bones); ++b)
     add_capsule(atlas.skin, rig.bones[b], b, radii[b], std::min(whole / 45, 0.7 * radii[b] + whole / 200));
-  // Removes points that are not on the skin, because they are inside the flesh of another bone: nearer to it than
-  // kInside times the flesh's radius.
+  // Removes points that are not on the skin, because they are inside the flesh of another bone: nearer to that bone
+  // than kInside times the radius of its flesh.
   constexpr double kInside = 0.97;
   std::erase_if(atlas.skin, [&](const AtlasPoint& point) {
     for (int b = 0; b < std::ssize(rig.bones); ++b)

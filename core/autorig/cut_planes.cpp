@@ -17,8 +17,8 @@ namespace {
 constexpr double kTouch = 0.03;
 // A label counts as inner (inside the body) if its share of the tissue's surface is smaller than this.
 constexpr double kRare = 0.02;
-// A face of the tissue's bounding box is a cut if at least this share of its voxels has inner labels, which are rare on
-// the tissue's surface. Measured: 0 on soles, 0.6 and more on cuts.
+// A face of the tissue's bounding box is a cut (a plane at which the body is cut off) if at least this share of its
+// voxels has inner labels, which are rare on the tissue's surface. Measured: 0 on soles, 0.6 and more on cuts.
 constexpr double kInner = 0.3;
 // Distance between a face and the parallel section inside the tissue with which the face is compared, mm.
 constexpr double kDeeper = 5;
@@ -94,7 +94,7 @@ double beyond(const std::vector<TissueCut>& cuts, const glm::dvec3& place) {
 }
 
 void drop_cut_faces(std::vector<SurfacePoint>& points, const std::vector<TissueCut>& cuts, double near) {
-  // A surface point faces the cut if the cosine of the angle between the normals is above this.
+  // A surface point faces the cut if the cosine of the angle between its normal and that of the cut is above this.
   constexpr double kFacing = 0.6;
   std::erase_if(points, [&](const SurfacePoint& point) {
     return std::any_of(cuts.begin(), cuts.end(), [&](const TissueCut& cut) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds the planes at which a body is cut off, since volumes often contain only a part of a body. A cut is in the
 // outermost layer of tissue along an axis of the grid, at the grid's border or behind a padding of air. It is
-// recognised in two ways: the layer has labels that are rare on the rest of the surface (muscle, bone), or its
-// cross-section is as large as one a few mm deeper, while a sole or a crown is rounded.
+// recognised in two ways: the layer has labels that are rare on the rest of the surface (muscle, bone), or its area is
+// as large as that of a parallel section a few mm deeper in the body, while a sole or a crown is rounded.
 #pragma once
 
 #include <vector>

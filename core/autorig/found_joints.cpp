@@ -259,7 +259,7 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
       if (is_digit(rig.bones[b].name) && rig.bones[b].name != "Jaw") found.how[b].error += lost;
   }
   if (fitted.is_capsules) doubt_capsules(found, near, m, target);
-  // Error of a joint that halves its confidence, mm; about the thickness of a joint.
+  // An error of this size, mm, halves a joint's confidence. It is about the thickness of a joint.
   constexpr double kJoint = 40;
   for (int b = 0; b < m.bone_count(); ++b) {
     JointFit& joint = found.how[b];
@@ -271,9 +271,9 @@ FoundJoints found_joints(const Fitted& fitted, const FitTarget& target) {
 }
 
 void take_named(FoundJoints& found, const Armature& rig, const std::vector<NamedJoint>& named, double size) {
-  // The joints below a named joint move with it by its shift, less this share of the tissue's diagonal. They do not
-  // follow a smaller shift, which only means that the joint's position between the same two bones is defined
-  // differently.
+  // The joints below a named joint follow its shift, shortened by this share of the tissue's diagonal. They do not
+  // follow a shift smaller than this share, which only means that the joint's position between the same two bones is
+  // defined differently.
   constexpr double kElsewhere = 0.009;
   std::vector<glm::dvec3> shift(rig.bones.size(), glm::dvec3(0));
   std::vector<const NamedJoint*> own(rig.bones.size(), nullptr);

@@ -33,8 +33,8 @@ void doubt_cut_limbs(const Fitted& fitted, const FitTarget& target, FoundJoints&
                      std::vector<std::string>& warnings);
 
 // Returns a byte per bone: 1 for the bones of the largest connected part of the body that has enough skin left by cuts.
-// A hand whose forearm is cut away does not belong to it. The two legs of a body without hips count as connected, since
-// they have the same parent.
+// A hand whose forearm is cut away does not belong to this part. The two legs of a body without hips count as
+// connected, since they have the same parent.
 std::vector<std::uint8_t> seen_bones(const Fitted& fitted, const FitTarget& target);
 
 }  // namespace limber

@@ -232,8 +232,8 @@ std::vector<Mannequin> limb_starts(const BodyAtlas& atlas, const Occupancy& body
   LimbPath path = paths[0];
   const Armature& rig = atlas.rig;
   const double length = beyond_root + length_from(rig, chain, 0);
-  // One of the assumptions about a limb's size that are tried: the limb is as long as the tissue, or it has an adult's
-  // size and its tip or root is cut off.
+  // An assumption about a limb's size. Three are tried: the limb is as long as the tissue; it has an adult's size and
+  // its tip is cut off; it has an adult's size and its root is cut off.
   struct Lie {
     double scale;
     bool no_tip;

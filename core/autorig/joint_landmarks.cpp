@@ -142,7 +142,7 @@ struct Waist {
 };
 constexpr Waist kWaists[] = {
     {"Forearm", 0.35, 0.30, 0.07, 0},
-    // The knee is in front of its section's middle, since the heads of calf and hamstrings are behind the knee.
+    // The knee is in front of its section's middle, since the muscles of calf and hamstrings are behind it.
     {"Shank", 0.28, 0.32, 0.01, 0.12},
     {"Hand", 0.35, 0.6, 0.04, 0},
 };
@@ -283,9 +283,9 @@ std::optional<Ball> sphere_through(const std::vector<glm::dvec3>& points, const 
   return Ball{near + glm::dvec3(x), std::sqrt(squared)};
 }
 
-// Returns the sphere near `start` that gets the most votes. For each radius, every surface point votes for the centre
-// at this distance behind it along its normal. The votes for a sphere are divided by its squared radius, so that the
-// visible share of its surface decides.
+// Returns the sphere near `start` that gets the most votes. For each radius, every surface point votes for one centre:
+// the point at this distance behind the surface, along the normal. The votes for a sphere are divided by its squared
+// radius, so that the visible share of its surface decides.
 std::optional<Ball> voted(const std::vector<SurfacePoint>& points, const glm::dvec3& start, double scale) {
   const double cell = 3 * scale, reach = 30 * scale;
   double most = 0;

@@ -42,8 +42,8 @@ bool says_word(const std::string& text, const char* word) {
                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; }) != text.end();
 }
 
-// Returns the part of the skeleton that a label's name means, under the atlas's name for this bone if the atlas has it.
-// Returns "" for other labels.
+// Returns the name of the part of the skeleton that a label's name means: the name of the atlas's bone, if the atlas
+// has this bone. Returns "" for other labels.
 std::string piece_of(const std::string& label_name) {
   const AnatomicalName name = anatomical_name(label_name);
   std::set<BoneRegion> regions = name.regions;

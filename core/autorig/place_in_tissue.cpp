@@ -35,7 +35,8 @@ std::vector<glm::dmat3> right_turns() {
   return turns;
 }
 
-// Returns the unit direction from the feet to the head of a rig; none if the names of its bones do not show it.
+// Returns the unit direction from the feet to the head of a rig; none if the names of its bones do not show this
+// direction.
 std::optional<glm::dvec3> line_of(const Armature& rig) {
   const Skeleton skeleton = skeleton_of(rig);
   const auto trunk = trunk_line(skeleton);

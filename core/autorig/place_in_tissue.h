@@ -9,8 +9,8 @@
 namespace limber {
 
 // Returns the rig scaled to the tissue and centred on it, in the best of 24 rotations by right angles. The best
-// rotation brings the largest length of bones, and the largest share of it, into tissue. A rig whose names show head
-// and feet is placed upright. Throws Error for a volume without tissue.
+// rotation brings the largest length of bones, and the largest share of the rig's length, into tissue. A rig whose
+// names show head and feet is placed upright. Throws Error for a volume without tissue.
 Armature placed_in_tissue(const LabelVolume& volume, const Armature& rig);
 
 // Returns the result of auto_fit() (core/autorig/auto_rig.h). If auto_fit() finds no joint for certain and

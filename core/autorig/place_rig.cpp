@@ -43,7 +43,8 @@ std::vector<int> counterparts(const Armature& rig, const Armature& body) {
   std::map<JointRole, int> by_role;
   for (int b = 0; b < std::ssize(body.bones); ++b)
     if (there[b] && there[b]->part != BodyPart::Spine) by_role[*there[b]] = b;
-  // If the two spines have different numbers of vertebrae, equal names such as "Spine" mean different vertebrae.
+  // If the spines of rig and body have different numbers of vertebrae, equal names such as "Spine" mean different
+  // vertebrae.
   const auto vertebrae = [](const auto& roles) {
     return std::count_if(roles.begin(), roles.end(),
                          [](const auto& role) { return role && role->part == BodyPart::Spine; });

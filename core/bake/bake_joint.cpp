@@ -56,7 +56,7 @@ struct RigidTissue {
   const Body& body;
   const BoundBody& bound;
   LabelSets labels;
-  SkinWeights weights;  // rigid in bone tissue
+  SkinWeights weights;  // in bone tissue, each voxel follows one bone
 };
 
 std::string in_degrees(double degrees) {
@@ -214,7 +214,8 @@ BakeError error_at(const std::shared_ptr<const BakedJoint>& joint, double degree
     if (!corners.is_soft[c]) continue;
     const glm::dvec3 shift = to_world * glm::dvec3(flesh.shift_at(glm::dvec3(corners.corner[c])));
     const double mm = glm::distance(shift, glm::dvec3(difference[c]));
-    // Corners that neither the solve nor the baked joint shifts are no part of the joint: they would lower the error.
+    // Corners that neither the solve nor the baked joint shifts are no part of the joint: counting them would make the
+    // error look smaller.
     if (mm < kNothing && glm::length(difference[c]) < kNothing) continue;
     all.push_back(mm);
     if (corners.is_skin[c]) skin.push_back(mm);

@@ -22,8 +22,8 @@ namespace limber {
 
 struct BakeSettings {
   double low = 0, high = 90;  // degrees from rest; low <= 0 <= high, and at least 5 degrees from end to end
-  int angles = 7;             // baked angles beside rest, from end to end; at least one on either side that has a range
-  bool contact = true;        // true: skin touches skin in the solves instead of passing through
+  int angles = 7;  // number of baked angles from end to end, without rest; at least one on each side that has a range
+  bool contact = true;  // true: skin touches skin in the solves instead of passing through
   FemQuality quality = FemQuality::Normal;
   std::string glide = "joint";  // how joints glide in the solves: a word of core/body/glide_poses.h
 };

@@ -66,7 +66,7 @@ glm::ivec3 get_vector(ByteReader& reader, std::int32_t low, std::int32_t high) {
 }
 
 void put_nodes(ByteWriter& writer, const std::vector<std::int32_t>& nodes) {
-  // index of each run's first node in the lattice, and number of nodes
+  // For each run of nodes with consecutive indices: the index of its first node, and its number of nodes.
   std::vector<std::pair<std::int32_t, std::int32_t>> runs;
   for (const std::int32_t place : nodes)
     if (!runs.empty() && runs.back().first + runs.back().second == place) ++runs.back().second;
@@ -102,7 +102,7 @@ std::vector<glm::vec3> get_shifts(ByteReader& reader, std::size_t count) {
   for (int axis = 0; axis < 3; ++axis)
     for (glm::vec3& shift : shifts) {
       shift[axis] = glm::unpackHalf1x16(reader.get<std::uint16_t>());
-      reader.require(std::abs(shift[axis]) <= kFurthestShift);  // false for NaN
+      reader.require(std::abs(shift[axis]) <= kFurthestShift);  // this also refuses NaN
     }
   return shifts;
 }

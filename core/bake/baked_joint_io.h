@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Reads and writes baked joints as files NAME.bake: a line that names the format, then one zlib stream with the members
-// of BakedJoint. Shifts are half floats, angle by angle, all x before all y before all z. Lattice nodes are stored as
-// runs of consecutive indices.
+// of BakedJoint. The shifts of the lattice's nodes are half floats, angle by angle, all x before all y before all z.
+// The nodes themselves are stored as runs of consecutive indices.
 #pragma once
 
 #include <string>

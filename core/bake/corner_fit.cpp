@@ -13,7 +13,8 @@ namespace {
 
 // Weight of the term in corner_fit.h that keeps the field smooth; a corner in soft tissue has the weight 1.
 constexpr double kBending = 0.01;
-constexpr double kTolerance = 1e-6;  // the iterations end when the residual is this share of that of zero shifts
+// The iterations end when the residual is this share of the residual of zero values.
+constexpr double kTolerance = 1e-6;
 constexpr int kMostIterations = 400;
 
 double dot(const std::vector<glm::dvec3>& a, const std::vector<glm::dvec3>& b) {

@@ -27,7 +27,7 @@ class CornerFit {
 
   const glm::ivec3& first() const { return first_; }  // node n of the box lies at the corner (first + n) * step
   const glm::ivec3& size() const { return size_; }
-  const std::vector<std::int32_t>& nodes() const { return nodes_; }  // places in the box, ascending
+  const std::vector<std::int32_t>& nodes() const { return nodes_; }  // indices of the nodes in the box, ascending
 
   // Returns the value of each node for a field that is given at the corners.
   std::vector<glm::dvec3> fit(const std::vector<glm::vec3>& given) const;
@@ -35,7 +35,7 @@ class CornerFit {
  private:
   struct Shares {
     glm::ivec3 side[8];    // 0 or 1 along each axis: where each node lies among the eight nodes around the corner
-    std::int32_t node[8];  // places of these nodes in the box
+    std::int32_t node[8];  // indices of these nodes in the box
     double share[8];
     int count = 0;
   };
@@ -48,10 +48,10 @@ class CornerFit {
   std::vector<glm::ivec3> corners_;
   std::vector<float> weight_;
   glm::ivec3 step_, first_{0}, size_{0};
-  // nodes_: places of the nodes in the box; index_: for each place of the box, its index in nodes_, or -1
+  // nodes_: index of each node in the box. index_: for each index in the box, the index in nodes_; -1: no node.
   std::vector<std::int32_t> nodes_, index_;
   std::vector<std::int32_t> columns_;  // #N by 27: neighbours of each node; -1: none
-  // entries of the equations' matrix for each node and its neighbours, #N by 27, as in columns_
+  // Entries of the equations' matrix for each node and its neighbours, #N by 27, in the order of columns_.
   std::vector<double> matrix_;
   std::vector<std::array<std::int32_t, 3>> in_a_row_;  // three nodes in a row along an axis
   std::vector<double> diagonal_;

@@ -72,8 +72,8 @@ JointCorners joint_corners(const LabelVolume& volume, const TissueVoxels& tissue
     CornerWeights influences(tissue, weights, itself, b);
     for (int at = 0; at < 9 * 9 * 9; ++at) {
       const glm::ivec3 in(at % 9, at / 9 % 9, at / 81), corner = tissue.bricks()[b].corner + in;
-      // A corner lies in several bricks. The first brick around the joint that has a tissue voxel at the corner lists
-      // it.
+      // A corner that several bricks share is listed once: by the first brick around the joint that has a tissue voxel
+      // at the corner.
       std::int64_t lister = -1;
       bool is_soft = false, is_skinned = false;
       for_each_around(tissue, corner, [&](const glm::ivec3& v) {

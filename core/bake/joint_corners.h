@@ -26,7 +26,7 @@ struct JointCorners {
 
 // Returns the corners of all tissue that blending bends in one of the poses, or that a mesh carries, and those of the
 // neighbouring bricks of voxels.
-//   weights   rigid in bone tissue
+//   weights   in bone tissue, each voxel follows one bone
 //   motions   of the bones of `weights` in each pose
 //   meshed    tissue that a mesh carries, one mask for each mesh
 JointCorners joint_corners(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
@@ -41,7 +41,7 @@ std::vector<glm::dvec3> blended_corners(const JointCorners& corners, const std::
 class CarriedCorners {
  public:
   // Keeps references to all arguments, which must outlive this object.
-  //   weights      rigid in bone tissue
+  //   weights      in bone tissue, each voxel follows one bone
   //   moving       the tissue that the mesh carries
   //   furthest_mm  corners of this tissue that are further outside the mesh than this follow a bone
   CarriedCorners(const JointCorners& corners, const LabelVolume& volume, const TissueVoxels& tissue,
@@ -66,9 +66,9 @@ class CarriedCorners {
   SkinWeights weights_;  // in tissue that does not deform, each voxel follows one bone
   const DeformingRegion& moving_;
   std::shared_ptr<const TetMesh> mesh_;
-  // index of each corner in the mesh, by its place in the volume
+  // For each corner that the mesh carries, by its index among the volume's corners: its index in corners_.
   std::unordered_map<std::int64_t, std::int64_t> index_;
-  std::vector<std::int64_t> in_mesh_;  // indices of the corners that the mesh carries
+  std::vector<std::int64_t> in_mesh_;  // indices in corners_ of the corners that the mesh carries
   std::unique_ptr<CarriedPoints> points_;
 };
 

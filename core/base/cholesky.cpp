@@ -432,7 +432,7 @@ void Cholesky::Factor::multiply(std::span<const double> by, std::span<double> pr
 }
 
 // Solves for `right_side` by conjugate gradients, preconditioned by the factor in single precision. The solution is in
-// `x`. Returns false when they do not converge, or the matrix is seen not to be positive definite.
+// `x`. Returns false when the iterations do not converge, or show that the matrix is not positive definite.
 bool Cholesky::Factor::iterate() {
   const auto dot = [](const std::vector<double>& a, const std::vector<double>& b) {
     double sum = 0;

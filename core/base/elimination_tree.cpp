@@ -25,7 +25,7 @@ std::vector<Joint> edges_between_branches(const BlockGraph& graph, const std::ve
   const int n = graph.node_count();
   std::vector<int> lowest(
       // For each rank r, the lowest rank in the subtree with the root r. In a postorder, the subtree holds all ranks
-      // from this one to r.
+      // from this lowest rank to r.
       n);
   for (int r = 0; r < n; ++r) lowest[r] = r;
   for (int r = 0; r < n; ++r)

@@ -43,7 +43,8 @@ class FloatFactor {
   // Solves the factorized system approximately. Both lists have one number for each row, and may be the same list.
   void solve(std::span<const double> b, std::span<double> x);
 
-  std::int64_t size() const { return panel_first_.empty() ? 0 : panel_first_.back(); }  // numbers, 4 bytes each
+  // Returns how many numbers the factor has, 4 bytes each.
+  std::int64_t size() const { return panel_first_.empty() ? 0 : panel_first_.back(); }
 
  private:
   // The contribution of one supernode to a later one: its rows [begin, end) are columns of the later supernode.

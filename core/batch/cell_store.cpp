@@ -93,7 +93,7 @@ std::map<std::string, std::string> hashes_of(const WorkFolder& into,
   return hashes;
 }
 
-// Returns the name of the first file whose hash differs; "" if none does.
+// Returns the name of the first file whose hash is not the expected one; "" if all are.
 std::string other_file(const std::map<std::string, std::string>& hashes,
                        const std::map<std::string, std::string>& expected) {
   for (const auto& [file, hash] : hashes)

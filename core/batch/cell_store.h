@@ -66,8 +66,8 @@ class CellStore {
   // Looks for the cell in the store without computing anything. The state is WasThere or Missing.
   StoredCell find(const CellRequest& request);
   // Computes the cell, and first the volume and the weights of its body if they are not in the store. With
-  // IfBusy::Leave the state is Busy if another program is computing one of these. Throws Error if the disk is full,
-  // since then no other cell could be computed either. Throws Cancelled if the user cancels.
+  // IfBusy::Leave the state is Busy if another program is computing the cell or its body. Throws Error if the disk is
+  // full, since then no other cell could be computed either. Throws Cancelled if the user cancels.
   //   finish  called with the cell's working folder after the job, to add files made from the job's outputs
   StoredCell compute(const CellRequest& request, IfBusy if_busy, Progress& progress,
                      const std::function<void(const WorkFolder&)>& finish = {});

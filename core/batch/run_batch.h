@@ -21,7 +21,7 @@ struct BatchOutcome {
   std::vector<StoredCell> exports;  // in the order of the batch's exports; empty if the cell is missing or failed
 
   bool is_there() const;        // true if cell and exports are in the store
-  std::string failure() const;  // why cell or export could not be computed; "" if they were
+  std::string failure() const;  // why the cell or an export could not be computed; "" if all were computed
 };
 
 struct BatchRun {

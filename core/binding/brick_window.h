@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// Marks a soft voxel, whose temperature no bone fixes, where the index of a bone is stored for other voxels.
+// Stored instead of a bone's index for a soft voxel: a voxel whose temperature no bone fixes.
 constexpr std::uint16_t kSoft = 0xFFFF;
 
 struct BrickWindow {
@@ -65,7 +65,7 @@ struct BrickWindow {
   static constexpr std::uint64_t kAll = ~std::uint64_t{0};
 
   // Reads those voxels of slice z of a brick whose bits (x + 8 y) are set in `which`. Returns the bits of the soft
-  // ones.
+  // voxels among them.
   //   to  position of the voxel of bit 0 in the window, relative to the lowest corner of the window's brick
   std::uint64_t look_at(const Source& from, const TissueVoxels::Brick& brick, int z, std::uint64_t which,
                         const glm::ivec3& to) {

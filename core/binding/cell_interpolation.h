@@ -9,7 +9,8 @@
 
 namespace limber {
 
-// Offers the temperatures of all soft voxels to `best`, except in the bricks `except`.
+// Offers the temperatures of all soft voxels to `best`, which keeps the four largest of each voxel. Leaves out the
+// bricks `except`.
 //   except  indices of bricks, ascending
 void interpolate_cells(const TissueVoxels& tissue, const HeatCells& cells, const std::vector<std::int32_t>& except,
                        const CellTemperatures& temperatures, BestFour& best);

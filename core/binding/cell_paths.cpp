@@ -124,7 +124,8 @@ class CellFront {
     }
   }
 
-  // Returns true if the last part of a straight line, one cell long, runs through tissue and touches no seam.
+  // Returns true if the last part of the straight line from `corner` to `centre`, one cell long, runs through tissue
+  // and touches no seam.
   bool is_straight(const glm::vec3& corner, const glm::vec3& centre) const {
     const glm::vec3 way = corner - centre, size = glm::abs(way);
     const float longest = std::max({size.x, size.y, size.z});

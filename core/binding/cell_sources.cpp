@@ -30,8 +30,9 @@ void add_source(std::vector<BoneSource>& of_cell, std::uint16_t bone, const Cell
   of_cell.push_back({bone, source});
 }
 
-// Returns, for each axis, the ratio of the conductance that a face to a bone has from the scout cell to the conductance
-// that it has from the cell. A scout cell's centre is further from the bone, except along axes that are not coarsened.
+// Returns, for each axis, the conductance from a bone's face to the scout cell (the coarser cell that contains a cell),
+// relative to the conductance from the face to the cell itself. A scout cell's centre is further from the bone, except
+// along axes that are not coarsened.
 glm::vec3 scout_shares(const CellGraph& graph) {
   glm::dvec3 spacing = graph.spacing;
   for (int level = 0; level < kScoutCoarsenings; ++level)

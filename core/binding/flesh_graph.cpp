@@ -224,8 +224,8 @@ std::array<Slices, 3> cut_faces(const BrickWindow& window, const glm::ivec3& cor
   return cut;
 }
 
-// Adds to `reached` all voxels of `within` that are connected to it through faces that no seam cuts. All voxels are in
-// one octant, whose lowest slice is `first`.
+// Adds to `reached` all voxels of `within` that are connected to voxels of `reached` through faces that no seam cuts.
+// All voxels are in one octant, whose lowest slice is `first`.
 void spread_in_octant(Slices& reached, const Slices& within, const std::array<Slices, 3>& cut, int first) {
   const int last = first + 3;
   for (bool grows = true; grows;) {

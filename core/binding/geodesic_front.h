@@ -281,7 +281,7 @@ class TissueFront {
     return {step(way.x), step(way.y), step(way.z)};
   }
 
-  // Returns straight() from a corner to each of the neighbours of a voxel.
+  // Returns the length, mm, of the straight path from a corner to each of the six neighbours of a voxel.
   std::array<float, 6> straight_to_neighbours(const glm::ivec3& corner, const glm::ivec3& voxel) const {
     const auto squared = [&](const glm::ivec3& way) {
       const glm::vec3 length = glm::vec3(way) * spacing_;

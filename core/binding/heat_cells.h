@@ -54,8 +54,8 @@ struct HeatCells {
 //   shift  cells are made in blocks of 2^shift voxels along each axis
 HeatCells make_heat_cells(const BrickWindow::Source& source, const HeatLaw& law, const glm::i16vec3& shift);
 
-// Returns the block size (as HeatCells::shift) with which at most about `most_cells` cells have to be solved for.
-// Blocks are made as cubic as possible.
+// Returns the block size, as the `shift` of 2^shift voxels along each axis, with which at most about `most_cells` cells
+// have to be solved for. Blocks are made as cubic as possible.
 glm::i16vec3 shift_of_cells(const Grid& grid, std::int64_t tissue_voxels, std::int64_t most_cells);
 
 }  // namespace limber

@@ -103,8 +103,9 @@ class Coarsening {
     glm::ivec3 place{0};
     std::vector<int> slots, links;
   };
-  // A step from a slot in one of six directions: the slot that it leads to, the index of the link between the two among
-  // the conductances of the red slot's brick, and whether the step stays in the same brick and in the same block.
+  // A step from a slot to the next one in one of six directions: the slot that it leads to, whether it stays in the
+  // same brick and in the same block, and the index of the link between both slots, among the conductances of the brick
+  // of the red slot.
   struct Step {
     std::int16_t slot, link;
     bool stays_in_brick, stays_in_block;

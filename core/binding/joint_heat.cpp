@@ -131,7 +131,8 @@ void solve_joints(const HeatBody& body, const HeatDiffusion& settings, const std
     return temperature_of(solved.temperatures, cell_of(brick, place), bones[lane]);
   };
   known.outside = [&](std::int64_t brick, std::int64_t place, int lane) {
-    // In a brick between bones that is not one of the block's bricks, the block's bones have no weight.
+    // The block's bones have no weight in those of `bricks`, the bricks between bones, in which the block is not
+    // solved.
     if (std::binary_search(bricks.begin(), bricks.end(), static_cast<std::int32_t>(brick))) return 0.0f;
     return best.weight(brick, place, bones[lane]);
   };

@@ -44,8 +44,7 @@ std::vector<std::uint64_t> blocks_of(const CellGraph& graph, const glm::i16vec3&
 }
 
 // Calls body(cell) for each cell of the connected set of cells that contains `seed` within one block.
-//   is_open  returns true if the search may enter a cell; body must make is_open return false for the cells that it
-//            gets
+//   is_open  returns true if the search may enter a cell; after body(cell), it must return false for that cell
 template <class IsOpen, class Body>
 void search_block(const CellGraph& graph, const std::vector<std::uint64_t>& block, std::int32_t seed,
                   std::vector<std::int32_t>& open, const IsOpen& is_open, const Body& body) {
@@ -63,9 +62,10 @@ void search_block(const CellGraph& graph, const std::vector<std::uint64_t>& bloc
   }
 }
 
-// Returns the first cell of the connected set in one block that contains each cell; -1 for a cell that is left out.
-// Every cell whose neighbours in the block all have higher indices searches its set. If it is the set's first cell, it
-// writes the result for all cells of the set. So no two threads write to the same cell.
+// Returns the first cell of the connected set in one block that contains each cell; -1 for a cell that is left out. A
+// search of the connected set starts at every cell whose neighbours in the block all have higher indices. Only the
+// search that starts at the set's first cell writes the result, for all cells of the set. So no two threads write to
+// the same cell.
 std::vector<std::int32_t> first_of_sets(const CellGraph& graph, const glm::i16vec3& halved, LoneCells lone) {
   std::vector<std::int32_t> first(graph.size(), -1);
   const std::vector<std::uint64_t> block = blocks_of(graph, halved);

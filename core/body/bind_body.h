@@ -30,7 +30,7 @@ struct BoundBody {
   SkinWeights weights;
   std::optional<BoneParts> parts;  // the parts of the body's bone tissue; empty until parts_of() is called
   WeightsReport solve;             // report on the solve of Binding::Heat
-  bool is_from_file = false;       // true: the weights were read, so they may be of another rig or program
+  bool is_from_file = false;       // true: the weights come from a file, so they may be of another rig or program
   std::vector<std::string> warnings;
 };
 

@@ -23,7 +23,7 @@ struct Body {
 };
 
 // Makes a body. If no table says which labels are bone or skin, guesses them.
-//   table     the user's tissue table; nullptr: the descriptions in the volume's file count
+//   table     the user's tissue table; nullptr: the descriptions in the volume's file are used
 //   bones     labels of bone, as values in the volume's file; empty: the table names them, or they are guessed
 //   where     names the volume in messages
 //   throws    Error if `bones` has a value that the volume lacks

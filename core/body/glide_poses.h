@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far the joints of a body may glide (translate) so that bones do not enter each other. It is given as a word:
+// How far the joints of a body may glide (translate) so that bones do not enter each other. The limit is given as a
+// word:
 //   joint  each joint may shift by 5 percent of the shorter one of its two bones
 //   voxel  as `joint`, but no bone may move further from its position in the pose than a voxel's longest edge. The
 //          shifts of all joints above the bone count together.

@@ -27,7 +27,7 @@ struct PosingSettings {
   std::vector<FemObject> objects;  // fem: rigid objects that press on the body
   glm::dvec3 gravity{0};           // fem: acceleration of gravity, m/s2
   std::string glide = "joint";     // how far joints may glide: a word of glide_poses.h
-  bool fit_joints = false;         // fits the axes of joints to the bones around them first; only for one pose
+  bool fit_joints = false;         // true: joint axes are first fitted to the bones around them; only for one pose
   ResampleSettings resample;       // settings of resampling; its seams are those of the bound body
 
   bool has_contact() const { return contact || !objects.empty(); }  // objects press only if contact is simulated
