@@ -9,7 +9,7 @@ namespace limber {
 
 namespace {
 
-constexpr float kFar = 1e4f;  // distances are stored as at most this, mm
+constexpr float kFar = 1e4f;  // mm; larger distances are stored as this
 
 // Position of a lattice point between two voxels along one axis: the lower voxel, and the weight of the upper voxel in
 // the interpolation, [0, 1].

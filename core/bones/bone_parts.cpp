@@ -22,8 +22,8 @@ namespace {
 
 // Rounding to voxels makes the depth along the middle of a smooth, thick bone vary by up to this many voxels.
 constexpr double kWiggleVoxels = 0.6;
-// If there are more basins times rig bones than this, small basins are merged first: for each such pair a distance is
-// stored, and at this limit all distances take 64 MB.
+// If there are more pairs of a basin and a rig bone than this, small basins are merged first: a distance is stored for
+// each pair, and at this limit all distances take 64 MB.
 constexpr std::int64_t kMostDistances = 16'000'000;
 
 // Cuts a basin of the watershed that contains at least half the length of each of several rig bones: the anatomical
@@ -71,8 +71,9 @@ void cut_where_several_bones_run(const BoneGraph& graph, const Armature& armatur
   }
 }
 
-// Joins touching basins of the watershed to pieces that each follow one rig bone, broadest contact first. Two basins
-// are not joined if the smaller one would then follow a rig bone that is much farther away than its own nearest one.
+// Joins touching basins of the watershed to pieces that each follow one rig bone, the basins with the strongest contact
+// first. Two basins are not joined if the smaller one would then follow a rig bone that is much farther away than its
+// own nearest one.
 class Pieces {
  public:
   //   beyond      voxels on the far side of a joint, as seen from a rig bone
@@ -166,16 +167,16 @@ class Pieces {
         ->trunk;
   }
 
-  // Assigns a rig bone to every piece (group of joined basins). In the following, a rig bone's own piece is the piece
-  // that lies along it.
-  //   - A piece follows its nearest rig bone if it is at most 1.5 times as far from it as the bone's own piece.
+  // Assigns a rig bone to every piece (group of joined basins). The own piece of a rig bone is the piece that lies
+  // along the bone. The distance of a piece is that from its nearest rig bone.
+  //   - A piece follows its nearest rig bone if its distance is at most 1.5 times that of the bone's own piece.
   //   - A piece that is further away (a rib beside the hanging arm, the breastbone between two collarbones) follows its
-  //     nearest rig bone only if all pieces that it touches follow this bone, its parent or its children. Otherwise it
-  //     follows a bone of the pieces that it touches: the nearest one if these bones form a chain, or their common
-  //     ancestor.
-  //   - The same holds for a piece that is three times as far, does not touch its nearest bone's own piece, and either
-  //   is much smaller than that own piece or touches no piece of the bone's parent (so that a toe beside a toe keeps
-  //   its nearest bone).
+  //     nearest rig bone only if all pieces that it touches follow this bone, its parent or its children. Otherwise the
+  //     piece follows a bone of the pieces that it touches: the nearest one if these bones form a chain, or their
+  //     common ancestor.
+  //   - A piece follows a bone of the pieces that it touches also if its distance is more than three times that of the
+  //     own piece, it does not touch the own piece, and it either is much smaller than the own piece or touches no
+  //     piece of the bone's parent. (So a toe beside another toe keeps its nearest bone.)
   //   - A piece that is nearest to a shoulder's rig bone may belong to the trunk (shoulder_girdles.h).
   void settle(const Armature& armature) {
     const auto count = static_cast<std::int32_t>(cluster_.size());
@@ -213,15 +214,15 @@ class Pieces {
 
  private:
   // Two basins are joined only if the height of the pass between them is at least this share of the lower basin's
-  // summit. A lower pass is a joint, not the waist of one bone. Marrow runs through a bone but never across a joint,
-  // and it raises passes. So a condyle is joined to its own shaft and not to the bone on which it rolls, even in coarse
-  // volumes.
+  // summit. A lower pass is a joint, a higher one a narrow place of one bone. Marrow raises passes, and it runs through
+  // a bone but never across a joint. So the end of a bone is joined to its own shaft and not to the next bone, even in
+  // coarse volumes.
   static constexpr float kWeakestContact = 0.35f;
   // For voxels beyond a joint, the distance to the rig bone before the joint is multiplied by 1 + this factor.
   static constexpr double kBeyondJoint = 4;
   static constexpr float kForbidden = 1e6f;  // mm added to the distance from rig bones that a basin must not follow
   // A basin does not follow a collarbone if more than this share of the basin's voxels is before the head of the
-  // collarbone, along its direction.
+  // collarbone's rig bone, measured along this rig bone.
   static constexpr double kMostlyBefore = 0.7;
   // A basin does not follow a collarbone if more than this share of the basin's voxels is on the other side of the
   // body. In such a basin the collarbone has grown together with the breastbone.
@@ -370,7 +371,7 @@ class Pieces {
   std::map<std::int32_t, std::vector<int>> before_;  // for each basin, the rig bones of shoulders that it cannot follow
 };
 
-// Returns the rig bone that every basin follows. A basin is a piece of bone tissue around a point deep inside it.
+// Returns the rig bone that each basin follows. A basin is a piece of bone tissue around a local maximum of depth.
 std::vector<int> bones_of_basins(const BoneGraph& graph, const TissueVoxels& tissue, const LabelVolume& volume,
                                  const std::vector<std::int32_t>& basin, const Pieces& pieces) {
   const std::int32_t basins = *std::max_element(basin.begin(), basin.end()) + 1;
@@ -405,8 +406,8 @@ ShapeBones bones_by_shape(BoneGraph graph, const LabelVolume& volume, const Tiss
                           const std::vector<std::int32_t>& group, const std::vector<std::vector<int>>& candidates,
                           Progress& progress) {
   JointCuts cuts = cut_at_joints(graph, volume, kinds, armature, group, candidates, progress);
-  // Doubles the height of marrow, so that two marrow cores form two summits however thin the bone shells between them
-  // are.
+  // Doubles the height (depth inside bone) of marrow, so that two marrow cores form two summits however thin the bone
+  // shells between them are.
   std::vector<float> height = cuts.depth;
   for (std::int64_t i = 0; i < graph.size(); ++i)
     if (kinds[volume.at(graph.voxel[i])] == TissueKind::Marrow) height[i] *= 2;

@@ -35,8 +35,9 @@ void lower_depth(const BoneGraph& graph, const glm::dvec3& spacing, const std::v
                  std::vector<float>& depth);
 
 // Returns the basin of every voxel, numbered from 0. A basin is a local maximum of `height` (its summit) with all
-// voxels that slope up to it. Two basins are merged when the pass between them is nearly as high as the lower summit.
-//   wiggle  height difference up to which a variation comes from rounding a smooth ridge to voxels, mm
+// voxels from which `height` rises to it. Two basins are merged when the pass between them is nearly as high as the
+// lower summit.
+//   wiggle  variations of `height` up to this come from rounding to voxels and do not separate basins, mm
 std::vector<std::int32_t> flood(const BoneGraph& graph, const std::vector<float>& height, double wiggle);
 
 // Merges each basin of fewer than `fewest` voxels into the neighbouring basin with which it has the most contacts.

@@ -18,7 +18,7 @@ constexpr std::int64_t kGrain = 65536;  // voxels per block of a parallel loop
 class BonePieces {
  public:
   BonePieces(const BoneGraph& graph, const ZeroedVector<int>& bone) : parent_(graph.size()) {
-    // Each block joins its own voxels. Pairs across the blocks' borders are joined afterwards, in their order.
+    // Each block joins its own voxels. Pairs of voxels in two blocks are joined afterwards, in the order of the voxels.
     using Pair = std::pair<std::int32_t, std::int32_t>;
     std::vector<std::vector<Pair>> across((graph.size() + kGrain - 1) / kGrain);
     parallel_for(graph.size(), kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -17,7 +17,8 @@ constexpr double kEnds = 0.15;
 // kBeside, the region "around" it extends from kAroundFrom to kAroundTo. A rig may run beside the real bone by half the
 // limb's thickness, and limbs are about 0.15 thick.
 constexpr double kBeside = 0.09, kAroundFrom = 0.11, kAroundTo = 0.19;
-// A label counts as present beside a rig bone if at least this share of the points beside the bone's axis has it.
+// A label counts as present beside a rig bone if at least this share of the points beside the bone's axis has this
+// label.
 constexpr double kLeastOfDisc = 0.05;
 // Lower limits for a label that counts as bone. kShareOfRig: share of the rig's length that has the label beside it.
 // kEnrichment: ratio of the label's frequency beside the axis to its frequency around the axis. Measured bone had

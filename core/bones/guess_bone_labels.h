@@ -14,7 +14,7 @@ namespace limber {
 
 struct BoneTissueGuess {
   Label label;
-  // Share of the length of long rig bones in tissue that has the label beside it, [0, 1].
+  // Share of the length of the long rig bones, where they are in tissue, beside which the label is found, [0, 1].
   double share_of_rig;
 };
 

@@ -42,21 +42,24 @@ constexpr double kSideShaft = 0.5;
 // A cut is uncertain if the ratio of its area to the thinner bone's cross-section is at least this. Bones with open
 // joints, even if they touch in scans of 1 to 3 mm, have smaller ratios.
 constexpr double kBroad = 1.5;
-constexpr double kMarrow = 4;         // factor on the weight of cut area through marrow
-constexpr double kBall = 0.02;        // a ball with a smaller radius is ignored; share of the length of its bone
-constexpr double kLargestBall = 0.1;  // a larger radius of a ball is cut to this; share of the length of its bone
-constexpr double kBallCore = 0.8;     // tissue within this share of a ball's radius certainly belongs to the ball
-// Distance beyond a ball, in its radii, at which cut area weighs 1 + kAway, as where shafts begin.
+constexpr double kMarrow = 4;   // factor on the weight of cut area through marrow
+constexpr double kBall = 0.02;  // a spherical bone head with a smaller radius is ignored; share of the bone's length
+// A larger radius of a spherical head is lowered to this; share of the bone's length.
+constexpr double kLargestBall = 0.1;
+// Tissue within this share of a spherical head's radius certainly belongs to the head.
+constexpr double kBallCore = 0.8;
+// Distance beyond a spherical head, in its radii, at which cut area weighs 1 + kAway, as where shafts begin.
 constexpr double kBallWidth = 0.5;
-// Another child of the bone's parent may be attached along the bone, if its head is at least this share of the bone's
-// length away from the bone's head.
+// A bone counts as attached along a sibling (another child of its parent) only if the sibling's point nearest to the
+// bone's head is at least this share of the sibling's length away from the sibling's head.
 constexpr double kSitsAlong = 0.25;
 constexpr double kClosed = 0.5;  // contact area above which bones count as fused, share of the joint's cross-section
 constexpr double kJointReach = 0.15;  // a joint's shape is measured at least within this distance; share of the parent
 constexpr double kJointSlice = 0.06;  // half thickness of the slice that measures a joint, share of the shorter bone
 constexpr std::int32_t kHard = 1 << 28;
 
-// Returns, for the edge to each of the 26 neighbours of a voxel, the area that is cut if the edge is cut, mm^2.
+// Returns, for the edge to each of the 26 neighbours of a voxel, the area, mm^2, that a cut through this edge counts
+// as.
 std::array<double, 26> areas_of_edges(const glm::dvec3& spacing) {
   std::array<glm::dvec3, 26> edge;
   int count = 0;
@@ -280,8 +283,8 @@ class Cut {
   }
   // Stores the connections between voxels of the domain in neighbour_.
   void link() {
-    // For each of the two bones and each voxel along the bone: the voxel's index in the domain (the voxels among which
-    // the cut is computed); -1: not in the domain.
+    // For each of the two bones and each voxel to which it is the nearest bone: the voxel's index in the domain (the
+    // voxels among which the cut is computed); -1: not in the domain.
     std::array<std::vector<std::int32_t>, 2> place;
     for (int which = 0; which < 2; ++which) place[which].assign(scene_.along[bone_[which]].size(), -1);
     for (std::int32_t i = 0; i < std::ssize(domain_); ++i)

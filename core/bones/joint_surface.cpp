@@ -30,8 +30,8 @@ constexpr JointShape kKnee{0, 0.1, 0.2, 0, 1};  // the knee, a shallow cup of th
 // The ankle, with the talus held between the ends of the shank's bones.
 constexpr JointShape kAnkle{-0.1, 0.3, 0.1, -0.5, 2};
 
-// The direction perpendicular to an axis in which points spread most, and the ratio of their spread in it to their
-// spread perpendicular to both.
+// The direction perpendicular to an axis in which points spread most, and the ratio of the points' spread in this
+// direction to their spread in the third direction, perpendicular to axis and direction.
 struct Width {
   glm::dvec3 direction;
   double ratio;

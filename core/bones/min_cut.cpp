@@ -48,7 +48,7 @@ class TwoTrees {
   struct Node {
     Side side = kFree;
     std::int8_t parent = kOrphan;  // number (0 to Edges - 1) of the edge that leads to the parent, kTerminal or kOrphan
-    std::int32_t distance = 0;     // number of edges from the source or sink, as known at `time`
+    std::int32_t distance = 0;     // number of edges from the source or sink when it was last computed, at `time`
     std::int64_t time = 0;
     bool is_active = false;
   };

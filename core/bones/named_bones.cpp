@@ -13,7 +13,8 @@ namespace limber {
 
 namespace {
 // If at least this share of the voxels of a connected component of bone is on one side of the body, the whole component
-// belongs to this side. Its other voxels are only nearer to a rig bone of the other side that reaches across.
+// belongs to this side. Its other voxels are nearer to a rig bone of the other side only because that rig bone reaches
+// across the middle.
 constexpr double kClearMajority = 0.85;
 // Share of a bone's voxels that decide which rig bone the bone follows: those nearest to any of the rig bones.
 constexpr double kAttached = 0.1;

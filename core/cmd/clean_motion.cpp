@@ -32,7 +32,8 @@ struct CleanMotionOptions {
   std::vector<std::string> holds;
   bool mirror = false, on_the_spot = false;
   double speed = 1;
-  // Number of repeats (0: not repeated), and frames over which a seam is blended (-1: as many as in 0.3 seconds).
+  // Number of repeats (0: not repeated), and number of frames over which two repeats are blended where they meet, the
+  // seam (-1: as many as in 0.3 seconds).
   int repeats = 0, seam = -1;
 
   bool cleans() const { return smooth > 0 || plant_feet || !holds.empty(); }

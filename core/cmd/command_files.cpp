@@ -12,10 +12,10 @@
 namespace limber::cmd {
 
 namespace {
-// A CLI11 option can store named validators. The validator "files" is used to store a function with an option: it
-// returns the files that the option's value names. It is inactive while options are parsed; files_of() calls it
-// afterwards. Since a validator returns text, the text has for each file the letter 'r' (read) or 'w' (written), the
-// path and a zero byte, which no path contains.
+// A CLI11 option can store named validators. The validator "files" of an option is a function that returns the files
+// that the option's value names. It is inactive while options are parsed; files_of() calls it afterwards. Since a
+// validator returns text, the text has for each file the letter 'r' (read) or 'w' (written), the path and a zero byte,
+// which no path contains.
 constexpr const char* kFiles = "files";
 constexpr char kRead = 'r', kWritten = 'w';
 

@@ -20,7 +20,7 @@ struct FemOptions {
 
 void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& options);
 
-// Returns the name of an option that the user gave although only finite elements use it; "" if there is none.
+// Returns the name of an option that the user gave and that only finite elements use; "" if there is none.
 std::string given_fem_option(const FemOptions& options);
 
 // Reads the objects of --obstacle. Each is SHAPE[@PLACE][@from=X,Y,Z|@from=around][@force=NEWTON|@force=weight].

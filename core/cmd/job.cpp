@@ -106,7 +106,7 @@ struct JobOptions {
 
 void run_job(const JobOptions& options) {
   become_worker(options.memory_limit, options.yields, options.parent);
-  std::optional<Heartbeat> heartbeat;  // empty without a parent process to read it
+  std::optional<Heartbeat> heartbeat;  // empty without a parent process that would read the heartbeat
   if (options.parent > 0) heartbeat.emplace();
   const Path path = options.file;
   Json job = read_job(path);

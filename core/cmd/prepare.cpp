@@ -138,7 +138,7 @@ LabelVolume with_closed_skin(const LabelVolume& volume, TissueTable& tissues, co
   return std::move(closed.volume);
 }
 
-// Removes tissues without voxels in the volume, so that the written file names no label that it does not contain.
+// Removes tissues without voxels in the volume, so that the written file lists no label without voxels.
 void keep_present(TissueTable& tissues, const LabelVolume& volume) {
   std::vector<bool> present(65536, false);
   for (Label label : volume.voxels) present[label] = true;

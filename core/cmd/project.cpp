@@ -207,8 +207,8 @@ void recover(const ProjectOptions& options) {
     warn(project.warnings);
   }
   DocumentWriter writer;
-  // Undamaged chunks that no part of the document uses are written too. They are kept until the new file is saved
-  // again.
+  // Undamaged chunks that no part of the document uses are written too. Such chunks are kept until the new file is
+  // saved again.
   create_project(project, options.output, writer, progress,
                  chunks ? SpareChunks{chunks->latest_first(), chunks.get()} : SpareChunks{});
 }

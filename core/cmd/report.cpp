@@ -20,7 +20,7 @@ namespace {
 constexpr double kSamePlaceMm = 1e-3;
 
 // Makes the labels of a volume match those of `table`. A label of `file` changes to the label that `table` has for the
-// same file value. Tissues whose file value `table` lacks are added to it with a new label.
+// same file value. Tissues whose file value `table` lacks are added to `table` with a new label.
 void renumber(VolumeFile& file, TissueTable& table) {
   std::vector<Label> of(65536);
   Label highest = 0;

@@ -31,7 +31,7 @@ struct Exporter {
   std::vector<std::string> endings;  // file endings, for example ".xml"
   bool needs_frequency = false;
   bool takes_voxels = true;
-  bool takes_mesh = false;  // true: if there is an ExportInput::mesh, it is written instead of the voxels
+  bool takes_mesh = false;  // true: a mesh in ExportInput::mesh is written instead of the voxels
 
   // Returns the files that are written in addition to `path`. Null: there are no such files.
   std::vector<Path> (*beside)(const Path& path) = nullptr;

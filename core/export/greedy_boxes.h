@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Divides the tissue of a label volume into few boxes, each with a single label. A box starts at the first tissue voxel
-// that is in no box yet. It is extended along x as far as the voxels have its label, then along y and z as far as whole
-// rows and layers have it.
+// that is in no box yet. It is extended along x as far as the voxels have the first voxel's label, then along y by
+// whole rows and along z by whole layers that have only this label.
 #pragma once
 
 #include <vector>

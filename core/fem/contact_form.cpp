@@ -21,10 +21,10 @@ constexpr double kSoon = 1.6;
 // the pattern is analysed again.
 constexpr double kPressed = 0.6;
 // A step must keep at least half of a pair's distance. For pairs further apart than kNear times the largest thickness
-// H, half of kNear * H is enough, since the barrier is almost zero there.
+// H, only half of kNear * H must be left, since the barrier is almost zero there.
 constexpr double kNear = 0.5;
-// If a node's motion differs from the searched motion by less than this share of the largest thickness H, the pairs
-// found earlier stay valid. If it differs by more, the pairs near the node are searched again.
+// If a node's motion differs from the motion that was last searched for pairs by less than this share of the largest
+// thickness H, the pairs found earlier stay valid. If it differs by more, the pairs near the node are searched again.
 constexpr double kAbout = 0.2;
 // Two edges count as parallel if their squared cross product is below this share of the product of their squared
 // lengths at rest.

@@ -13,7 +13,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kBin = 8;           // edge of a search bin, mm
+constexpr int kBin = 8;           // edge length of a bin in the search for near triangles, mm
 constexpr double kFacing = -0.3;  // two normals face each other if the cosine of their angle is below this
 
 glm::dvec3 at(const Eigen::MatrixX3d& V, int i) { return {V(i, 0), V(i, 1), V(i, 2)}; }

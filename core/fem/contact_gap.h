@@ -15,9 +15,9 @@ struct ContactGap {
   std::int64_t nodes;  // number of nodes on both sides of the contact
 };
 
-// Returns for each node of the border the distance in mm to the nearest triangle in front of the node that faces it and
-// was at least `apart_mm` away at rest. The value is infinite for distances of `reach_mm` or more, and for nodes inside
-// the mesh.
+// Returns for each node of the border the distance in mm to the nearest opposite triangle: one that lies in front of
+// the node, faces the node and was at least `apart_mm` away at rest. The value is infinite for distances of `reach_mm`
+// or more, and for nodes inside the mesh.
 //   rest, V  #V by 3, mm      F  #F by 3, counter-clockwise seen from outside
 std::vector<double> contact_gaps(const Eigen::MatrixX3d& rest, const Eigen::MatrixX3d& V, const Eigen::MatrixX3i& F,
                                  double apart_mm, double reach_mm);

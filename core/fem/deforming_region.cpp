@@ -134,8 +134,8 @@ class Cells {
     }
   }
 
-  // Finds the direction in which an object leaves the body, posed by `motions`, after the shortest distance. Marks the
-  // cells within near_mm of the object's surface along this way in `pressed`.
+  // Finds the direction in which an object leaves the body after the shortest distance. The body is posed by `motions`.
+  // Marks the cells within near_mm of the object's surface along this way in `pressed`.
   ObjectClearance in_way(const std::vector<RigidTransform>& motions, const ObjectSweep& sweep, double near_mm,
                          std::vector<std::uint8_t>& pressed) const {
     const AffineTransform world = world_from_voxel(grid_);

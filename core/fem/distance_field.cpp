@@ -14,9 +14,9 @@ namespace limber {
 
 namespace {
 
-// Distance from the surface, in spacings, within which samples are the exact distance from the nearest triangle.
+// Distance from the surface, in sample spacings, within which samples are the exact distance from the nearest triangle.
 constexpr double kExact = 6;
-constexpr int kBorder = 2;  // samples beyond the box on each side: a cubic needs two
+constexpr int kBorder = 2;  // number of samples beyond the box on each side, since a cubic spline needs two
 
 // The four weights of the uniform cubic B-spline at t in [0, 1], with their first and second derivatives by t.
 struct Cubic {

@@ -27,8 +27,8 @@ class DistanceField {
   DistanceField(const Eigen::RowVector3d& low, const Eigen::RowVector3d& high, double spacing_mm,
                 const std::function<double(const Eigen::RowVector3d&)>& distance);
   // Samples the distance from the surface of the tets whose region is `region`, and smooths it over a distance of
-  // `smooth_mm`, so that the surface's edges become round. The box is that of the `around` nodes, with a margin of
-  // `margin_mm`.
+  // `smooth_mm`, so that the surface's edges become round. The sampled box contains the nodes `around`, with a margin
+  // of `margin_mm`.
   DistanceField(const TetMesh& mesh, std::uint16_t region, std::span<const int> around, double margin_mm,
                 double spacing_mm, double smooth_mm);
 

@@ -68,8 +68,8 @@ class ElasticForm {
   const Tet& tet(std::int64_t t) const { return tets_[t]; }
 
   void add_sparsity(BlockGraphBuilder& graph, std::span<const int> unknown) const;
-  // Finds the positions of every patch's blocks in a matrix over unknown[node] (-1: the node is not an unknown).
-  // Changes the order of the nodes within the tets.
+  // Finds the positions of every patch's blocks in a matrix in which node v has the block row unknown[v] (-1: v is not
+  // an unknown). Changes the order of the nodes within the tets.
   void assign_nodes(const Cholesky& matrix, std::span<const int> unknown);
 
   // Computes det F of every tet.

@@ -225,8 +225,8 @@ FemEnergy::Bound FemEnergy::largest_step(const NodePositions& x, const NodePosit
   }
   if (contact_.empty()) return bound;
   const CpuTimer timer(seconds_.contact);
-  // Searches skin pairs along the whole step even if tets limit it to a shorter one, since limit_step() needs all
-  // pairs.
+  // Searches skin pairs along the whole step even if tets limit the step to a shorter length, since limit_step() needs
+  // all pairs.
   contact_.build_broad_phase(x, step, std::max(bound.length, std::min(limit, 1.0)));
   if (const auto free = contact_.largest_step(x, step, bound.length); free.length < bound.length)
     bound = {free.length, Obstacle::Contact, free.node};

@@ -10,7 +10,7 @@ namespace {
 constexpr double kSufficient = 1e-4;  // share of the first-order decrease that a step must achieve [Armijo 1966]
 constexpr double kFurthest = 8;       // upper limit on the length of an extended step, in full Newton steps
 constexpr int kHalvings = 24;         // number of halvings of a step after which the search gives up
-constexpr double kShort = 0.5;        // share of a step: if limits allow less than this, a smoothed step is tried first
+constexpr double kShort = 0.5;        // share of a step: if limits allow less than this, a smoothed step is tried too
 constexpr double kJam = 0.05;         // share of the full Newton step: a shorter step counts as a jam
 // While the distance of touching parts is below this many thicknesses of the barrier, the solve never counts as
 // converged: a Newton step then only doubles the distance, so it is short although the force is far too large.
@@ -74,7 +74,7 @@ double search(FemEnergy& energy, NodePositions& x, double& value, const NodePosi
 // Makes two line searches for a step that limits have shortened: one along the step, one along the step smoothed around
 // what limits it. Moves x to the lower energy of the two, since the smoothed step may be long and yet lower the energy
 // less.
-//   bound  in: the limit of the step; out: that of the step taken
+//   bound  in: the limit of the step; out: the limit of the step that was taken, this or the smoothed one
 double search_both(FemEnergy& energy, NodePositions& x, double& value, const NodePositions& step, double slope,
                    const std::vector<char>& fixed, FemEnergy::Bound& bound) {
   const NodePositions around = energy.limit_step(x, step, fixed);

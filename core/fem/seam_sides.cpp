@@ -57,7 +57,8 @@ std::vector<std::uint16_t> sides_of_bones(const TissueVoxels& tissue, const std:
 
   std::vector<std::uint16_t> side(count);
   std::iota(side.begin(), side.end(), std::uint16_t{0});
-  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> joined;  // (-faces, bone, bone)
+  // Minus the number of joined faces of two bones, and the bones.
+  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> joined;
   for (std::size_t a = 0; a < count; ++a)
     for (std::size_t b = a + 1; b < count; ++b)
       if (const Faces& faces = between[a * count + b]; faces.joined > 0) joined.push_back({-faces.joined, a, b});

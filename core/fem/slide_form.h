@@ -5,7 +5,7 @@
 // rest, d the signed distance from the bone's surface (distance_field.h) and d0 the distance at rest. The first term is
 // a stiff spring along the surface's normal in both directions: the node neither enters the bone nor leaves it. The
 // second is the thin layer of loose tissue (fascia) between flesh and bone: a weak spring to the place at rest. This is
-// contact in both directions with a rigid distance field; nothing has to search for pairs.
+// contact in both directions with a rigid distance field, without a search for pairs.
 #pragma once
 
 #include <memory>

@@ -21,7 +21,7 @@ namespace limber {
 struct SlidingSettings {
   struct Near {
     glm::dvec3 joint;  // a joint that the pose bends, world, mm
-    double mm;         // distance from it up to which tissue slides
+    double mm;         // tissue up to this distance from the joint slides, mm
   };
   std::vector<Near> near;  // empty: all tissue sticks
   double tet_mm = 8;       // edge length of the tets
@@ -36,9 +36,9 @@ struct SlidingSettings {
 std::vector<std::uint8_t> sliding_nodes(const LabelVolume& volume, const TissueTable& tissues, const TetMesh& mesh,
                                         const std::vector<int>& bone, const SlidingSettings& settings);
 
-// Gives the tets of soft tissue their own copies of the sliding nodes, which come after all other nodes, and builds the
-// surfaces of the bones there.
-//   model   a model whose nodes have their holders and influences
+// Gives the tets of soft tissue their own copies of the sliding nodes, which come after all other nodes, and computes
+// the distance fields of the bones' surfaces there.
+//   model   held_by and influences of its nodes must be set
 //   slides  #V: 1 for the nodes that sliding_nodes() found, else 0
 void let_slide(FemModel& model, const std::vector<std::uint8_t>& slides, double tet_mm);
 

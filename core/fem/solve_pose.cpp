@@ -19,8 +19,9 @@ namespace limber {
 namespace {
 constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the final pose
 constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers of the last solve, a share of the nodes
-constexpr double kTight = 0.25;       // factor on step_tolerance_mm for the solve before a part is tried again
-constexpr double kLeastPart = 0.1;    // if objects move by less than this share of the shortest part, the part fails
+// Factor on step_tolerance_mm when a shape is solved again before the next part is retried.
+constexpr double kTight = 0.25;
+constexpr double kLeastPart = 0.1;  // if objects move by less than this share of the shortest part, the part fails
 // If contact or a tet about to invert allows less than this share of the way to an initial guess, the guess is
 // smoothed.
 constexpr double kRough = 0.5;

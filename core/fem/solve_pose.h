@@ -33,11 +33,11 @@ struct FemModel {
     int node, bone;
     double until;  // path position, [0, 1], after which the node is free
   };
-  // Nodes that move rigidly with a bone up to the path position `until`, because nothing can press on them before.
-  // After it they are free.
+  // Nodes that move rigidly with a bone up to the path position `until`, because nothing can press on them before that
+  // position. Beyond it they are free.
   std::vector<Waiting> waiting;
-  // Nodes of soft tissue that slide along a bone (slide_form.h). They are free in held_by, and are nodes of no tet of
-  // bone (TetMesh::copy_of).
+  // Nodes of soft tissue that slide along a bone (slide_form.h). No bone holds them (held_by is -1), and they are nodes
+  // of no tet of bone (TetMesh::copy_of).
   struct Sliding {
     int node, bone;
     double mm2;  // area of the surface around the node
@@ -67,8 +67,8 @@ struct SolveSettings {
   double shortest_step_degrees = 0.9;  // shortest part of a step; if it fails, the solve stops short of the pose
   double bone_drift_mm = 2;            // if a bone's node is further than this from its rigid position, the step fails
   double size = 1;  // size of the body relative to an adult (1); the springs' stiffness is divided by its square
-  // Where flesh slides along bone: the stiffness of the springs that keep its distance, for an adult's size, in kPa per
-  // mm. Flesh that presses with 50 kPa comes 0.1 mm nearer.
+  // Where flesh slides along bone: the stiffness of the springs that keep the flesh at its distance from the bone, for
+  // an adult's size, in kPa per mm. Flesh that presses with 50 kPa comes 0.1 mm nearer.
   double slide_kpa_per_mm = 500;
   // The loose layer between flesh and bone, for an adult: its shear modulus, kPa, and its thickness, mm.
   double fascia_kpa = 0.1, fascia_mm = 2;

@@ -15,7 +15,8 @@ struct SolvedParts {
   Eigen::MatrixX4i elastic, rigid;
   std::vector<TetMaterial> material;  // material of each elastic tet
   std::vector<char> is_flesh;         // 1 for each elastic tet whose nodes are not all held by one bone
-  std::vector<int> pinned, carried;   // nodes that bones hold: those of elastic tets; those of rigid tets only
+  // Held nodes of elastic tets, on springs; held nodes of rigid tets only, moved exactly.
+  std::vector<int> pinned, carried;
   std::vector<double> pin_stiffness;
   std::vector<char> in_joint;  // #V: 1 for nodes of tets between two bones
 
@@ -26,8 +27,8 @@ struct SolvedParts {
   SolvedParts(const FemModel& model, const std::vector<int>& held_by, double size);
 };
 
-// Returns the nodes that wait until a position on the path before they become free. Small groups of nodes become free
-// earlier, together with the group before, since each group that becomes free costs a new analysis of the matrix.
+// Returns the nodes that become free only at a later position on the path, with that position. A small group of nodes
+// becomes free together with the group before it, since each group costs a new analysis of the matrix.
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model);
 
 // Returns the energy of the model's sliding nodes, with the bones at rest.

@@ -322,7 +322,7 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
   sliding.motions = settings.motions, sliding.joint_mm = settings.joint_mm, sliding.closing_mm = settings.closing_mm;
   const std::vector<std::uint8_t> slides = sliding_nodes(volume, tissues, mesh, bone, sliding);
   for (std::size_t i = 0; i < slides.size(); ++i)
-    // a node over which tissue slides has no other bone in front, so it belongs to no joint
+    // A node over which tissue slides has no other bone in front, so it belongs to no joint.
     if (slides[i]) in_joint[i] = 0;
   for (int t = 0; t < mesh.T.rows(); ++t) {
     int first = kNone;
@@ -341,7 +341,7 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
   const std::vector<int> side = sides_of_nodes(mesh);
   for (int i = 0; i < mesh.V.rows(); ++i) {
     glm::ivec3 voxel(0);
-    // A node at a seam must not follow tissue on the other side of it.
+    // A node at a seam must not follow tissue on the other side of the seam.
     const auto is_near = [&](const glm::ivec3& v) {
       return is_in(moving.meshed, tissue, v) &&
              (side[i] < 0 || settings.sides->of_voxel[tissue.index_of(v)] == side[i]);

@@ -35,7 +35,7 @@ struct TissueModelSettings {
   // weights.bones().
   std::vector<std::vector<RigidTransform>> motions = {};
   double closing_mm = 8;  // nodes of bone that are closer to another bone in one of the motions belong to a joint
-  // where loose tissue slides over bone; tissue_model() sets its motions and distances from the members above
+  // Where loose tissue slides over bone. tissue_model() sets its motions and distances from the members above.
   SlidingSettings sliding = {};
   const SeamSides* sides = nullptr;  // the sides of seams, if the mesh is cut along seams; null: it is not
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Fills the holes of a label: voxels of other labels that the label encloses. A voxel is enclosed if no path through
-// the faces of voxels without the label leads from it out of the label's bounding box. Voxels of the label that meet
-// only at an edge or a corner already block such paths.
+// Fills the holes of a label: voxels of other labels that the label encloses. A voxel is enclosed if no path from the
+// voxel, through the faces of voxels without the label, leads out of the label's bounding box. Voxels of the label that
+// meet only at an edge or a corner already block such paths.
 #pragma once
 
 #include "core/label_edit/edit_mask.h"

@@ -46,7 +46,8 @@ struct Parts {
   const Knife& knife;
   VoxelBox box;
   AffineTransform to_world;
-  std::vector<std::uint8_t> side;  // 0: not reached; 1 or 2: reached from this side of the cut
+  // For each voxel of the box, the side of the cut from which it was reached, 1 or 2; 0: not reached.
+  std::vector<std::uint8_t> side;
 
   bool holds(const glm::ivec3& v) const { return box.contains(v) && volume.at(v) == label; }
   bool joined(const glm::ivec3& a, const glm::ivec3& b) const {

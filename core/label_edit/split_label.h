@@ -15,7 +15,7 @@ struct LabelCut {
 };
 
 // Returns the change that gives the label `into` to the smaller side of the cut. Throws Error if the cut meets no voxel
-// of the label, or if the label is still connected around it.
+// of the label, or if voxels of the label still connect its two sides around the cut.
 LabelChange split_label(const LabelVolume& volume, Label label, const LabelCut& cut, Label into);
 
 }  // namespace limber

@@ -208,7 +208,8 @@ glm::dvec3 middle_along(const LabelVolume& volume, const glm::dvec3& surface, co
       if (last == 0) first = n;
       last = n + 1;
     }
-    // Continues at first even outside tissue, since the point on the displayed surface may be slightly outside of it.
+    // Continues at first even outside tissue, since the point on the displayed surface may be slightly outside the
+    // tissue.
     if (!is_in && (last > 0 || n > 4 * kBeside)) break;
   }
   return surface + 0.5 * (first + last) * way;

@@ -12,7 +12,7 @@
 
 namespace limber {
 
-// Returns the corners of the tape around the body at a point, world, mm, in order around it.
+// Returns the corners of the tape around the body at a point, world, mm, in order around the body.
 //   point   a point inside the body, or at most two voxels outside it; world, mm
 //   normal  normal of the tape's plane, world, of any length
 //   throws Error when there is no tissue at the point, or when the section reaches the border of the volume
