@@ -46,7 +46,8 @@ FittedJoint fit_joint(const LabelVolume& volume, const TissueVoxels& tissue, con
                       Progress& progress = no_progress());
 
 // The result of fit_joints(), which fits the axis of every joint that a pose rotates by more than 5 degrees, parents
-// first. The fitted range is the rotation in the pose. A joint with no bone tissue on one side is not changed.
+// first. Each axis is fitted for the angles from 0 to the joint's rotation in the pose. A joint with no bone tissue on
+// one side is not changed.
 struct FittedPose {
   struct Joint {
     std::string bone;

@@ -11,8 +11,8 @@
 namespace limber {
 
 namespace {
-// A bone is solved for only in bricks where the coarse solution gives it a larger weight than this. With this weight, a
-// bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1 mm.
+// A bone is solved for only in bricks (8^3 voxels) where the coarse solution gives it a larger weight than this. With
+// this weight, a bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1 mm.
 constexpr float kNegligible = 3e-4f;
 // Smaller temperatures are not stored. This is half of the smallest weight that BestFour stores.
 constexpr float kLeastTemperature = 5e-5f;

@@ -2,8 +2,8 @@
 // Solves for steady heat in HeatCells, the cells of several voxels that are used for very large volumes, for all bones.
 //
 // The cells are first coarsened twice. These scout cells (4 cells along each axis) are solved for every bone. They show
-// in which bricks a bone has weight at all, and give the initial guess. Then bones are solved in blocks, each only in
-// the cells of its bricks.
+// in which bricks (blocks of 8^3 voxels) a bone has weight at all, and give the initial guess. Then bones are solved in
+// blocks, each only in the cells of its bricks.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace limber {
 
 // Offers the temperatures of all soft voxels to `best`, which keeps the four largest of each voxel. Leaves out the
-// bricks `except`.
+// bricks (blocks of 8^3 voxels) `except`.
 //   except  indices of bricks, ascending
 void interpolate_cells(const TissueVoxels& tissue, const HeatCells& cells, const std::vector<std::int32_t>& except,
                        const CellTemperatures& temperatures, BestFour& best);

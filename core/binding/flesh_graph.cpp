@@ -131,8 +131,8 @@ void HeatGraph::fill(const std::vector<std::int32_t>& bricks, HeatSystem& system
   });
 }
 
-// Returns for each brick the bones that fix the temperature of voxels in the brick or give heat to them at a distance.
-// Each bone has one bit; bones whose indices differ by 64 share a bit.
+// Returns for each brick (8^3 voxels) the bones that fix the temperature of voxels in the brick or give heat to them at
+// a distance. Each bone has one bit; bones whose indices differ by 64 share a bit.
 std::vector<std::uint64_t> HeatGraph::bones_in_bricks() const {
   std::vector<std::uint64_t> bones(tissue_.bricks().size(), 0);
   parallel_for(std::ssize(bones), kGrain, [&](std::int64_t begin, std::int64_t end) {

@@ -90,7 +90,8 @@ class HeatGraph {
             const ZeroedVector<std::uint16_t>& held_by, const NearestBone& nearest,
             const std::map<Label, double>& stiffness = {});
 
-  // Fills `system` with a cell for each soft voxel of the given bricks. Soft voxels in other bricks have temperature 0.
+  // Fills `system` with a cell for each soft voxel of the given bricks (blocks of 8^3 voxels). Soft voxels in other
+  // bricks have temperature 0.
   //   bricks  indices of the bricks, ascending
   void fill(const std::vector<std::int32_t>& bricks, HeatSystem& system) const;
   // Adds the heat that bones give to the cells of a system from fill() to the solver's right-hand sides.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Cells for heat diffusion in very large volumes. The tissue is divided into blocks of 2^3 voxels or more, aligned to
-// the bricks. A cell is a connected set of soft voxels in one block: it never extends across air, a bone or a seam, so
-// two fingers that are one voxel apart share no cell, however coarse the blocks are.
+// the bricks (blocks of 8^3 voxels). A cell is a connected set of soft voxels in one block: it never extends across
+// air, a bone or a seam, so two fingers that are one voxel apart share no cell, however coarse the blocks are.
 //
 // Heat flows between cells by the two-point approximation of finite volumes [Eymard, Gallouet, Herbin 2000, "Finite
 // Volume Methods", 9]. It flows through each voxel face between two cells, with the distance between the cells'

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Makes the first coarse level of a heat system. Connected cells of one block become one coarse cell. A block has 2 x 2
-// x 2 cells if voxels are cubes. Blocks never cross a brick's boundary, so bricks are processed independently.
+// x 2 cells if voxels are cubes. Blocks never cross the boundary of a brick (8^3 voxels), so bricks are processed
+// independently.
 #include <algorithm>
 #include <utility>
 

@@ -11,8 +11,8 @@ namespace limber {
 
 namespace {
 constexpr std::int64_t kGrain = 64;  // number of bricks in one block of a parallel loop
-// A bone is solved for only in bricks where the solution in cells gives it a larger weight than this. With this weight,
-// a bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1 mm.
+// A bone is solved for only in bricks (8^3 voxels) where the solution in cells gives it a larger weight than this. With
+// this weight, a bone that turns by 60 degrees moves a point 300 mm from the joint by only 0.1 mm.
 constexpr float kNegligible = 3e-4f;
 
 // The bones that hold voxels in or near a brick: none, one or several.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Solves for the temperatures of single voxels in bricks between two bones, if the rest of the body was solved for in
-// cells of several voxels. In the gap of a joint the weight rises from 0 to 1 within a few voxels, which cells cannot
-// resolve. At the border of these bricks, the interpolated temperatures of the cells are prescribed.
+// Solves for the temperatures of single voxels in bricks (blocks of 8^3 voxels) between two bones, if the rest of the
+// body was solved for in cells of several voxels. In the gap of a joint the weight rises from 0 to 1 within a few
+// voxels, which cells cannot resolve. At the border of these bricks, the interpolated temperatures of the cells are
+// prescribed.
 #pragma once
 
 #include <cstdint>

@@ -20,7 +20,7 @@ namespace limber {
 
 // The Hessian to compute. Projected, used by solves, leaves out each tet's negative eigenvalues and the term of a
 // patch's pressure. (Inside an evenly pressed body the tets' pressure terms cancel, but not after projecting each tet
-// separately.) Exact leaves out nothing; tests compare with it.
+// separately.) Exact leaves out nothing; only tests and benchmarks use it.
 enum class HessianKind { Projected, Exact };
 
 // Ranges of elements (chunks), sorted by colour. Chunks of one colour share no node.
