@@ -19,7 +19,8 @@ constexpr std::int64_t kBricks = 256;  // number of bricks that one task hashes 
 BakeSource::Hash hash_of(const std::string& bytes) { return sha256(bytes.data(), bytes.size()); }
 
 // Returns the hash of all bricks: the bricks' bytes are hashed in groups, then the list of these hashes is hashed.
-//   put  function that writes the bytes of one brick
+//   head  bytes that are put before the list of hashes
+//   put   function that writes the bytes of one brick
 template <class Put>
 BakeSource::Hash hash_of_bricks(std::int64_t count, std::string head, const Put& put) {
   std::vector<BakeSource::Hash> parts((count + kBricks - 1) / kBricks);

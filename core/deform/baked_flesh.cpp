@@ -106,7 +106,7 @@ BakedFlesh::BakedFlesh(const TissueVoxels& tissue, const Grid& grid, const std::
   });
 }
 
-// Returns whether one of the nodes around the corners `low` to `high` has a shift.
+// Returns whether any lattice node around the voxel corners in the box from `low` to `high` has a shift.
 bool BakedFlesh::Field::touches(const glm::ivec3& low, const glm::ivec3& high) const {
   const glm::ivec3 from = glm::max(floor_divided(low, step) - first, glm::ivec3(0));
   const glm::ivec3 to = glm::min(-floor_divided(-high, step) - first, size - 1);

@@ -41,7 +41,7 @@ class BakedSampler {
 
  private:
   const BakedJoint* joint_;
-  std::vector<std::int32_t> index_;  // for each place of the box, its index in BakedJoint::nodes; -1: no shift there
+  std::vector<std::int32_t> index_;  // for each node of the box, its index in BakedJoint::nodes; -1: it has no shift
 };
 
 class BakedFlesh final : public FleshShifts {

@@ -38,7 +38,7 @@ struct BakeSource {
 // tissue.
 struct BakeError {
   double degrees = 0;
-  double flesh_mm = 0, skin_mm = 0;  // 95 % of the distances in soft tissue, and in skin, are smaller
+  double flesh_mm = 0, skin_mm = 0;  // 95th percentiles of the distances in soft tissue, and in skin
   double largest_mm = 0;
 
   bool operator==(const BakeError&) const = default;
@@ -63,8 +63,8 @@ struct BakedJoint {
   bool operator==(const BakedJoint&) const = default;
 };
 
-// Returns the largest errors of all angles between baked ones, and the angle with the worst of them; zero if there are
-// none.
+// Returns the largest value of each error in BakedJoint::between, and the angle of the largest error in flesh or skin.
+// All values are zero if the list is empty.
 BakeError worst_between(const BakedJoint& joint);
 
 // A rotation split into its part about an axis and the remaining part.
@@ -74,9 +74,9 @@ struct TurnAboutAxis {
 };
 TurnAboutAxis turn_about_axis(const glm::dquat& turn, const glm::dvec3& axis);
 
-// Returns the weights of the baked angles in the shift at an angle, at most four, as pairs (index of the baked angle,
-// weight), ascending. The baked angle 0 has no shift and gets no weight. Beyond the baked angles, the nearest one
-// counts.
+// Returns the weights with which the shifts of the baked angles add up to the shift at `angle`: at most four pairs
+// (index of the baked angle, weight), ascending by index. The baked angle 0 has no shift and gets no weight. Beyond the
+// range of the baked angles, the nearest baked angle has the weight 1.
 std::vector<std::pair<int, double>> shares_at(const std::vector<double>& degrees, double angle);
 
 }  // namespace limber

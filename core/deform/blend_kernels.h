@@ -80,7 +80,8 @@ struct DualKernel {
   }
 };
 
-// Instances of `Kernel` for the function pointers of a BlendRule.
+// Functions to which the pointers of a BlendRule point: they blend by `Kernel` one point, four points, and four points
+// with the instruction set AVX2.
 template <class Kernel, bool Stretched>
 glm::dvec3 blend_one(std::span<const SkinTransform> bones, std::span<const BoneWeight> influences,
                      const glm::dvec3& p) {

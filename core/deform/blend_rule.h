@@ -35,12 +35,12 @@ struct BlendRule {
   // Replace four rest points by their posed points, equal to those of `point` bit for bit. four_points_wide needs AVX2.
   Four four_points, four_points_wide;
 
-  bool sums_displacements;     // true: the blend needs the bones' summed displacements (SkinTransform)
-  bool sums_dual_quaternions;  // true: the blend needs the bones' summed dual quaternions
+  bool sums_displacements;     // true: the blend needs the weighted sum of SkinTransform::displacement
+  bool sums_dual_quaternions;  // true: the blend needs the weighted sum of SkinTransform::dual_quaternion
   bool settles_flesh;          // true: the volume of flesh is corrected after blending (settled_flesh.h)
 };
 
-// Returns the rows of the table; the first is the default method. Row i is the rule of Blend i.
+// Returns the rows of the table. The first row is the default method. Row i is the rule of the i-th value of Blend.
 std::span<const BlendRule* const> blend_rules();
 
 const BlendRule& rule_of(Blend blend);

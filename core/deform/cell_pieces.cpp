@@ -25,7 +25,7 @@ bool is_empty(const Voxels& voxels) {
 }
 
 // Returns the connected component that contains the first of `voxels`.
-//   cuts  voxel faces that a seam cuts: the two voxels beside such a face are not connected through it; null: none
+//   cuts  voxel faces that a seam cuts: the two voxels beside such a face are not connected through it; null: no cut
 Voxels first_piece(const Voxels& voxels, const CellCuts* cuts) {
   const auto open = [&](int axis, int z) { return cuts ? ~(*cuts)[axis][z] : ~std::uint64_t{0}; };
   Voxels piece{};
@@ -56,7 +56,7 @@ Voxels voxels_of(const TissueVoxels::Brick& brick, const glm::ivec3& low, int st
   return voxels;
 }
 
-// Returns which faces of a cell's voxels are cut by a seam; null: none.
+// Returns which faces of a cell's voxels a seam cuts; null if it cuts none of them.
 //   lowest  the cell's lowest voxel
 std::shared_ptr<const CellCuts> cuts_of(const Seams& seams, const Voxels& voxels, const glm::ivec3& lowest) {
   CellCuts cuts{};

@@ -43,7 +43,7 @@ struct CellPiece {
   // Bone weights that the piece gives to the corners, grouped by bone, then ascending by corner.
   std::vector<Share> shares;
   std::vector<Stiff> stiff;                        // tissue that follows one bone with full weight, ascending by bone
-  std::shared_ptr<const CellCuts> cuts = nullptr;  // faces that a seam cuts; null: none
+  std::shared_ptr<const CellCuts> cuts = nullptr;  // faces that a seam cuts; null: no face is cut
 };
 
 // Returns the pieces of all cells in the order of their bricks. Pieces of one cell are adjacent. A cell never extends
@@ -60,7 +60,7 @@ std::vector<CellPiece> cell_pieces(const TissueVoxels& tissue, const SkinWeights
 // the upper neighbour, along `axis`, of the cell of `a`.
 bool touch(const CellPiece& a, const CellPiece& b, int axis, int step);
 
-// Finds the pieces of a cell: the parts of its tissue that move separately.
+// Finds the pieces of a cell: the parts of the cell's tissue that move separately.
 class PiecesByCell {
  public:
   // Finds where the pieces of each cell begin. `pieces` must outlive this object.
@@ -72,7 +72,7 @@ class PiecesByCell {
  private:
   const std::vector<CellPiece>* pieces_;
   glm::ivec3 first_, size_;
-  std::vector<std::int32_t> begin_;  // index of the first piece of each cell of the box, -1: none
+  std::vector<std::int32_t> begin_;  // index of the first piece of each cell of the box; -1: the cell has no piece
 };
 
 }  // namespace limber

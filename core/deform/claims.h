@@ -10,7 +10,7 @@ namespace limber {
 class Claims {
  public:
   // All arguments must outlive this object.
-  //   priority  by label: where cells overlap, the one whose tissue has the higher priority wins
+  //   priority  by label: where cells overlap, the cell whose tissue has the higher priority wins
   //   depth     depth of rest points below the body's surface: in a fold, where several cells cover a voxel, the
   //             deepest cell wins. nullptr: the pose makes no fold
   Claims(InverseMap& map, const LabelVolume& volume, const std::vector<int>& priority, const TissueDepth* depth)
@@ -45,7 +45,7 @@ class Claims {
 
   // Marks an overlap at a voxel that another cell has already claimed, unless both cells are near each other at rest.
   //   rest_voxel  cell of the new claim
-  //   loser       the one of the two cells that does not get the voxel
+  //   loser       the cell that does not get the voxel, of the two that claim it
   //   near        largest distance along each axis at which cells count as near, voxels; 1: neighbours
   void count_overlap(const glm::ivec3& rest_voxel, std::int64_t at, std::uint32_t loser, int near = 1) {
     const std::uint32_t holder = map_.cell[at];

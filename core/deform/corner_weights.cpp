@@ -15,8 +15,9 @@ constexpr std::array<std::uint8_t, 256> kBitCount = [] {
   return count;
 }();
 
-// Return the first and the last voxel of the neighbouring brick at the offset `step` (-1, 0 or 1 per axis) that touch
-// the central brick. Along each axis these are 7 and 7 for -1, 0 and 0 for 1, and 0 and 7 for 0.
+// Return the lowest and the highest voxel, of those that touch the central brick, in the neighbouring brick at the
+// offset `step` (-1, 0 or 1 per axis). Along an axis with step -1 both are at 7, with step 1 both are at 0, and with
+// step 0 they are at 0 and 7.
 glm::ivec3 first_of(const glm::ivec3& step) { return glm::ivec3(glm::lessThan(step, glm::ivec3(0))) * 7; }
 glm::ivec3 last_of(const glm::ivec3& step) { return 7 - glm::ivec3(glm::greaterThan(step, glm::ivec3(0))) * 7; }
 

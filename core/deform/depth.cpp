@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kBrick = TissueVoxels::kBrick;
 constexpr int kBrickVoxels = TissueDepth::kBrickVoxels;
-constexpr int kRows = 4;  // number of rows of eight voxels in a brick whose lines are searched at once
+constexpr int kRows = 4;  // number of rows of eight voxels of a brick that one search handles together
 
 // SIMD register with one voxel of each of the neighbouring lines that are searched at once.
 template <class Value>

@@ -7,7 +7,7 @@
 
 #include "core/base/always_inline.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // vectors are only passed to inlined functions
+#pragma GCC diagnostic ignored "-Wpsabi"  // about how functions take SIMD vectors: all such functions here are inlined
 
 namespace limber {
 

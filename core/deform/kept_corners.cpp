@@ -10,7 +10,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kBits = 21;  // bits of the distance along one axis
+constexpr int kBits = 21;  // number of bits in which a corner's distance along one axis is stored
 constexpr std::uint32_t kMask = (1u << kBits) - 1;
 constexpr std::int64_t kCorners = std::tuple_size_v<KeptCorners::Corners>;
 

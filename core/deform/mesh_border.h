@@ -16,9 +16,9 @@ namespace limber {
 class MeshBorder {
  public:
   struct Place {
-    int tet;                     // the tet to which the face belongs
-    std::array<int, 3> corners;  // nodes of the face
-    glm::dvec3 shares;           // barycentric coordinates of the point in the face
+    int tet;                     // the tet with the border face that contains the point
+    std::array<int, 3> corners;  // nodes of this face
+    glm::dvec3 shares;           // barycentric coordinates of the point in this face
     double distance_mm;
   };
 

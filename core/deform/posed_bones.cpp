@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBin = 16;  // edge of a search bin, in mean voxel edges
 constexpr std::int64_t kMostBins = 4'000'000;
-constexpr double kHalf = 0.5;  // in voxels: the surface is halfway between a bone voxel's centre and its neighbour's
+constexpr double kHalf = 0.5;  // voxels from the centre of a bone's outermost voxel to the bone's surface
 
 }  // namespace
 

@@ -39,7 +39,7 @@ class PosedBones {
   TissueVoxels bone_tissue_;
   std::optional<TissueDepth> depth_;              // depth below the surface of bone tissue, at rest
   std::vector<AffineTransform> rest_from_posed_;  // for each bone, the affine map posed point -> rest point
-  std::vector<glm::dmat3> turn_;                  // for each bone, the rotation direction at rest -> posed direction
+  std::vector<glm::dmat3> turn_;                  // for each bone, its rotation from rest to the pose
   double bin_ = 0;
   glm::dvec3 first_{0};
   glm::ivec3 bins_{0};

@@ -63,7 +63,7 @@ struct PreviewLattice {
   std::vector<BoneWeight> influences;   // weights of each vertex: sum 1, ascending by bone
   std::vector<std::uint8_t> has_sides;  // 1 for each cell that has parts that are sides
   std::vector<CellPart> parts;          // parts of all cells, in the order of the cells
-  std::vector<float> depth;             // by place(vertex): depth below air, mm; in air minus the distance from tissue
+  std::vector<float> depth;             // by place(vertex): depth below air, mm; in air: minus the distance from tissue
 
   // Returns the index of a vertex in arrays that have one value for every corner of the box of cells.
   std::int64_t place(const glm::ivec3& vertex) const {

@@ -128,7 +128,7 @@ class LivePreview::Finish {
     }
   }
 
-  // Copies the claimed rest points of one layer of nodes, and extrapolates rest points of nodes just outside.
+  // Copies the claimed rest points of one layer of nodes, and extrapolates rest points to nodes just outside cells.
   void layer(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);
@@ -145,8 +145,8 @@ class LivePreview::Finish {
     }
   }
 
-  // Finds the edges of a layer whose two nodes are on different sheets of the body, as across a fold. layer() must have
-  // been called for all layers.
+  // Finds, in one layer, the edges between neighbouring nodes that are on different sheets of the body, as across a
+  // fold. layer() must have been called for all layers.
   void edges(int z) {
     for (int y = 0; y < map_.size.y; ++y) {
       const auto [first, last] = stale(y, z);

@@ -40,8 +40,8 @@ namespace limber {
 
 struct PreviewMap {
   static constexpr int kFullFraction = 65535;
-  // The states of a cube of eight nodes. kNothing: no node is covered. kWhole: all lie on one sheet of the body.
-  // kBordered: all lie on one sheet, but some beyond its border. kBroken: they lie on different sheets.
+  // The states of a cube of eight nodes. kNothing: no node is covered. kWhole: all covered nodes lie on one sheet of
+  // the body. kBordered: they lie on one sheet, but some beyond its border. kBroken: they lie on different sheets.
   static constexpr std::uint8_t kNothing = 0, kWhole = 1, kBordered = 64, kBroken = 128;
 
   // A bounding box of rest points, whose coordinates are fractions as in the member `nodes`.
@@ -113,7 +113,7 @@ class LivePreview {
   // Returns the map of a pose. If nothing has changed since the last call, returns the same pointer. Throws Error if
   // the pose moves tissue too far, and if a joint was baked from a larger volume.
   //   posed_from_rest  motions of the bones of the weights
-  //   mesh             a mesh with which the tissue near it moves; empty: none
+  //   mesh             a mesh that moves the tissue near it; empty: all tissue moves with the bones
   //   baked            baked joints with their rotations in the pose; their shifts are added to blending by dual
   //                    quaternions
   std::shared_ptr<const PreviewMap> update(const std::vector<RigidTransform>& posed_from_rest, Blend blend,
@@ -190,7 +190,7 @@ class LivePreview {
   glm::ivec3 first_{0}, size_{0};      // range of nodes, in whole tiles
   std::vector<glm::u16vec4> claimed_;  // rest point that a cell claims for each node, as in PreviewMap::nodes
   std::vector<std::int8_t> claimed_apart_;
-  std::vector<std::int32_t> claiming_;  // cell that claims each node, -1: none
+  std::vector<std::int32_t> claiming_;  // cell that claims each node; -1: no cell does
   std::array<Made, 2> made_;
   std::shared_ptr<const PreviewMap> map_;  // result of the last update
   std::int64_t cells_rasterized_ = 0;

@@ -42,8 +42,8 @@ void soften(Occupancy& body, float voxels) {
   for (float& share : body.share) share += (0.5f - kSurface) / voxels;
 }
 
-// Returns the first visible label on a line that starts slightly outside the surface and runs inwards; `otherwise`:
-// none was found.
+// Returns the first visible label on a line that starts slightly outside the surface and runs inwards. Returns
+// `otherwise` if the line meets no visible label.
 Label label_inside(const LabelVolume& volume, const LabelSet& shown, const AffineTransform& to_voxel,
                    const glm::dvec3& place, const glm::dvec3& normal, Label otherwise) {
   const glm::dvec3 inward = -(to_voxel.linear * normal),

@@ -21,7 +21,7 @@ struct SkinnedSurface {
   std::vector<glm::u32vec3> F;         // #F triangles, counter-clockwise seen from outside
   std::vector<Label> label;            // #V: label of the visible tissue just inside
   std::vector<std::int64_t> offsets;   // #V + 1: index of the first influence of each vertex
-  std::vector<BoneWeight> influences;  // influences of all vertices; bones have the indices of the weights
+  std::vector<BoneWeight> influences;  // influences of all vertices; bone indices are those of SkinWeights
 };
 
 // The surface in one pose.

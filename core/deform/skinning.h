@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The blend kernel: computes the position of a point that follows several bones. Influences are spans of (bone, weight)
-// of any length. All is in double precision, with lengths in the unit of the points.
+// of any length. All computations are in double precision, with lengths in the unit of the points.
 //    linear blend     p + sum w (M p - p), with the weight w and the motion M of each bone. So the rest pose is exact:
 //                     bones that do not move leave p unchanged, bit for bit.
 //    dual quaternion  The unit dual quaternions of the bones are added, each with the sign that agrees with the
@@ -8,10 +8,11 @@
 //                     differs from aligning to the first or heaviest bone if rotations are more than 180 degrees
 //                     apart.) [Kavan, Collins, Zara & O'Sullivan 2008, Geometric skinning with approximate dual
 //                     quaternion blending]
-//    mixed            blends linearly and by dual quaternions, and mixes the results: kQuaternionShare of the second,
-//                     the rest of the first. Linear blending thins bent and twisted joints, dual quaternions make them
-//                     bulge, and most of both errors cancels. Whole bodies that sit or raise their arms keep their
-//                     volume best with it (figures in assets/docs/guide/blending.md).
+//    mixed            blends linearly and by dual quaternions, and averages the two positions: the dual quaternions'
+//                     has the weight kQuaternionShare, the linear one has the remaining weight. Linear blending thins
+//                     bent and twisted joints, dual quaternions make them bulge, and the two errors mostly cancel.
+//                     Whole bodies that sit or raise their arms keep their volume best with this blend (figures in
+//                     assets/docs/guide/blending.md).
 // Dual quaternions contain no scale. The motion of a bone that stretches is split into a stretch along its own rest
 // axes and a rigid motion; the stretches are blended linearly and applied first.
 #pragma once

@@ -363,8 +363,12 @@ class Minimizer {
   const double h2_;  // squared edge length of a cube with a cell's volume, mm2
   const std::int64_t count_;
   int taken_ = 0;
-  std::vector<glm::mat3> start_, pull_;                             // one matrix for each cell
-  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;  // one vector for each node
+  // For each cell, the deformation gradient after blending, and kVolume h^2 fill (P - that gradient), by which the
+  // cell's volume enters the right-hand side (settled_flesh.h).
+  std::vector<glm::mat3> start_, pull_;
+  // For each node, the current shift and the shift that the last solve found; and of the linear system, the right-hand
+  // side, the residual, and the product of the matrix with the search direction.
+  std::vector<glm::vec3> shift_, last_, right_, residual_, image_;
   // Search direction of each node. It is padded to four floats, which load faster, since this array is read most often.
   std::vector<FourFloats> direction_;
   std::vector<std::int64_t> row_;

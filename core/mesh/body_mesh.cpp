@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::uint16_t kAir = RegionSurface::kAir;
 constexpr int kRounds = 40;  // upper limit on the steps of Newton's method
-// Newton's method ends when the volume of every label is off by less than this share of it
+// Newton's method ends when the volume of every label differs from its wanted volume by less than this share of it.
 constexpr double kVolumeError = 2e-4;
 constexpr double kLongestMove = 0.25;  // upper limit on the movement of a node along an axis in one step, voxels
 constexpr int kMostLabels = 4000;
@@ -52,8 +52,9 @@ class Shape {
   const std::vector<glm::dvec3>& places() const { return place_; }
   const std::vector<std::uint16_t>& labels() const { return labels_; }
 
-  // Moves every point of a cell to the mean of the points on the lattice edges around it. Then moves every point of an
-  // edge along the edge, to the mean coordinate of the points of the cells around it.
+  // Smooths the surfaces by one step. First moves the node of each lattice cell to the mean of the nodes on the lattice
+  // edges around the cell. Then moves each node on a lattice edge along this edge, to the mean coordinate of the nodes
+  // of the cells around the edge.
   void smooth() {
     const auto& edges = net_.edges();
     std::vector<glm::dvec3> sum(place_.size(), glm::dvec3(0));
@@ -166,7 +167,7 @@ class Shape {
 
   const SurfaceNet& net_;
   std::vector<glm::dvec3> place_;
-  std::vector<glm::bvec3> held_;  // axes along which a node does not move now
+  std::vector<glm::bvec3> held_;  // for each node, the axes along which it does not move at present
   std::vector<Triangle> triangles_;
   std::vector<std::uint16_t> labels_;
   std::vector<double> wanted_;  // volume of each label, voxels
@@ -174,7 +175,8 @@ class Shape {
   std::vector<Gradient> gradient_;
 };
 
-// Returns the volume of each label, in voxels of the volume.
+// Returns the volume that the tets of each label must get, in voxels.
+//   given  wanted volume of each label, mm3; empty: each label gets the volume of its voxels
 std::vector<double> wanted_volumes(const LabelVolume& volume, const TissueVoxels& tissue,
                                    const std::vector<double>& given) {
   std::vector<double> wanted(65536, 0);

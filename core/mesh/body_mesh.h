@@ -20,8 +20,8 @@ namespace limber {
 
 struct BodyMeshSettings {
   int relaxations = 4;  // steps of smoothing; 0: the surfaces are the faces of the voxels
-  // Wanted volume of each label, mm3, by label; after resampling to other voxels, pass the volumes before it. Empty:
-  // the volume of the label's voxels.
+  // Wanted volume of each label, mm3, by label; after resampling to other voxels, pass the volumes before the
+  // resampling. Empty: each label gets the volume of its voxels.
   std::vector<double> volumes = {};
 };
 
@@ -29,7 +29,7 @@ struct BodyMesh {
   TetMesh mesh;  // world, mm; the region of a tet is its label
   // For each tet the corner (0 to 3) that is the centre of a voxel of its label.
   std::vector<std::uint8_t> voxel_corner;
-  std::vector<int> at_seam;  // the nodes on seams, whose tets lie on one side of the seam only
+  std::vector<int> at_seam;  // the nodes on seams; the tets around each node lie on one side of the seam
   // Largest difference between the volume of a label's tets and the volume asked for, as a share of the latter.
   double largest_volume_error = 0;
   std::uint16_t worst_label = 0;  // the label with this difference

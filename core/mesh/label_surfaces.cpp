@@ -18,7 +18,7 @@ constexpr double kSteps[2] = {0.5, -0.5 / (1 - 0.5 * 0.1)};
 
 struct Quad {
   std::array<int, 4> corner;  // vertices around the quad's two voxels, counter-clockwise seen from `above`
-  // Index of the extra vertex in the middle of the edge from corner i to the next corner; -1: none. An edge has such a
+  // Index of the extra vertex in the middle of the edge from corner i to the next corner; -1: none. An edge gets this
   // vertex if four faces of one tissue's surface would share it (a non-manifold edge).
   std::array<int, 4> middle;
   Label below, above;  // labels of the quad's two voxels
@@ -73,7 +73,7 @@ class Net {
     glm::ivec3 corner;
     int quad;
   };
-  // Returns the index of the voxel that has the label, of the two voxels beside the triangle.
+  // Of the two voxels beside the triangle, returns the index of the voxel that has the label.
   std::int64_t voxel_of(const Triangle& triangle, Label label) const {
     const Quad& quad = quads_[triangle.quad];
     return quad.below == label ? quad.voxel : quad.voxel + body_.step[quad.axis];

@@ -149,7 +149,7 @@ class PlyReader {
     soup_.place = [] { return std::string(); };
   }
 
-  // Returns for each property of a vertex the axis of which it is the coordinate; -1: none.
+  // Returns, for each property of a vertex, the axis (0, 1, 2: x, y, z) whose coordinate it holds; -1: no coordinate.
   std::vector<int> axes_of(const PlyElement& element) const {
     std::vector<int> axes;
     int found = 0;

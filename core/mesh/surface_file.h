@@ -3,7 +3,7 @@
 //   .stl          binary and ASCII
 //   .obj          the vertices and faces of all groups
 //   .ply          ASCII and binary of both byte orders; other elements and properties are skipped
-//   .gltf, .glb   all meshes of the default scene, placed by their nodes; skins and morph targets are not applied
+//   .gltf, .glb   all meshes of the default scene, with their nodes' transforms; without skins and morph targets
 // STL, OBJ and PLY contain neither unit nor axes: their numbers are read as world coordinates (LPS) in mm, as written
 // by core/export/surface_files.h. glTF's metres with Y up are converted to these. Polygons are split into fans of
 // triangles. Corners at equal positions become one vertex, since STL has no other way to say that triangles are
@@ -21,7 +21,7 @@
 namespace limber {
 
 constexpr std::size_t kMostSurfaceTriangles = 2'000'000;
-// Larger files are refused, bytes. kMostSurfaceTriangles triangles in ASCII STL take about half of it.
+// Larger files are refused, bytes. kMostSurfaceTriangles triangles in ASCII STL take about half of this size.
 constexpr std::uint64_t kMostSurfaceBytes = std::uint64_t{1} << 30;
 constexpr double kFarthestSurfacePoint = 1e6;  // a file with a larger coordinate is refused, mm (1 km)
 constexpr const char* kSurfaceFileEndings = ".stl, .obj, .ply, .glb or .gltf";

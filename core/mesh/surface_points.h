@@ -49,7 +49,7 @@ class PointTree {
  public:
   explicit PointTree(const std::vector<SurfacePoint>& points);
   // Returns the index of the nearest point that is closer than `reach` mm and whose normal is within 60 degrees of
-  // `normal` (any normal if `normal` is zero); -1: none.
+  // `normal` (any normal if `normal` is zero); -1: there is no such point.
   int nearest(const glm::dvec3& place, const glm::dvec3& normal, double reach) const;
 
  private:

@@ -16,7 +16,7 @@ namespace limber {
 
 namespace {
 constexpr double kLeastExtent = 0.001, kMostExtent = 1e6;  // a shape with a smaller or larger side is refused, mm
-// Sides of a circle's polygon; with 32 its area is 0.6 % too small.
+// Least number of sides of the polygon that approximates a circle. With 32 sides its area is 0.6 % too small.
 constexpr int kLeastSides = 32;
 
 void check_extent(const char* what, double extent) {
@@ -25,9 +25,11 @@ void check_extent(const char* what, double extent) {
                 "take a value from 0.001 mm to 1 000 000 mm");
 }
 
-// Returns the side of the squares that are split into two triangles. The diagonals of the squares are the longest
-// edges.
-//   triangles  returns the number of triangles for a given side
+// A shape's surface is divided into squares, at least approximately, and each square into two triangles. Returns the
+// edge length of the squares, mm, for which the triangles are within the limits of surface_shapes.h. The longest edges
+// of the triangles are the diagonals of the squares.
+//   extent     largest extent of the shape, mm
+//   triangles  returns the number of the shape's triangles for a given edge length
 double side_for(double extent, const std::function<std::int64_t(double)>& triangles) {
   double side = std::min(extent / 10, kLongestShapeEdge) / std::numbers::sqrt2;
   while (triangles(side) > static_cast<std::int64_t>(kMostShapeTriangles)) side *= 1.02;
@@ -70,7 +72,7 @@ class LatticeFaces {
   int vertex(const glm::i64vec3& at) {
     const std::int64_t key = (at.x * (count_.y + 1) + at.y) * (count_.z + 1) + at.z;
     const auto [found, is_new] = vertices_.try_emplace(key, static_cast<int>(mesh_.V.size()));
-    // (at + at - count) / count has exactly opposite values at opposite sides.
+    // (at + at - count) / count has exactly opposite values at opposite vertices, so the shape is exactly symmetric.
     if (is_new) mesh_.V.push_back(size_ * 0.5 * glm::dvec3(at + at - count_) / glm::dvec3(count_));
     return found->second;
   }
@@ -125,7 +127,7 @@ std::vector<Circle> circles_of(double radius, double length, CylinderEnds ends, 
   return circles;
 }
 
-// Returns the number of triangles that join each circle to the next one: one for each side of both.
+// Returns the number of triangles that join each circle to the next one: one for each side of either circle.
 std::int64_t triangles_between(const std::vector<Circle>& circles) {
   std::int64_t count = 0;
   for (std::size_t c = 0; c + 1 < circles.size(); ++c)

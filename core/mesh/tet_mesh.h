@@ -17,12 +17,12 @@ struct TetMesh {
   Eigen::MatrixX3d V;                 // #V positions, world, mm
   Eigen::MatrixX4i T;                 // #T tets (four nodes each)
   std::vector<std::uint16_t> region;  // #T: kSoft, or 1 + the index of the rig bone to which the tet belongs
-  // #V, or empty if the mesh has no such nodes: where tissue may slide along a bone, the tets on either side have nodes
-  // of their own. The entry of such a node of soft tissue is the bone's node at the same place at rest; the entry of
-  // any other node is the node itself.
+  // Where soft tissue may slide along a bone, the tets of the tissue and those of the bone have separate nodes at the
+  // same positions at rest. #V: for such a node of the tissue, the node of the bone; for any other node, the node
+  // itself. Empty: the mesh has no such nodes.
   std::vector<int> copy_of;
-  // #T: on which side of seams the tet lies; empty if the mesh is not cut along seams. Tets of two sides that touch at
-  // rest may have nodes of their own there.
+  // #T: on which side of seams the tet lies; empty if the mesh is not cut along seams. Where tets of two sides touch
+  // at rest, each side may have separate nodes.
   std::vector<std::uint16_t> side;
 
   static int bone_of(std::uint16_t region) { return int(region) - 1; }  // -1: soft tissue
@@ -42,7 +42,7 @@ Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T);
 Eigen::MatrixX3i boundary_of(const Eigen::MatrixX4i& T, const std::vector<std::array<int, 4>>& neighbours);
 
 // Does the same as the function above for a mesh whose soft tissue may slide along bones. Two tets that touch at rest
-// count as neighbours even if they have nodes of their own there (TetMesh::copy_of). So the surface between bone and
+// count as neighbours even if they have separate nodes there (TetMesh::copy_of). So the surface between bone and
 // sliding tissue is no boundary.
 std::vector<std::array<int, 4>> neighbours_of(const TetMesh& mesh);
 Eigen::MatrixX3i boundary_of(const TetMesh& mesh);

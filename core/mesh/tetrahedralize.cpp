@@ -23,7 +23,7 @@ struct Polyhedra {
 
 // The header of the message that the child process sends. The points (x, y, z) and tets follow.
 struct Head {
-  int problem;  // TetGen's error number, 0: none
+  int problem;  // TetGen's error number; 0: no error
   int points, tets;
 };
 
@@ -151,8 +151,8 @@ std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& tria
   std::vector<int> found(triangles.size(), 0);
   std::vector<std::int32_t> known(T.rows(), -1);
   std::vector<int> front;
-  // First gives each tet the region from the triangles on its own faces, so that all walls are known. Then spreads
-  // regions from tet to tet through faces that are not walls.
+  // First finds the walls, which are the tets' faces that are triangles of the surface, and gives each tet with a wall
+  // its region. Then spreads regions from tet to tet through faces that are not walls.
   std::vector<std::array<bool, 4>> wall(T.rows(), {false, false, false, false});
   for (int tet = 0; tet < T.rows(); ++tet)
     for (int face = 0; face < 4; ++face) {

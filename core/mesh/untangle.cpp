@@ -13,12 +13,12 @@ namespace limber {
 
 namespace {
 
-constexpr int kRounds = 20;        // upper limit of the rounds, each with less regularization
+constexpr int kRounds = 20;        // upper limit on the number of rounds; each round has less regularization
 constexpr int kSteps = 25;         // steps of L-BFGS in a round
 constexpr int kMemory = 6;         // number of earlier steps from which L-BFGS approximates the Hessian
-constexpr int kRings = 2;          // edges from a tet that is inside out to the nodes that may move
-constexpr int kPatience = 4;       // the rounds end after this many without a further upright tet
-constexpr double kUpright = 1e-4;  // a tet counts as upright from this share of its volume at rest
+constexpr int kRings = 2;          // nodes up to this number of edges away from a tet that is inside out may move
+constexpr int kPatience = 4;       // after this many rounds in a row without a further upright tet, no more are done
+constexpr double kUpright = 1e-4;  // a tet counts as upright if its volume exceeds this share of its volume at rest
 constexpr std::int64_t kGrain = 2048;
 
 // The tets with a node that moves, and the energy of their distortion.
@@ -80,7 +80,8 @@ class Region {
   }
 
   // Returns the energy, and sets its gradient.
-  //   epsilon  ratio of volumes near and below which the energy is made finite
+  //   epsilon  regularization, a ratio of volumes: keeps the energy of flat and of inside-out tets finite. A smaller
+  //            epsilon gives these tets a larger energy
   double value(const Eigen::VectorXd& x, double epsilon, Eigen::VectorXd& gradient) {
     const double sum = parallel_sum(std::ssize(tets_), kGrain, [&](std::int64_t begin, std::int64_t end) {
       double part = 0;
@@ -123,7 +124,7 @@ class Region {
   static double value_of(const Tet& tet, const Eigen::VectorXd& x, double epsilon, Eigen::Matrix3d& slope) {
     const Eigen::Matrix3d J = stretch(tet, x);
     const double det = J.determinant(), root = std::sqrt(epsilon * epsilon + det * det);
-    // For a large negative determinant the sum would lose all its digits.
+    // For a large negative determinant the sum det + root would lose all its digits, so an equal quotient is used.
     const double d = det > 0 ? 0.5 * (det + root) : 0.5 * epsilon * epsilon / (root - det);
     const double d_slope = d / root, power = std::cbrt(d * d), norm = J.squaredNorm();
     Eigen::Matrix3d cofactor;
@@ -137,7 +138,8 @@ class Region {
 
   std::vector<int> nodes_;  // the nodes that move
   std::vector<Tet> tets_;
-  std::vector<int> corners_, corner_;  // for each node the index of its first entry in corner_, and 4 * tet + corner
+  // The tets' corners at each moving node, as 4 * tet + corner in corner_; corners_ has the index of each node's first.
+  std::vector<int> corners_, corner_;
   std::vector<Eigen::Matrix3d> slope_;
 };
 

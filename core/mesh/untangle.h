@@ -2,7 +2,7 @@
 // Makes tets that a deformation has turned inside out upright again: a foldover-free map [Garanzha, Kaporin,
 // Kudryavtseva, Protais, Ray, Sokolov, Foldover-free maps in 50 lines of code, ACM TOG 40(4), 2021]. Around these tets
 // the nodes take the positions in which the tets are least distorted, by an energy that grows without bound as a tet
-// becomes flat. For tets that are inside out the energy is made finite, less and less so from round to round.
+// becomes flat. For tets that are inside out a regularization makes the energy finite; it is reduced in each round.
 #pragma once
 
 #include <cstdint>
