@@ -30,8 +30,8 @@ Between<Value> around(const std::map<int, Value>& track, int frame) {
   return {&*before, &*after, static_cast<double>(frame - before->first) / (after->first - before->first)};
 }
 
-// Returns the interpolation of the last key before a frame. Returns Constant for a frame that has a key or lies outside
-// of the keys.
+// Returns the interpolation of the last key before a frame. Returns Constant for a frame that has a key, or that lies
+// before the first key or after the last.
 template <class Value>
 Interpolation interpolation_at(const Between<Value>& between, const KeyShapes& shapes) {
   return between.share == 0 ? Interpolation::Constant : shape_at(shapes, between.before->first).next;

@@ -53,8 +53,9 @@ struct Clip {
   int range_start = 0, range_end = 250;  // the frames that play, both included
   Keys keys;
   std::vector<Marker> markers;                     // the clip's markers, sorted by frame
-  std::shared_ptr<const Constraints> constraints;  // declared in core/motion/constraint.h; null: none
-  std::shared_ptr<const Strips> strips;  // declared in core/motion/strips.h; null: none; a clip with a motion has none
+  std::shared_ptr<const Constraints> constraints;  // declared in core/motion/constraint.h; null: no constraints
+  // Declared in core/motion/strips.h; null: no strips. A clip with a motion has no strips.
+  std::shared_ptr<const Strips> strips;
 
   // Compares the pointers of motion, constraints and strips, not their contents.
   bool operator==(const Clip&) const = default;
@@ -80,13 +81,14 @@ class ClipOnRig {
   Pose at(int frame) const;
   Pose unconstrained_at(int frame) const;  // returns the pose of motion and keys, without the constraints
   Pose base_at(int frame) const;           // returns the pose of the motion or the strips alone, without the keys
-  // Returns whether a motion or strips move the rig. Keys then change their poses; otherwise keys are all there is.
+  // Returns whether a motion or strips move the rig. If so, keys change their poses; if not, the pose comes from the
+  // keys alone.
   bool has_base() const { return retarget_ || strips_; }
-  const ConstraintStack* constraints() const { return constraints_.get(); }  // null: the clip has none
+  const ConstraintStack* constraints() const { return constraints_.get(); }  // null: there are none
   const std::shared_ptr<const Clip>& clip() const { return clip_; }
   const std::shared_ptr<const Armature>& armature() const { return armature_; }
   const Retarget* retarget() const { return retarget_.get(); }
-  const StripsOnRig* strips() const { return strips_.get(); }  // null: the clip has none
+  const StripsOnRig* strips() const { return strips_.get(); }  // null: the clip has no strips
   const std::string& problem() const { return problem_; }
 
  private:

@@ -30,7 +30,7 @@ void require_frames(double frames) {
 }
 
 // Gives the clip `ratio` times as many frames: resamples its motion, and multiplies the frames of keys and markers.
-//   speed        the factor by which it plays faster
+//   speed        the factor by which the clip plays faster
 //   played_rate  frame rate at which the clip's motion is read, per second
 //   rate         frame rate of the resampled motion, per second
 void stretch(Clip& clip, double ratio, double speed, double played_rate, double rate, Progress& progress) {

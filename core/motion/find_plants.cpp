@@ -17,7 +17,7 @@ constexpr double kStanding = 250, kLifted = 60, kUsualLeg = 850;
 // A limb rests if it moves less than this distance, mm, within kShortestStance seconds, and stays this near to one
 // position.
 constexpr double kRest = 2;
-// Takes the place of kRest, mm, in the search for a rest of a limb that drifts slowly before or after the rest.
+// If a limb drifts slowly before or after a rest, the rest is searched for with this limit instead of kRest, mm.
 constexpr double kHeld = 0.3;
 constexpr double kLowest = 0.02;         // quantile of a point's heights that is taken as the height of the ground
 constexpr double kShortestStance = 0.1;  // seconds; shorter stances are ignored
@@ -104,7 +104,7 @@ std::optional<Plant> rest_in(const std::vector<glm::dvec3>& places, const std::a
   return Plant{.first = from, .last = to, .place = mean_of(places, from, to)};
 }
 
-// Finds the spans of frames in which a point rests, and its mean position in each.
+// Finds the spans of frames in which a point rests, and the point's mean position in each span.
 std::vector<Plant> rests_of(const std::vector<glm::dvec3>& places, double rate) {
   const int window = window_of(rate);
   std::vector<Plant> rests;
@@ -188,7 +188,8 @@ std::vector<Plant> plants_at_rest(const Armature& armature, const std::vector<Pl
   std::vector<Plant> plants;
   for (int l = 0; l < std::ssize(limbs); ++l)
     for (const PlantPoint point : {PlantPoint::Joint, PlantPoint::Tip}) {
-      // For hands only the tip is examined, since it is what holds on to something. For feet both points are.
+      // For hands only the tip is examined, since a hand holds on to things with its tip. For feet, joint and tip are
+      // examined.
       if (point == PlantPoint::Joint ? !limbs[l].is_leg : limbs[l].is_leg && limbs[l].end < 0) continue;
       for (Plant rest : rests_of(tracks[l][static_cast<int>(point)], rate)) {
         rest.limb = l;

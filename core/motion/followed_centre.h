@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Follows the centre of a body that a clip moves, for a camera that keeps it in the same place of the picture. The
+// Follows the centre of a body that a clip moves, for a camera that keeps this centre at one place of the picture. The
 // centre is the head of the pelvis, or of the first bone without a parent. It is smoothed by a Gaussian over time, so
 // that the camera goes along with a walk but does not take up its bouncing and swaying.
 #pragma once

@@ -30,8 +30,8 @@ constexpr int kMostRounds = 40;
 constexpr double kShortestStance = 0.1;       // seconds; a shorter stance is ignored
 constexpr double kMaySlide = 1.01;            // allowed slide of the body's foot, as a multiple of the source's slide
 constexpr double kMayExceed[] = {0.25, 0.6};  // mm added to the allowed slide: of the ankle, of the toes
-// For a stance that is found with the full limits of speed and height, kMayExceed is multiplied by this factor; for one
-// found with half of the limits, it is not.
+// Factor on kMayExceed for stances that are found with the full limits of speed and height. Stances that are found with
+// half of these limits have the factor 1.
 constexpr double kMayExceedMoving = 3;
 // The factor by which the weight of a stance (its "urge") is multiplied in one round is clamped to this range.
 constexpr double kLeastUrging = 0.8, kMostUrging = 1.5;
@@ -50,7 +50,7 @@ int turn_of(std::size_t leg) { return 2 + 2 * static_cast<int>(leg); }
 
 // A quadratic energy over the frames of a motion, whose terms couple only neighbouring frames. With the unknowns u[f]
 // of frame f it is the sum over f of
-//   (u[f] - u[f-1])' link[f] (u[f] - u[f-1]) + 2 (u[f] - u[f-1])' pull[f] + u[f]' hold[f] u[f]
+//   (u[f] - u[f-1])' link[f] (u[f] - u[f-1]) + 2 (u[f] - u[f-1])' pull[f] + u[f]' diag(hold[f]) u[f]
 // least() minimizes it by block elimination: a pass forward through the frames, and a pass back.
 struct Chain {
   std::vector<Block> link;

@@ -27,8 +27,8 @@ struct LoopedPoses {
 };
 
 // Returns the repeated poses. Each repeat begins at the ground position and with the heading at which the one before
-// ended. In the frames near a seam every bone is rotated, and the body shifted, by a correction. It is zero far from
-// the seam; at the seam it is half of the difference between the two sides' poses and speeds, so that both sides join.
+// ended. In the frames near a seam every bone is rotated, and the body shifted, by a correction that is zero far from
+// the seam. At the seam it is half of the difference between the two sides' poses and speeds, so that both sides join.
 // Every repeat is corrected at both ends, so the result can be repeated further. Throws Error for fewer than three
 // poses, fewer than one repeat, more than a million frames, a blend longer than a repeat, or a rig with several root
 // bones.

@@ -46,7 +46,7 @@ Lengths lengths_of(const PlantedLimb& limb, const Armature& armature) {
 
 // Bends and turns the limb's two long bones so that the ankle or wrist comes to `target`, or as near to it as it can.
 void reach_with(PosedRig& rig, const PlantedLimb& limb, const Armature& armature, const glm::dvec3& target) {
-  constexpr double kOfHinge = 0.1;  // small weight of the hinge against the axis about which the limb is bent
+  constexpr double kOfHinge = 0.1;  // weight of the hinge's axis; the weight of the bent limb's axis is at most 1
   const Lengths length = lengths_of(limb, armature);
   const glm::dvec3 root = rig.head(limb.upper), upper = rig.head(limb.lower) - root,
                    lower = joint_of(rig, limb) - rig.head(limb.lower);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A pose of a rig that is changed bone by bone, with the world positions of its joints, which are kept up to date.
+// A pose of a rig that is changed bone by bone, with the world positions of its joints. All functions but mix_back()
+// keep these positions up to date.
 #pragma once
 
 #include <vector>
@@ -41,6 +42,7 @@ class PosedRig {
     posed_ = posed_from_rest(armature_, pose_);
   }
   // Blends a bone's rotation with that of an earlier pose: share 0 gives the earlier rotation, share 1 the current one.
+  // The positions of the joints are not updated until another function changes the pose.
   void mix_back(int bone, const Pose& earlier, double share) {
     pose_.rotation[bone] = glm::normalize(glm::slerp(earlier.rotation[bone], pose_.rotation[bone], share));
   }

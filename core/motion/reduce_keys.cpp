@@ -153,7 +153,7 @@ class Spline {
 
   // Removes the key if `fresh` is empty; else replaces the key and the next one by the one key of `fresh`. Then fits
   // the speeds of the neighbouring keys again. Returns whether all changed spans stay within the allowed error; if not,
-  // changes nothing. Works on a copy of the neighbouring keys only, because a long recording has very many.
+  // changes nothing. Works on a copy of the neighbouring keys only, because a long recording has very many keys.
   bool replace(int key, const Curve& fresh) {
     const int last = static_cast<int>(keys_.size()) - 2, low = std::max(0, key - kNear),
               high = std::min(last, key + kNear - 1), begin = std::max(0, low - 1), end = std::min(last, high + 1) + 2;

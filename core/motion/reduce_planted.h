@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Makes few keys of many frames, and keeps planted feet and hands in place. Small errors of the bones from the pelvis
 // to a foot add up to a centimetre at the foot, so feet that stood would slide again. In the frames in which a foot
-// stands or a hand is held, the bones above it therefore get smaller allowed errors, until it stays within a given
-// distance of its recorded position. In all other frames the allowed errors of reduce_keys.h apply.
+// stands or a hand is held, the bones above it therefore get smaller allowed errors, until the foot or hand stays
+// within a given distance of its recorded position. In all other frames the allowed errors of reduce_keys.h apply.
 #pragma once
 
 #include "core/motion/plants.h"

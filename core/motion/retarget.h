@@ -13,10 +13,10 @@
 //   - feet keep their pitch to the ground and get the source's heading; pelvis, spine, neck, head and collars, whose
 //     bones run differently in every skeleton, keep their rest shape and get the heading of hips and shoulders.
 // If the source's joints do not show in which pose it rests, the user can name this pose (rest_pose_kind.h). Limbs that
-// differ from the named pose are then turned into it first, and it decides where palms without fingers face. Unmatched
-// trunk bones between matched ones share the bend; all other unmatched bones follow their parent. The rig keeps its
-// bone lengths, and travel is scaled by the lengths of the legs. If the motion was made for this rig itself, each bone
-// takes the rotation of the joint of its name.
+// differ from the named pose are then turned into it first, and the named pose decides where palms without fingers
+// face. Unmatched trunk bones between matched ones share the bend; all other unmatched bones follow their parent. The
+// rig keeps its bone lengths, and travel is scaled by the lengths of the legs. If the motion was made for this rig
+// itself, each bone takes the rotation of the joint of its name.
 #pragma once
 
 #include <map>
@@ -83,8 +83,8 @@ enum class Travel {
   Free,
 };
 
-// The reference frame, at which the pose of the source corresponds to the rest pose of the rig. Found: the frame at
-// which the source is nearest to standing, or its rest pose.
+// The reference frame, at which the pose of the source corresponds to the rest pose of the rig. Found: the source's
+// rest pose if the source stands in it, else the frame at which the source is nearest to standing.
 enum class Reference { Found, RestPose, FirstFrame };
 
 struct RetargetSettings {
@@ -105,7 +105,7 @@ class Retarget {
            const RetargetSettings& settings = {});
 
   Pose at(int frame) const;                                      // throws Error for a frame the motion lacks
-  int joint_of(int bone) const { return joint_of_bone_[bone]; }  // index of the bone's joint; -1: none
+  int joint_of(int bone) const { return joint_of_bone_[bone]; }  // index of its joint; -1: no joint
   double scale() const { return scale_; }                        // mm per unit of the file
   RetargetMap map() const;                                       // the map with all rest offsets filled in
   // Returns the indices of the source's joints that were turned into the rest pose that the user named.
@@ -143,7 +143,7 @@ class Retarget {
   };
   std::vector<Between> between_;  // one entry per bone; below = -1: the bone is matched, or follows its parent
   double scale_ = 1;
-  int lead_ = -1;          // index of the source joint whose movement the whole body follows; -1: none
+  int lead_ = -1;          // index of the source joint whose movement the whole body follows; -1: no joint
   glm::dvec3 start_{0};    // position of joint lead_ from which the travel is measured, in the file's axes
   std::vector<Leg> legs_;  // legs whose foot bones are matched to joints
   FootMending feet_;       // corrections that keep the feet from sliding; empty: no corrections

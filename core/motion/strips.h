@@ -65,7 +65,7 @@ struct Strip {
 struct StripTrack {
   std::string name;           // unique among the tracks
   bool muted = false;         // true: the strips of the track do not play
-  bool solo = false;          // if any track has this, only the tracks that have it play
+  bool solo = false;          // if any track is solo, only solo tracks play
   std::vector<Strip> strips;  // sorted by start
 
   bool operator==(const StripTrack&) const = default;

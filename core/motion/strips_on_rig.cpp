@@ -11,7 +11,7 @@ namespace limber {
 
 namespace {
 
-// frames; a frame number this close to a whole one is rounded to it, so that rounding errors change no pose
+// frames; a frame number nearer than this to a whole number is rounded, so that rounding errors change no pose
 constexpr double kWhole = 1e-6;
 
 const glm::dquat kNoTurn(1, 0, 0, 0);

@@ -25,7 +25,7 @@
 
 namespace limber {
 
-// Indices of those brushes in the table that other code refers to. In the formulas, `w` is the weight of the painted
+// The brushes to which other code refers, as indices into the table. In the formulas, `w` is the weight of the painted
 // bones, and `cover` is the dab's strength at the voxel, [0, 1].
 enum class BrushKind {
   Add,           // changes the weight w to w + cover
@@ -106,8 +106,9 @@ struct BrushRule {
   bool accumulates = false;  // true: dabs always accumulate, whatever Brush::accumulate says
   bool one_bone = false;     // true: paints only the active bone, even if several bones are selected
 
-  // For plain brushes, else null. Both functions return a voxel's new weight for a given cover. Weights are in 1/65535,
-  // and the weight `full` counts as 1. `paint` takes the cover in [0, 1], `paint_whole` takes it in 1/65535.
+  // For plain brushes, else null. Both functions return a voxel's new weight for a given cover. Weights are in units
+  // of 1/65535; `full` is the weight that counts as 1. `paint` takes the cover in [0, 1], `paint_whole` in units of
+  // 1/65535.
   double (*paint)(double before, double cover, double full, const Brush& brush) = nullptr;
   int (*paint_whole)(int before, int covered, const Brush& brush) = nullptr;
   // For brushes that are not plain, else null. Creates the brush's data for one side of the body. Throws Error when the

@@ -67,7 +67,7 @@ class Stroke::Work {
   // A brick that some dab of the stroke has touched.
   struct Brick {
     int brick = 0;
-    SkinWeights::Influences now;  // weights painted since the last call of weights(); empty: none
+    SkinWeights::Influences now;  // weights painted since the last call of weights(); empty: nothing painted
     // Largest cover of each voxel by any dab so far, in 1/65535. One list is for the stroke's own side of the body, one
     // for the mirrored side. Empty when dabs accumulate.
     std::array<std::vector<std::uint16_t>, 2> cover;

@@ -64,13 +64,13 @@ class Stroke {
   // Returns true if no weight differs from the weights before the stroke.
   bool empty() const;
   // blocked_count() returns the number of voxels that a locked bone kept from changing in some dab. blocked_by()
-  // returns the locked bone that kept the most voxels from changing (-1: none).
+  // returns the locked bone that kept the most voxels from changing (-1: no bone).
   std::int64_t blocked_count() const;
   int blocked_by() const;
   int dab_count() const;
 
   // Both functions return the weights after all dabs. Bricks that have not changed are shared with the weights before
-  // the stroke. finish() also ends the stroke: it moves the changed bricks out of it.
+  // the stroke. finish() also ends the stroke: it moves the changed bricks out of this object.
   SkinWeights weights() const;
   SkinWeights finish();
 

@@ -15,7 +15,7 @@ constexpr double kSkinThickness = 1.8;  // thickness of the skin (dermis and epi
 // A point becomes cartilage if the sum of its distances to two bones is less than this, mm.
 constexpr double kJointGap = 5;
 constexpr double kMuscleReach = 7;  // a point below the fat that is further than this from every muscle is fat, mm
-constexpr double kMostFat = 40;     // no part of the flesh has a thicker layer of fat (Flesh::fat), mm
+constexpr double kMostFat = 40;     // upper limit on Flesh::fat, the thickness of the fat layer, in all parts, mm
 constexpr int kBlock = 8;           // edge of the blocks in which the volume is filled, voxels
 constexpr int kMargin = 3;          // width of the air around the body, voxels
 constexpr std::int64_t kMostVoxels = std::int64_t{1} << 30;

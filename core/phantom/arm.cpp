@@ -12,7 +12,7 @@ using T = glm::dvec4;  // a point and a radius
 // z coordinate, mm, of the elbow in the frame of the humerus, and of the wrist in the frame of the forearm.
 constexpr double kElbowZ = -300, kWristZ = -252;
 constexpr V kWristCentre(0, 0, -17);  // centre of the wrist, in the head of the capitate; hand frame
-constexpr double kPronation = 80;     // rotation of the forearm, degrees; 0: palm forward; here it faces the thigh
+constexpr double kPronation = 80;     // rotation of the forearm, degrees; at 0 the palm faces forward, at 80 the thigh
 constexpr double kGap = 1.6;          // thickness of the cartilage in small joints, mm
 
 Cone cone(const Frame& f, const V& a, double radius_a, const V& b, double radius_b) {

@@ -38,8 +38,9 @@ Motion arm_curl(const Armature& armature) {
 // Returns a motion of one stride (two steps). The right leg is half a cycle behind the left one, and each arm swings
 // opposite to the leg of its side.
 Motion walk(const Armature& armature) {
-  constexpr double kStride = 1300;                  // length of a stride, mm
-  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);  // axes of rotations that swing a hanging limb forward and turn left
+  constexpr double kStride = 1300;  // length of a stride, mm
+  // Rotation axes: a hanging limb swings forward about the first, and the body turns left about the second.
+  const glm::dvec3 forward(-1, 0, 0), up(0, 0, 1);
   const auto bump = [](double phase, double centre, double width) {
     const double d = std::remainder(phase - centre, 1.0) / width;
     return std::exp(-d * d);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tissue table of the phantoms. Densities are after ICRP 89 (2002) and the IT'IS tissue database. Young's moduli in
-// kPa are for quasi-static loads: bone after Rho (1998), tendon after Maganaris (1999), cartilage after Athanasiou
-// (1991), skin after Pailler-Mattei (2008), muscle and fat as in finite element models of resting limbs, organs from
-// elastography.
+// The tissue table of the phantoms. Densities in g/cm3 are after ICRP 89 (2002) and the IT'IS tissue database. Young's
+// moduli in kPa are for quasi-static loads: bone after Rho (1998), tendon after Maganaris (1999), cartilage after
+// Athanasiou (1991), skin after Pailler-Mattei (2008), muscle and fat as in finite element models of resting limbs,
+// organs from elastography.
 #include "core/phantom/anatomy.h"
 
 namespace limber::phantom {

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 // Returns the folders that may contain Limber's modules and helper programs: the folder of the shared object with this
-// code, the folder of the running program, ../lib/limber relative to it, and where Limber was installed. The last
-// folder is for other programs that use Limber as a library.
+// code, the folder of the running program, ../lib/limber relative to the latter, and lib/limber where Limber was
+// installed. The last folder is for other programs that use Limber as a library.
 std::vector<Path> own_folders() {
   const Path folder = running_program_path().parent_path();
   if (folder.empty()) return {};

@@ -33,13 +33,13 @@ std::ptrdiff_t read_some(const Handle& from, void* to, std::size_t size);
 // Returns the number of sent bytes; 0 when the other end is closed; -1 when the channel's buffer is full.
 std::ptrdiff_t send_some(const Handle& to, std::string_view bytes, const OpenFile* file);
 
-// wait_to_read() waits until one of `ends` can be read (a closed one never can); the other function waits until the end
-// can be written to. Both return false when this has not happened within `milliseconds`.
+// wait_to_read() waits until one of `ends` can be read; a closed end never can. wait_to_write() waits until `end` can
+// be written to. Both functions return false after a wait of `milliseconds` without success.
 bool wait_to_read(std::initializer_list<const Handle*> ends, int milliseconds);
 bool wait_to_write(const Handle& end, int milliseconds);
 
-// Functions for the program at the other end of the two channels, whose standard input is a FileChannel and whose
-// standard output is a pipe. Both functions block. They return false when the other program has closed the channel.
+// Functions for a program that another program has started, with a FileChannel as its standard input and a Pipe as its
+// standard output. Both functions block. They return false when the other program has closed the channel.
 bool write_to_parent(std::string_view head, std::string_view body);
 // Reads `size` bytes. Unless `file` is nullptr, also receives the file that was sent with the first of these bytes.
 // Returns false when the other program has closed the channel.

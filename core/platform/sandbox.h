@@ -28,7 +28,7 @@ struct SandboxSettings {
 struct Protection {
   bool own_process = false;   // the work runs in a process of its own
   bool system_calls = false;  // seccomp, the kernel's system call filter
-  int landlock = 0;           // version of the kernel's Landlock interface that is in force; 0: none
+  int landlock = 0;           // version of the kernel's Landlock interface that is in force; 0: not in force
 
   bool operator==(const Protection&) const = default;
 };
