@@ -9,7 +9,7 @@
 
 namespace limber {
 
-// Returns the hashes of a body.
+// Returns the hashes of the data of a body from which its joints are baked.
 //   is_bone  1 for each label that is bone tissue
 //   weights  the bound weights, before bone tissue is made rigid
 BakeSource bake_source(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,

@@ -49,9 +49,9 @@ struct BakedJoint {
   glm::dvec3 axis{0};           // unit axis about which the joint turns, world at rest
   std::vector<double> degrees;  // #A baked angles from rest, ascending; one of them is 0
   BakeSource source;
-  std::string glide;    // setting by which joints glided in the solves: a word of core/body/glide_poses.h
-  std::string quality;  // quality of the tet mesh: draft, normal or fine
-  bool contact = true;  // true: skin touched skin in the solves instead of passing through
+  std::string glide;                         // how joints glided in the solves: a word of core/body/glide_poses.h
+  std::string quality;                       // quality of the tet mesh: draft, normal or fine
+  bool contact = true;                       // true: skin touched skin in the solves instead of passing through
   std::vector<BakeError> at_baked, between;  // errors at the baked angles, and at angles between them, ascending
 
   // Node n of the lattice, a box of `size` nodes, lies at the lowest corner of voxel (first + n) * step.

@@ -32,7 +32,7 @@ struct FleshCells {
   std::vector<std::int32_t> bending;
   std::vector<std::int32_t> cell_of_voxel;  // 512 values per bent brick, x fastest: index of the voxel's cell; -1: air
 
-  // Returns the cell that contains a voxel, -1: none.
+  // Returns the cell that contains a voxel; -1: no cell contains it.
   //   voxel  position in the brick, 0 .. 7 on each axis
   std::int32_t cell_of(std::int64_t brick, const glm::ivec3& voxel) const {
     return bending[brick] < 0 ? -1 : cell_of_voxel[bending[brick] + voxel.x + 8 * (voxel.y + 8 * voxel.z)];

@@ -40,7 +40,7 @@ struct InverseMap {
   std::vector<std::uint8_t> flags;
   bool has_volume_ratio = true;       // true: posed_per_rest is computed
   std::vector<float> posed_per_rest;  // local ratio of posed to rest volume at each voxel
-  std::vector<Label> lost;            // label of each claim that lost against a cell that was not its neighbour at rest
+  std::vector<Label> lost;            // label of each claim that lost to a cell that is no neighbour of its own at rest
   RowSet row_used;                    // 1 for each row of voxels with at least one covered voxel
 
   // Clears the map and sets its range of voxels.

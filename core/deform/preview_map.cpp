@@ -19,7 +19,7 @@ namespace limber {
 
 namespace {
 
-constexpr int kTile = 8;             // nodes along the edge of a tile; nodes are recomputed by tiles
+constexpr int kTile = 8;             // number of nodes along the edge of a tile; whole tiles are recomputed
 constexpr int kMargin = 3;           // rest points can be stored up to this distance outside the grid, cells
 constexpr double kFurthest = 32000;  // a pose that moves a vertex further is refused, cells; fixed point allows 32 768
 constexpr std::int64_t kMostNodes = std::int64_t{1} << 26;
@@ -286,7 +286,7 @@ class LivePreview::Finish {
   std::array<std::int64_t, 3> strides_;
   std::array<std::int64_t, 8> offsets_;  // index offsets of a cube's eight nodes
   Lanes jump_{}, steepest_{};
-  glm::vec3 steps_{0};  // by axis: the number of steps per unit of stored rest coordinates
+  glm::vec3 steps_{0};  // by axis: factor from 16-bit fractions (stored rest points) to steps
 };
 
 // The tiles of nodes, and which of them must be recomputed (dirty).
@@ -486,7 +486,8 @@ bool LivePreview::pose_vertices(const std::vector<RigidTransform>& posed_from_re
   const double step = lattice_.step;
   world_from_cell_ = {world_from_voxel.linear * step, world_from_voxel * glm::dvec3(0.5 * step - 0.5)};
   cell_from_world_ = voxel_from_world.linear / step;
-  // One affine map per bone, for vertices that follow only this bone: vertex index -> posed - rest, in cells.
+  // One affine map per bone, for vertices that follow only this bone: from a vertex's whole coordinates to its motion
+  // (posed - rest), in cells.
   std::vector<AffineTransform> moves;
   for (const RigidTransform& bone : posed_from_rest) {
     const glm::dmat3 turn = glm::mat3_cast(bone.rotation) - glm::dmat3(1);

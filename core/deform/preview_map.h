@@ -120,7 +120,7 @@ class LivePreview {
                                            const MeshPose& mesh = {}, const std::vector<BentJoint>& baked = {});
 
   const PreviewLattice& lattice() const { return lattice_; }
-  std::int64_t cells_rasterized() const { return cells_rasterized_; }  // number of cells in the last update
+  std::int64_t cells_rasterized() const { return cells_rasterized_; }  // in the last update
 
  private:
   struct Tiles;
@@ -130,7 +130,7 @@ class LivePreview {
   // A map, and the rows of nodes that must be recomputed before it matches the current pose.
   struct Made {
     std::shared_ptr<PreviewMap> map;
-    // For each node, bits of the axes along which the next node is on another sheet.
+    // For each node, one bit for each axis (1 << axis): 1 if the next node along the axis is on another sheet.
     std::vector<std::uint8_t> jumps;
     std::vector<std::array<int, 2>> stale;  // begin and end of the stale nodes in each row (y, then z)
   };
@@ -187,7 +187,7 @@ class LivePreview {
   // Range of nodes that the posed image of each cell can contain, in this update and in the previous one. Node (0, 0,
   // 0) is the first node of the voxel grid, not first_.
   std::vector<VoxelRange> range_, before_;
-  glm::ivec3 first_{0}, size_{0};      // range of nodes, in whole tiles
+  glm::ivec3 first_{0}, size_{0};      // first node, and size, of the range of nodes; it consists of whole tiles
   std::vector<glm::u16vec4> claimed_;  // rest point that a cell claims for each node, as in PreviewMap::nodes
   std::vector<std::int8_t> claimed_apart_;
   std::vector<std::int32_t> claiming_;  // cell that claims each node; -1: no cell does

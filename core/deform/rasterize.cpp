@@ -15,7 +15,7 @@ constexpr int kTetCorners[2][5][4] = {
     {{7, 4, 2, 1}, {0, 1, 2, 4}, {3, 2, 1, 7}, {5, 4, 7, 1}, {6, 7, 4, 2}},
 };
 
-constexpr double kRounding = 1e-9;  // rounding error of positions in a cube, in half edges of the cube
+constexpr double kRounding = 1e-9;  // allowance for rounding errors of a position in a cube, half edges of the cube
 
 int parity(const glm::ivec3& v) { return (v.x + v.y + v.z) & 1; }
 
@@ -80,7 +80,7 @@ PosedCell::Inverse PosedCell::affine_inverse() const {
     from_first[i + 1] = odd - first;
   }
   const auto c = trilinear_coefficients(from_first);
-  const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half of the cube's mean edges
+  const glm::dvec3 x = voxels_of(c[1]), y = voxels_of(c[2]), z = voxels_of(c[4]);  // half of its mean edges
   const glm::dmat3 faces(glm::cross(y, z), glm::cross(z, x), glm::cross(x, y));
   const double determinant = glm::dot(x, faces[0]);
   if (!(determinant > 1e-6)) return inverse;

@@ -18,8 +18,8 @@ struct VolumeShifts {
 };
 
 // Computes the shifts of all nodes.
-//   bones    bones that flesh must not enter; nullptr: none
-//   contact  finds flesh inside other flesh; nullptr: not searched
+//   bones    bones that flesh must not enter; nullptr: no bones
+//   contact  finds flesh inside other flesh; nullptr: such flesh is not searched for
 VolumeShifts volume_shifts(const FleshCells& cells, const PosedBones* bones, FleshContact* contact, Progress& progress);
 
 // Returns a matrix near F that has the determinant `volume`, found by steps along the gradient of the determinant. F

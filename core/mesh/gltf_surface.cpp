@@ -200,7 +200,7 @@ class GltfSurface {
   const GltfDescription gltf_;
   const Path folder_;
   SurfaceSoup& soup_;
-  std::map<std::int64_t, Triangles> meshes_;     // meshes read so far, before their nodes' transforms
+  std::map<std::int64_t, Triangles> meshes_;     // meshes read so far, without their nodes' transforms
   std::map<std::int64_t, std::string> buffers_;  // buffers read so far from other files or from Base64
   std::uint64_t loaded_bytes_ = 0;
 };

@@ -185,7 +185,7 @@ class Improver {
   const LatticeNet& net_;
   std::vector<int> first_, tet_;  // the tets around node i are tet_[first_[i]] to tet_[first_[i + 1] - 1]
   std::vector<Point> V_;
-  std::unordered_map<int, Skin> skin_;  // by node, for nodes of the surface at air
+  std::unordered_map<int, Skin> skin_;  // by node, for the nodes of the skin (the surface at air)
   std::vector<int> moved_;
   Eigen::Matrix3d turn_;
   Eigen::Vector3d offset_;

@@ -110,7 +110,7 @@ std::vector<Circle> circles_of(double radius, double length, CylinderEnds ends, 
   // The number of sides is a multiple of four, so that the polygon reaches the circle along both axes.
   const int sides = std::max(kLeastSides, static_cast<int>((parts(2 * std::numbers::pi * radius, side) + 3) / 4 * 4));
   const std::int64_t rows = parts(length, side), rings = parts(radius, side);
-  std::vector<Circle> end;  // circles of an end from the middle outwards, without the rim
+  std::vector<Circle> end;  // circles on an end face, from its middle outwards, without the rim
   if (ends == CylinderEnds::Closed) {
     end.push_back({0, 0, 1});
     for (std::int64_t k = 1; k < rings; ++k) {

@@ -13,7 +13,7 @@ namespace limber {
 namespace {
 
 struct Face {
-  int middle, high;  // the face's middle and largest node index
+  int middle, high;  // the middle one and the largest of the face's three node indices
   int tet, face;
 };
 

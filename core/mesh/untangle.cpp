@@ -138,12 +138,13 @@ class Region {
 
   std::vector<int> nodes_;  // the nodes that move
   std::vector<Tet> tets_;
-  // The tets' corners at each moving node, as 4 * tet + corner in corner_; corners_ has the index of each node's first.
+  // The corners of tets at the moving node i, as 4 * tet + corner, are corner_[corners_[i]] up to
+  // corner_[corners_[i + 1] - 1].
   std::vector<int> corners_, corner_;
   std::vector<Eigen::Matrix3d> slope_;
 };
 
-// Minimises the energy by L-BFGS [Nocedal 1980] with steps that make it smaller. Returns false if no step does.
+// Minimises the energy by L-BFGS [Nocedal 1980]; every step reduces the energy. Returns false if no first step does.
 bool descend(Region& region, Eigen::VectorXd& x, double epsilon) {
   struct Pair {
     Eigen::VectorXd step, change;

@@ -37,7 +37,7 @@ struct Constraint {
   std::string name;  // unique among the clip's constraints; the keys of the weight are stored under this name
   ConstraintKind kind = ConstraintKind::CopyRotation;
   bool on = true;
-  double weight = 1;  // used if the weight has no keys, [0, 1]
+  double weight = 1;  // constant weight, [0, 1]; used if the weight has no keys
   std::string bone;   // the bone that is constrained
   // The target is a bone, or a position in world coordinates, mm. If `target` is empty, the position `place` is fixed
   // in the world; else it is fixed to the bone `target`, and `place` is where it lies in the rest pose.

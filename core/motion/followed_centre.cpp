@@ -13,7 +13,7 @@ namespace {
 
 // Standard deviation of the Gaussian, seconds. A step takes about half a second, so its bounce is smoothed away.
 constexpr double kDeviation = 0.25;
-constexpr double kMostFrames = 1000;  // frames; a larger standard deviation, from a very high rate, is cut to this
+constexpr double kMostFrames = 1000;  // upper limit on the standard deviation, frames; needed for very high rates
 constexpr int kReach = 3;             // standard deviations after which the Gaussian is cut off
 
 int centre_bone(const Armature& armature) {

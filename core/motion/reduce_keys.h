@@ -29,8 +29,8 @@ struct ReducedKeys {
 };
 
 // Returns keys for poses that belong to the frames `start`, `start` + 1, ... A bone that stays at rest gets no keys; a
-// bone with one constant rotation gets one. Throws Error unless both allowed errors are positive. Throws Cancelled when
-// the user stops it.
+// bone with one constant rotation gets one key. Throws Error unless both allowed errors are positive. Throws Cancelled
+// when the user stops it.
 ReducedKeys reduced_to_keys(const Armature& armature, const std::vector<Pose>& poses, int start,
                             const ReduceSettings& settings, Progress& progress);
 

@@ -35,7 +35,7 @@ bool goes_on_with(const Strip& earlier, const Strip& later, double rate) {
 // Finds the first strip and the end of each run (strips that play as one), and which strips are continued by another
 // one.
 void find_runs(const StripTrack& track, double rate, std::vector<StripRun>& runs) {
-  std::multimap<int, std::size_t> ending;  // by end frame, the earlier strips that no other one continues yet
+  std::multimap<int, std::size_t> ending;  // by end frame, the strips so far that no other strip continues
   for (std::size_t i = 0; i < track.strips.size(); ++i) {
     const Strip& strip = track.strips[i];
     const int end = end_of(strip, rate);

@@ -54,7 +54,7 @@ struct Strip {
   bool holds = true;      // true: the last pose of the strip is held below later strips of its track
   bool muted = false;     // true: the strip does not play
   StripBlend blend = StripBlend::Replace;
-  double influence = 1;             // share of the pose that the strip decides, [0, 1]
+  double influence = 1;             // weight of the strip's pose over the pose below it, [0, 1]
   int blend_in = 0, blend_out = 0;  // frames over which the influence grows at the start, and falls at the end
   std::optional<std::set<std::string>> bones;  // names of the bones that the strip changes; nothing: all bones
   GroundMove place;  // move along the ground that is applied to the body while the strip plays
@@ -81,7 +81,7 @@ struct Strips {
 std::vector<std::shared_ptr<const Clip>> clips_of(const Strips& strips);
 
 constexpr double kMostRepeats = 10'000;
-constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // limits for one clip
+constexpr std::size_t kMostTracks = 256, kMostStrips = 4096;  // largest numbers in one clip
 constexpr int kLongestBlend = 100'000;                        // longest fade of a strip, frames
 constexpr std::int64_t kMostStripFrame = 1 << 28;             // largest frame number of a strip, either sign
 constexpr double kFarthestMove = 1e7;  // largest coordinate of a strip's move along the ground, mm

@@ -37,7 +37,7 @@ class StripsOnRig {
   struct OnRig {
     const Strip* strip;
     std::shared_ptr<const ClipOnRig> clip;
-    // frames of the clip that pass in one frame of the strip, and that have passed at the strip's end
+    // Number of the clip's frames that pass in one frame of the strip, and number that have passed at the strip's end.
     double ratio = 1, total = 0;
     int end = 0;  // last frame of the strip
     StripRun run;

@@ -75,7 +75,7 @@ class Stroke::Work {
     bool shown = false;  // true: shown_ contains changed weights of this brick
     bool waits = false;
     std::array<std::uint64_t, 8> waiting{};  // one bit for each voxel, set if its cover has risen since it was painted
-    std::vector<std::uint64_t> blocked;      // one bit for each voxel: a locked bone kept it from changing; empty: none
+    std::vector<std::uint64_t> blocked;      // bits of the voxels that a locked bone kept from changing; empty: none
   };
   // One side of the body (the stroke's own or the mirrored side): the painted bones there and the brush's data.
   struct Side {

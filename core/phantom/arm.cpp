@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Builds the arm. The joint surfaces of bones are spheres and cylinders around the rig's joint centres and axes, and
-// their sockets leave a gap. Bones therefore do not touch over the whole range of each joint. Lengths in mm.
+// their sockets leave a gap, so that bones rotate without touching. Lengths in mm.
 #include "core/phantom/limbs.h"
 
 namespace limber::phantom {

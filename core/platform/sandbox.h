@@ -16,7 +16,7 @@ namespace limber {
 struct SandboxSettings {
   // Memory that the process may map in addition to what it has mapped on entry, bytes; see allow_memory().
   std::size_t memory_bytes = std::size_t{256} << 20;
-  // allow_memory() adds at most so many bytes.
+  // The largest value, bytes, to which allow_memory() can raise the limit memory_bytes.
   std::size_t most_memory = std::size_t{256} << 20;
   double processor_seconds = 600;
   // False switches the protection by seccomp (system_calls) or by Landlock (files) off, to test the other protections
