@@ -24,7 +24,8 @@ constexpr double kSmallestBody = 1e4;  // volume of the smallest body, mm3; smal
 constexpr double kLeastShare = 0.02;
 // Volume of the smallest bone, mm3; smaller specks are noise and get no bone label.
 constexpr double kSmallestBone = 150;
-// Largest cavity in bone that may contain marrow, mm3; that of a closed skull, for example, is larger.
+// Largest cavity in bone that may contain marrow, mm3. Larger cavities, such as the inside of a closed skull, get no
+// bone label.
 constexpr double kLargestMarrow = 1.5e5;
 constexpr double kSmallestLung = 5e4;  // volume of the smallest lung, mm3; smaller regions are not labelled as lung
 constexpr double kPureAir = -950;      // Hounsfield units; lungs are denser than this, gas in the bowel is not
@@ -80,9 +81,9 @@ bool is_empty(const Mask& mask) {
   return std::none_of(mask.begin(), mask.end(), [](std::uint8_t is) { return is != 0; });
 }
 
-// Returns the voxels of the body: those above the body's threshold near something thick. A morphological opening by 3
-// mm removes the table, blankets and cables. The remaining body is then grown by a little more than 3 mm within the
-// voxels above the threshold, so that ears and fingers stay.
+// Returns the voxels of the body: those above the body's threshold that lie in or near a thick region. A morphological
+// opening by 3 mm removes the table, blankets and cables. The remaining body is then grown by a little more than 3 mm
+// within the voxels above the threshold, so that ears and fingers stay.
 Mask body_of(const GreyLevels& image, double threshold, Progress& progress) {
   const Grid& grid = image.grid;
   const double coarsest = std::max({grid.spacing.x, grid.spacing.y, grid.spacing.z});

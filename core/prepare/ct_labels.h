@@ -2,7 +2,8 @@
 // Makes a label volume from a CT by thresholds, so that a CT without a segmentation can be rigged and posed.
 // Distinguishes skin, fat, soft tissue, lung, gas and bone, and removes the table, blankets and other thin things
 // around the body. It uses no knowledge of anatomy: contrast agent and metal count as bone, and bones that touch are
-// one. The values of an MR have no unit; in such an image only the body and its skin are labelled, by one threshold.
+// not separated. The values of an MR have no unit; in such an image only the body and its skin are labelled, by one
+// threshold.
 #pragma once
 
 #include "core/base/progress.h"
@@ -34,7 +35,8 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds = 
 
 // Returns the threshold between background and body, from the histogram of an image, by minimum cross entropy of the
 // two classes [Li and Lee 1993, iterated as by Li and Tam 1998]. In an MR the background is far more uniform than
-// tissue, so Otsu's threshold (1979), half way between the means of both, would count dark muscle as background.
+// tissue, so Otsu's threshold (1979), half way between the means of the two classes, would count dark muscle as
+// background.
 double body_threshold(const GreyLevels& image);
 
 // Returns the labels of an image whose values have no unit, on its own grid: the body and its skin. Dark regions that

@@ -20,7 +20,7 @@ constexpr double kTie = 1e-9;
 // Upper limit of the rounds in which lost layers are restored. A round may cause another one: a voxel that becomes skin
 // may touch labels that skin did not touch before. In practice two rounds suffice.
 constexpr int kMostRounds = 8;
-constexpr int kBalancingRounds = 40;  // number of rounds of balanced_regrid(); counts are then near those wanted
+constexpr int kBalancingRounds = 40;  // rounds of balanced_regrid(), after which voxel counts are near the wanted ones
 
 struct Share {
   Label label;
@@ -100,7 +100,8 @@ class Regrid {
       progress.update("regrid", 0.7 + 0.3 * round / kBalancingRounds);
       std::vector<double> count(65536, 0);
       for (const Label label : to_.voxels) ++count[label];
-      // A small label changes by whole voxels, so its weight changes by a part of what is missing.
+      // Corrects each weight by half of what its label lacks, since a full correction overshoots: the voxel count of a
+      // small label changes by whole voxels.
       for (std::size_t label = 0; label < count.size(); ++label)
         if (wanted[label] > 0) log_weight[label] += 0.5 * std::log((wanted[label] + 1) / (count[label] + 1));
       for (const Mixed& voxel : mixed) to_.voxels[voxel.at] = heaviest(voxel.shares, log_weight);
@@ -130,7 +131,7 @@ class Regrid {
     return mixed;
   }
 
-  // Returns the label with the largest weighted share; of equal ones the smaller label.
+  // Returns the label with the largest weighted share. If several labels have it, returns the smallest of these labels.
   static Label heaviest(const Shares& shares, const std::vector<double>& log_weight) {
     Label best = 0;
     double most = -INFINITY;

@@ -17,7 +17,7 @@ bool has(const Clips& clips, const SharedClip& clip) {
   return std::find(clips.begin(), clips.end(), clip) != clips.end();
 }
 
-// Returns the clip of `after` that replaces the clip of `before`: the one with the same name, or the only new one at
+// Returns the clip of `after` that replaces the clip of `before`: the clip with the same name, or else a new clip at
 // the same index. Returns null if the clip was deleted.
 SharedClip successor(const SharedClip& clip, const Clips& before, const Clips& after) {
   const auto named =

@@ -11,13 +11,14 @@ namespace limber {
 // strips are removed.
 void relink_strips(const Document& before, Document& next);
 
-// Replaces `clip` by `changed` in all strips that play it. `changed` is the same motion at another speed
-// (core/motion/clip_speed.h), with `ratio` frames for each frame of `clip`. The strips' frames are converted, so that
-// they play the same part of the motion. A clip whose frame range was that of its strips gets their new range.
+// Makes all strips that play `clip` play `changed` instead. `changed` is the same motion at another speed
+// (core/motion/clip_speed.h): each frame of `clip` becomes `ratio` frames of `changed`. The frame numbers in the strips
+// are scaled accordingly, so that the strips play the same part of the motion. If the frame range of a clip with such
+// strips was exactly the range that its strips cover, it becomes the range that they cover now.
 void follow_frames(Document& document, const std::shared_ptr<const Clip>& clip,
                    const std::shared_ptr<const Clip>& changed, double ratio);
 
-// A clip of the document whose strips play another clip, and the number of these strips.
+// The name of a clip some of whose strips play a given other clip, and the number of these strips.
 struct StripUse {
   std::string clip;
   int strips = 0;

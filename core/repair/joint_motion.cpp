@@ -43,8 +43,8 @@ std::vector<int> bones_below(const Armature& armature, int bone) {
 }
 
 // Returns an axis, perpendicular to the bone, about which a ball joint swings. It is made from the axis of the body
-// (left, back, up) that is least parallel to the bone. If two axes are about equally so, the left axis is preferred, so
-// that a hanging leg swings forward and back.
+// (left, back, up) that is least parallel to the bone. If the left axis and another axis are about equally unparallel
+// to the bone, the left axis is used, so that a hanging leg swings forward and back.
 glm::dvec3 swing_axis(const Armature& armature, int bone) {
   const glm::dvec3 whole = armature.bones[bone].tail - armature.bones[bone].head;
   if (!(glm::length(whole) > 0))

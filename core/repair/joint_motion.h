@@ -26,8 +26,9 @@ struct TurnRange {
   double low = 0, high = 90;
 };
 
-// Returns the motion of the joint at a bone's head. If a range is given, the joint turns about its hinge, else about
-// the usual hinge for its name, else about flex_axis(). Without a range it moves as joints of its kind do:
+// Returns the motion of the joint at a bone's head. If a range is given, the joint turns about the hinge that the rig
+// gives it. If the rig gives the joint no limits, it turns about the usual hinge for its name. All other joints turn
+// about flex_axis(). Without a given range the joint moves as joints of its kind do:
 //   a hinge, or a joint whose name has a usual hinge (rig/joint_ranges.h): over the hinge's range
 //   a hip or shoulder, recognised by name: flexion, extension and abduction (pose/joint_angles.h)
 //   another ball joint: swings in both directions about two axes perpendicular to the bone, up to its cone

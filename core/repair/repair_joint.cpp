@@ -29,7 +29,7 @@ constexpr double kMoreCare = 5;
 // A turn's weight is 1 / (its own volume change + this share of the mean volume change of all turns).
 constexpr double kEvenness = 0.5;
 constexpr int kMostIterations = 60;
-constexpr double kLeastProgress = 2e-3;  // an iteration that lowers the total by less, in percent, is the last one
+constexpr double kLeastProgress = 2e-3;  // %; the minimizer stops once an iteration lowers its total by less
 
 // Returns S, the sum of the absolute volume changes of skin, fat and muscle, %.
 double size_of(const FleshChange& change) {

@@ -3,8 +3,8 @@
 // that contains each voxel.
 //   VolumeRatio    det F: 1 at rest, less where compressed, 0 and less where inverted
 //   EnergyDensity  elastic energy in kPa = mJ/cm3 of rest volume, from the tet's own deformation (material.h); infinite
-//                  where inverted. The energy of a patch's mean volume is left out: it is close to 0 in a body that
-//                  keeps its volume
+//                  where inverted. The energy of the volume changes of patches (groups of adjacent tets,
+//                  fem/patch_form.h) is left out, because it is close to 0 in a body that keeps its volume
 //   Gap            least air gap in mm between a node of the tet at the skin and skin opposite it that was far away at
 //                  rest (contact_gap.h); infinite where no such skin is near
 // A tet between two bones is not flesh (tissue_model.h) and has no measure: its value is NaN.

@@ -19,7 +19,8 @@
 // Fine gates compare methods:
 //   tissues    each large tissue keeps its volume; if no tissue is large, all tissues are judged
 //   bones      the bones into which the program splits bone tissue move rigidly
-//   skin       skin covers as large a share of the surface as at rest (where a cut limb shows flesh, too)
+//   skin       skin covers as large a share of the surface as at rest (the cut end of a limb has no skin at rest
+//              either)
 //   islands    no tissue has more components than at rest, and no voxel inside posed tissue lacks a label
 //   inverted   no tet of the mesh is inverted
 //   crossings  no triangles of the skin cross, and no two regions of the body overlap in a voxel
