@@ -29,7 +29,7 @@ enum class FemQuality { Draft, Normal, Fine };
 
 struct Fem {
   bool contact = false;                     // true: contact stops skin from passing through skin
-  FemQuality quality = FemQuality::Normal;  // number of tets across the thinnest bent limb: 8, 12, or 24 at joints
+  FemQuality quality = FemQuality::Normal;  // tets across the thinnest bent limb: draft 8, normal 12, fine 24 at joints
   std::optional<double> spacing_mm;         // edge length of the tets; none: the quality decides
   // Length in mm that scales how far around a bent joint tissue is meshed, and how far from other bones a bone belongs
   // to a joint. None: the edge length of the tets, but at least that of normal quality.

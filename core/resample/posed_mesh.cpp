@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNearJoint = 2;  // bone voxels up to this many voxels from another bone count as part of a joint
 constexpr int kSpread = 40;    // number of mesh edges over which the shifts of bone nodes are spread into flesh
-// a second sample point of flesh lies at this share of the way from the voxel's centre to the node
+// A second sample point in the flesh lies at this share of the way from the voxel's centre to the node.
 constexpr double kTowards = 0.7;
 
 glm::dvec3 place_of(const Eigen::MatrixX3d& V, int node) { return {V(node, 0), V(node, 1), V(node, 2)}; }
@@ -132,7 +132,7 @@ PosedMesh pose_mesh(const BodyMesh& body, const LabelVolume& volume, const Tissu
   const std::vector<bool> is_bone_label = bone_labels(tissues);
   const TetsAtNodes tets(body.mesh, is_bone_label);
   const auto voxel_at = [&](int tet) { return place_of(body.mesh.V, body.mesh.T(tet, body.voxel_corner[tet])); };
-  // true for nodes on a seam or on bone, where flesh moves as on one side of the node
+  // True for nodes on a seam or on bone, which move with the flesh on one side of them.
   std::vector<bool> is_edge(body.mesh.V.rows(), false);
   for (const int node : body.at_seam) is_edge[node] = true;
 

@@ -30,7 +30,7 @@ namespace {
 constexpr glm::ivec3 kTile = RestPoints::kTile;  // size of a tile, output voxels; its inverse map takes 3 MB
 constexpr std::int64_t kMostRest = 4 << 20;      // upper limit on the number of stored rest points (48 MB)
 constexpr int kReach = 8;  // voxels: radius around a rest point within which a missing label is searched
-// Smallest tissue in voxels that the mass limit applies to: resampling alone changes smaller tissues by more.
+// Smallest tissue, in voxels, that the mass limit applies to. Resampling alone changes smaller tissues noticeably.
 constexpr std::int64_t kJudged = 5000;
 
 // What write() finds in one tile of the posed volume: its counts, and the voxels that may need repair.

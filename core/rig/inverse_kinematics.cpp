@@ -289,8 +289,9 @@ class Search {
 
   int rows(bool pole) const { return static_cast<int>(3 * goals_.size()) + (pole ? 1 : 0); }
 
-  // Returns how far, in mm, the last joint of the first chain is from where the pole wants it: in the half plane that
-  // the line from the chain's base to its tip bounds and that contains the pole.
+  // The pole wants the last joint of the first chain in the half plane that contains the pole and is bounded by the
+  // line from the chain's base to its tip. Returns the distance, mm, of this joint from its wanted position, the point
+  // of the half plane that is as far from the line as the joint is.
   //   normal  set to the unit direction from the joint to the wanted position
   double beside_pole(glm::dvec3& normal) const {
     const Goal& goal = goals_[0];

@@ -255,8 +255,9 @@ class SeamFinder {
     borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
   }
 
-  // Separates limb `first` from the body, together with the limbs after it whose bands do not touch the bands before.
-  // Bands that do not touch are cut on several threads. Returns how many limbs were separated.
+  // Separates limb `first` from the body. Also separates the limbs that follow it in the list, up to the first one
+  // whose band touches a band of an earlier limb. The bands of these limbs do not touch, so they are cut on several
+  // threads. Returns how many limbs were separated.
   std::size_t part_from(std::size_t first) {
     std::vector<SeamBand> bands;
     for (std::size_t k = first; k < limbs_.size(); ++k) {

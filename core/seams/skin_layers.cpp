@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDeepest = 30;                  // length of a ray, mm; deeper tissue tells nothing about the surface
 constexpr std::int64_t kFewestRays = 200;        // with fewer rays along an axis, surprise() is 0
-constexpr double kUsual = 0.5, kUnusual = 0.05;  // shares of the rays: surprise() is 0 at the first and 1 at the second
+constexpr double kUsual = 0.5, kUnusual = 0.05;  // shares of rays: surprise() is 0 at kUsual and 1 at kUnusual
 
 }  // namespace
 
