@@ -39,7 +39,7 @@ class WeightRules {
   //   armature  its bones have the same order as those of the weights
   //   locked    the locked bones; may be empty
   //   nearby    the bone that gets the remaining weight if every bone connected to a voxel's bones in the bone tree is
-  //   locked; callers give the bone with the most weight near the voxel; -1: none
+  //             locked; callers give the bone with the most weight near the voxel; -1: none
   WeightRules(const Armature& armature, BoneSet locked, Normalize normalize = Normalize::Unlocked, int nearby = -1);
 
   bool is_locked(int bone) const { return locked_[bone] != 0; }

@@ -215,8 +215,8 @@ class Maker {
     else figures_.close_ups.push_back(std::move(close));
   }
 
-  // Returns the frame for a 3D picture of the cell's body, before its size is known. All poses of the joint that turns
-  // the furthest are seen from one side.
+  // Returns the frame for a 3D picture of the cell's body. draw_bodies() sets its final centre and height later, when
+  // the size of all bodies is known. All poses of the joint that turns the furthest are seen from one side.
   PictureFrame body_frame(const CellResult& cell) const {
     const JointFigures* joint = furthest_joint(cell);
     if (!joint || (furthest_ && joint->bone == furthest_->bone)) joint = furthest_;

@@ -49,7 +49,8 @@ constexpr char kFormScript[] = R"js(
 const $ = id => document.getElementById(id);
 const pictures = JSON.parse($("pictures").textContent);
 let rater = "", order = [], at = 0, answers = {};
-// A shuffle that the rater's name decides, so that a form that is opened again goes on where it was left.
+// Returns the indices of the pictures in random order. The rater's name is the seed of the random numbers, so a rater
+// who opens the form again gets the same order and can continue.
 function shuffled(name) {
   let state = 2166136261;
   for (const c of name) state = Math.imul(state ^ c.codePointAt(0), 16777619);
@@ -60,7 +61,7 @@ function shuffled(name) {
     state ^= state << 5;
     return Math.floor((state >>> 0) / 4294967296 * count);
   };
-  for (let i = 0; i < 20; ++i) below(1);  // names that differ in one letter begin alike
+  for (let i = 0; i < 20; ++i) below(1);  // skips the first numbers, which hardly differ for similar names
   const list = pictures.map((_, i) => i);
   for (let i = list.length - 1; i > 0; --i) {
     const k = below(i + 1);
@@ -75,7 +76,7 @@ function keep() {
   try {
     localStorage.setItem(place(), JSON.stringify(answers));
   } catch (error) {
-    // A private window keeps nothing.
+    // In a private window the browser may refuse to store the answers. They then last only as long as the page is open.
   }
 }
 function show() {

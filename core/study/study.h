@@ -10,7 +10,8 @@
 //    "gates"?: {"tissue_percent": 1, ...}, "volumes"?: [{"spacing_mm": 2, "volume": "arm-2mm.nrrd"}, ...]}
 // Without spacings_mm the volume keeps its own spacing; without methods the study compares lbs, dqs, fem and
 // fem-contact. A phantom has its own rig and tissues. `volumes` are files of the same body at some of the spacings; at
-// other spacings `volume` is resampled. `repeats` computes each cell that often, for the spread of its time.
+// other spacings `volume` is resampled. `repeats`: how many times each cell is computed, to measure the spread of its
+// time.
 #pragma once
 
 #include <cstdint>

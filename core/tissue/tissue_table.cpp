@@ -28,9 +28,9 @@ constexpr std::uint32_t kByLabel = 0xffffffff;  // stands for a colour that is c
 // of a posed body depends on the ratios of the moduli and not on their scale, because bones prescribe the motion. What
 // matters is their order: skin far above fat and relaxed muscle. Finite element models of bodies under load use shear
 // moduli of 8 kPa for skin, 0.8 for fat, 0.5 for relaxed muscle [Int. Wound J. 15(3), 402-416, 2018, table 3]. Here
-// they are 40 kPa for skin, 1 for fat, 4 for muscle (a skin layer of two or three voxels is rarely as thick as real
-// skin). Poisson ratio: flesh is mostly water, and volume changes of fat under load fit a ratio between 0.49 and
-// 0.4999. With lower ratios, flesh would lose volume.
+// they are 40 kPa for skin, 1 for fat, 4 for muscle. (In a volume, skin is two or three voxels thick, which is rarely
+// the thickness of real skin.) Poisson ratio: flesh is mostly water, and volume changes of fat under load fit a ratio
+// between 0.49 and 0.4999. With lower ratios, flesh would lose volume.
 constexpr int kKinds = 18;
 const std::array<KindDefaults, kKinds> kDefaults = {{
     {TissueKind::Unknown, "unknown", kByLabel, 12, 0.4999, 20},

@@ -11,8 +11,9 @@ namespace limber {
 
 namespace {
 // Share of the eight voxels' mean that is subtracted from each membership (an unsharp mask). The volumes of tissues are
-// preserved best at 0.15 to 0.2. The Dice coefficient of large tissues is highest at 0. With 0.1, the two are nearly as
-// good as at their best. With any value below 4/3, a point at a voxel's centre gets the label of this voxel.
+// preserved best at 0.15 to 0.2. The Dice coefficient of large tissues is highest at 0. At 0.1, volumes and Dice
+// coefficient are both close to their best. With any value below 4/3, a point at a voxel's centre gets the label of
+// this voxel.
 constexpr double kSharpening = 0.1;
 
 // Returns the value rounded down. std::floor would be a function call where the compiler may not use the processor's

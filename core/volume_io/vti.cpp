@@ -97,7 +97,7 @@ class VtiText {
     if (name == "AppendedData" && header_.array["format"] == "appended") begin_appended(all(attributes));
   }
 
-  // Chooses this array if it has one component and the name in the attribute Scalars (none: if it is the first).
+  // Chooses an array of one component: the one with the name in the attribute Scalars, or without Scalars the first.
   void consider(Attributes array) {
     const bool one = !array.contains("NumberOfComponents") || array["NumberOfComponents"] == "1";
     const bool named = !wanted_.empty() && array["Name"] == wanted_;
