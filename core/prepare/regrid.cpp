@@ -24,7 +24,7 @@ constexpr int kBalancingRounds = 40;  // rounds of balanced_regrid(), after whic
 
 struct Share {
   Label label;
-  double volume;  // volume that the label takes of a box, in old voxels
+  double volume;  // volume of the part of a box that has the label, in old voxels
 };
 using Shares = std::vector<Share>;  // shares of a box; it holds few labels, so a linear search is fast
 
@@ -309,8 +309,8 @@ class Regrid {
     const double in_p = share_of(of_p, between.label), in_q = share_of(of_q, between.label);
     const std::int64_t i = to_.grid.index(p), k = to_.grid.index(q);
     bool p_gives_way = in_p > in_q || (in_p == in_q && i < k);
-    // An air voxel becomes tissue only if most of its box is tissue, so that the body keeps its volume: then the air
-    // voxel is changed, else only the voxel of tissue beside it.
+    // Between tissue and air, the air voxel is changed if most of its box is tissue, else the tissue voxel beside it.
+    // So the body keeps its volume.
     const bool keep_p = a == 0 && share_of(of_p, 0) >= 0.5 * volume_;
     const bool keep_q = b == 0 && share_of(of_q, 0) >= 0.5 * volume_;
     if (a == 0 || b == 0) p_gives_way = a == 0 ? !keep_p : keep_q;

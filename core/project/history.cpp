@@ -77,7 +77,7 @@ std::int64_t own_bytes(const Clip& clip) {     // size without its motion, which
   if (clip.constraints) bytes += heap_bytes(clip.constraints->list);
   return bytes;
 }
-std::int64_t own_bytes(const Strips& strips) {  // without the clips, which are counted separately
+std::int64_t own_bytes(const Strips& strips) {  // size without the clips, which are counted separately
   constexpr std::int64_t kNode = kBlock + 32;   // overhead of a set's node, bytes
   std::int64_t bytes = heap_bytes(strips.tracks);
   for (const StripTrack& track : strips.tracks) {

@@ -13,8 +13,8 @@ void relink_strips(const Document& before, Document& next);
 
 // Makes all strips that play `clip` play `changed` instead. `changed` is the same motion at another speed
 // (core/motion/clip_speed.h): each frame of `clip` becomes `ratio` frames of `changed`. The frame numbers in the strips
-// are scaled accordingly, so that the strips play the same part of the motion. If the frame range of a clip with such
-// strips was exactly the range that its strips cover, it becomes the range that they cover now.
+// are scaled accordingly, so that the strips play the same part of the motion. If the frame range of the clip that
+// contains the strips was exactly the range that its strips cover, the clip gets their new range.
 void follow_frames(Document& document, const std::shared_ptr<const Clip>& clip,
                    const std::shared_ptr<const Clip>& changed, double ratio);
 

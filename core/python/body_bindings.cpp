@@ -29,7 +29,7 @@ struct PosedVolume {
   Volume volume;
   Armature rig;
   Pose pose;
-  std::string report;  // JSON; empty: not measured
+  std::string report;  // report on the posed volume, JSON; empty: the volume was not measured
   std::vector<std::string> warnings;
   double reached = 1;
 };

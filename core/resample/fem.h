@@ -34,8 +34,9 @@ struct Fem {
   // Length in mm that scales how far around a bent joint tissue is meshed, and how far from other bones a bone belongs
   // to a joint. None: the edge length of the tets, but at least that of normal quality.
   std::optional<double> reach_mm;
-  // Exact shapes depend on the pose alone and change smoothly with it: no tissue moves rigidly until contact may reach
-  // it, and each solve ends when Newton moves no node by more than a tenth of the usual length.
+  // True: the shape depends on the pose alone and changes smoothly with it. Tissue that otherwise moves rigidly until
+  // contact may reach it is then free from the start, and each solve ends only when Newton moves no node by more than a
+  // tenth of the usual length.
   bool is_exact = false;
   Mesher mesher = Mesher::lattice;
   bool slides = false;  // true: loose tissue slides over bone near bent joints (sliding_nodes.h); false: it sticks
@@ -59,7 +60,7 @@ struct MeshReport {
   // They are counted even if contact is off.
   std::int64_t contact_nodes = 0;
   std::optional<double> min_gap_mm, median_gap_mm;  // smallest and median air gap in front of the contact nodes
-  std::map<Label, double> volume_change_percent;    // volume change of each label, by the tets that hold its voxels
+  std::map<Label, double> volume_change_percent;    // volume change of each label, from the tets that hold its voxels
   std::map<Label, Stretch> stretch;                 // stretch of each soft tissue that bends, by label
   std::string fallback;  // message for the user: larger tets or another mesher were used; empty: as requested
 };
@@ -69,8 +70,8 @@ struct SolveParameters {
   double tet_mm = 0, finest_tet_mm = 0;            // edge length of the tets, and of the smallest tets around joints
   double step_degrees = 0;                         // largest rotation of any joint in one step
   double step_tolerance_mm = 0, tolerance_mm = 0;  // tolerances of the steps and of the final pose (fem/solve_pose.h)
-  double joint_mm = 0;                             // a bone's ends this near to another bone belong to the joint, mm
-  std::optional<double> contact_mm;                // distance below which skin is pushed apart; none: no contact
+  double joint_mm = 0;               // ends of bones that are this near to another bone are part of a joint, mm
+  std::optional<double> contact_mm;  // distance below which skin is pushed apart; none: no contact
 };
 
 struct SolveReport {
@@ -78,7 +79,7 @@ struct SolveReport {
   double reached = 0;      // share of the way from rest to the pose that was reached, [0, 1]
   std::string blocked_by;  // message for the user: what blocks the pose; empty if the solve converged
   int steps = 0, iterations = 0, factorizations = 0;
-  int repeated_in_double = 0;  // number of factorizations that single precision was too inexact for
+  int repeated_in_double = 0;  // number of factorizations repeated because single precision was too inexact
   int analyses = 0;            // number of analyses of the matrix's sparsity pattern; contact changes the pattern
   double residual_mm = 0;      // longest motion of a node in the last Newton step, mm
   // Largest distance of a bone's mesh node from its exact rigid position. Bone voxels have no such error, since they

@@ -471,7 +471,7 @@ class PosedVoxels {
   std::vector<UnderSkin> under_skin_;
   std::ptrdiff_t unsure_ = 0;  // index in under_skin_ of the first voxel that drop_covered() must check again
   std::vector<InnerSkin> inner_skin_;
-  RowSet rows_, bone_rows_;  // 1 for each row of the output that contains tissue; that contains bone tissue
+  RowSet rows_, bone_rows_;  // 1 for each row of the output with tissue (rows_) or with bone tissue (bone_rows_)
   TiledLabels posed_bones_;  // 1 + the index of the rig bone at each posed bone voxel, 0 elsewhere
   const LabelSampler sampler_;
   TiledLabels tiles_;  // labels of the posed volume

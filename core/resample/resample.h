@@ -82,7 +82,7 @@ struct DeformReport {
     std::int64_t voxels = 0;  // number of posed voxels of bone tissue of this rig bone
   };
   std::vector<BoneResidual> bones;              // one entry for each rig bone with posed bone tissue
-  std::optional<SettledFlesh::Report> settled;  // set only by mixed blending; none: the pose bends nothing
+  std::optional<SettledFlesh::Report> settled;  // report of mixed blending; none: other method, or nothing bends
   std::vector<BakedJointReport> baked;          // report on each baked joint of the settings
   // Number of voxels that each organ gained (positive) or lost (negative) to keep its volume (organ_volumes.h), by
   // label.

@@ -268,8 +268,8 @@ class Exchange {
     posed_.at(v) = 0;
     const bool fits = may_lose(laid_bare[0]) && may_gain(laid_bare[0], own);
     posed_.at(v) = own;
-    // The voxel under the skin voxel changes first: it joins the skin voxel's component, and that voxel then becomes
-    // air.
+    // The voxel under the skin voxel changes first, so that it joins the skin voxel's component. Then the skin voxel
+    // becomes air.
     return fits ? Changes{{posed_.grid.index(laid_bare[0]), own}, {posed_.grid.index(v), 0}} : Changes{};
   }
 

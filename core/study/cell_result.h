@@ -50,7 +50,7 @@ struct CellResult {
   StudyCell cell;
   Path folder;
   std::string failure;  // why the cell could not be computed; empty if it was computed
-  double cpu_seconds = 0, wall_seconds = 0, peak_memory_mb = 0;  // medians of the repeats; memory: of the last one
+  double cpu_seconds = 0, wall_seconds = 0, peak_memory_mb = 0;  // medians of the repeats; memory: of the last repeat
   std::vector<double> cpu_repeats;                               // processor seconds of each repeat, at least one
   std::string machine;
   std::map<std::string, double> seconds;  // wall-clock seconds of each stage

@@ -160,7 +160,8 @@ std::string svg_of(const LineChart& chart) {
       svg += line(left, y_of(tick), right, y_of(tick), "grid") +
              label(left - 6, y_of(tick) + 4, number(tick), "tick", "end");
   } else {
-    // There are at most 7 parts between ticks: range_of() has 5 parts, and its rounding adds at most one at each end.
+    // There are at most 7 parts between ticks: range_of() aims at 5 parts, and its rounding adds at most one part at
+    // each end.
     const double step = tick_step(range.high - range.low, 7);
     for (int i = 0; range.low + i * step <= range.high + step * 1e-6; ++i) {
       const double tick = range.low + i * step;
