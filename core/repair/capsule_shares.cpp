@@ -8,8 +8,8 @@ namespace limber {
 
 namespace {
 
-// Half width, mm, of the slab around the joint in which the limb's thickness is measured. Only tissue that the field
-// may change counts.
+// Half width, mm, of the slab around the joint in which the limb's thickness is measured. Only tissue whose weights the
+// joint field may change counts.
 constexpr double kSlab = 20;
 constexpr double kLeastThickness = 5;  // a thinner limb counts as this thick, mm
 

@@ -22,7 +22,8 @@ constexpr double kBend = 6;  // factor of the squared bend of the field, measure
 // Half width, in percent, of the range around 0 in which |x| is replaced by a smooth function, since the minimizer
 // needs a continuous derivative.
 constexpr double kRounding = 0.2;
-// Upper limit on the number of voxels that are summed. In finer volumes, a regular subset of the voxels is used.
+// Upper limit on the number of voxels over which the model sums. In finer volumes, a regular subset of the voxels is
+// used.
 constexpr std::int64_t kMostSamples = 250'000;
 // A class of tissue counts only if it is at least this share of the soft tissue around the joint.
 constexpr double kLeastShare = 0.005;
@@ -30,7 +31,7 @@ constexpr int kGrain = 128;  // cells per block of a parallel loop
 
 struct Sample {
   glm::vec3 position;    // position relative to the joint, mm
-  glm::vec3 base_slope;  // gradient of the fixed part of the share, 1 / mm
+  glm::vec3 base_slope;  // gradient of the fixed part of the share (FieldPoint::base), 1 / mm
   glm::vec3 mask_slope;  // gradient of the mask, 1 / mm
   glm::vec3 open;  // for each axis of the volume, how many of the two neighbours are tissue, as a share: 0, 1/2 or 1
   FieldPoint point;

@@ -36,7 +36,7 @@ constexpr std::int64_t kJudged = 5000;
 // What write() finds in one tile of the posed volume: its counts, and the voxels that may need repair.
 struct TileCounts {
   VoxelRange range;
-  RowSet row_used, row_has_bone;  // for each row (along x) of the range: 1 if it has tissue; 1 if it has bone
+  RowSet row_used, row_has_bone;  // 1 for each row (along x) with tissue (row_used) or with bone (row_has_bone)
   std::int64_t holes = 0, overlap = 0, bone_overlap = 0;
   std::vector<Label> lost;
   std::vector<UnderSkin> under_skin;
