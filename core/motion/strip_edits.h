@@ -41,8 +41,8 @@ Strip with_end(const Strip& strip, int frame, double rate);
 // parts touch, together they play as the strip did. Throws Error if the frame does not lie inside the strip.
 std::pair<Strip, Strip> split(const Strip& strip, int frame, double rate, const std::string& second_name);
 
-// Returns the move along the ground that lets the strip begin where the body is: with the position and heading that the
-// body has at the strip's first frame while this strip is muted. Throws Error for a rig with several root bones.
+// Returns the horizontal move and turn after which the strip's first pose has the horizontal position and the heading
+// that the other strips give the body at that frame. Throws Error for a rig with several root bones.
 GroundMove place_where_body_is(const Strips& strips, const StripPlace& place,
                                const std::shared_ptr<const Armature>& armature, double rate);
 

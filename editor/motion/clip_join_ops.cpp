@@ -26,9 +26,9 @@ namespace limber::editor {
 namespace {
 
 constexpr std::int64_t kMostFrames = 1e6;  // takes are not joined if the joined clip would have more frames
-constexpr double kSlides = 10;             // mm; the user is warned of a standing foot that slides farther than this
+constexpr double kSlides = 10;  // the user is warned if a standing foot slides farther than this in the joined clip, mm
 
-// A take (a recorded motion) that was read from a file, before the user says how it is joined to the clip.
+// A take (a recorded motion) that was read from a file and that the user is about to append to the shown clip.
 struct NextTake {
   std::shared_ptr<const Motion> motion;
   std::string name;

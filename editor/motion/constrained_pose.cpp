@@ -82,8 +82,8 @@ void change_free_clip(Context& context, const std::string& label, const std::fun
   settle_frame(context);
   Document next = context.document();
   const Pose free = unconstrained_pose(context), rest = rest_pose(*next.armature);
-  // The clip has no effect on the rig if it has no keys, no constraints, and no motion that can be retargeted. The
-  // pose is then all the user's own work, so it is keyed: otherwise it would be lost.
+  // If the clip has no keys, no constraints and no motion that can be retargeted, the user has made the whole pose by
+  // hand. Keys are inserted for this pose, because the changed clip would otherwise replace it.
   const ClipOnRig* before = clip_on_rig(context);
   const bool is_bare = !before || (!before->has_base() && before->clip()->keys.empty() && !before->clip()->constraints);
   if (is_bare && free != rest) key_changes(next, rest, free);

@@ -20,8 +20,8 @@ namespace limber::editor {
 struct Context;
 struct Timeline;
 
-// The free poses of the poses that the user last made by hand, each at a frame of a clip. Undo looks up the free pose
-// of a restored pose here.
+// The poses that the user last made by hand, each with its clip, its frame and its free pose (the pose before
+// constraints are applied). When undo restores a pose, its free pose is looked up here.
 struct HandPoses {
   struct One {
     std::weak_ptr<const Clip> clip;
@@ -35,13 +35,12 @@ struct HandPoses {
 bool is_constrained(const Document& document);
 // Returns the document's free pose: the pose before constraints are applied.
 Pose unconstrained_pose(Context& context);
-// Returns the new free pose after the user has changed the document's pose to `changed`. The user's rotation of a bone
-// (from the document's pose to `changed`) is also applied to the bone in the free pose.
-//   set  bones whose rotations the user has set to a value. They get exactly their rotation in `changed`, because
-//        setting the same value again must not turn them further.
+// Returns the new free pose after the user has changed the document's pose to `changed`. Each bone of the free pose is
+// turned by the rotation between the document's pose and `changed`.
+//   set  bones whose rotations the user has set to a value. In the free pose these bones get exactly their rotation in
+//        `changed`, because setting the same value again must not turn them further.
 Pose unconstrained_pose(Context& context, const Pose& changed, const std::vector<int>& set = {});
-// Applies the clip's constraints to the pose `free` and returns the result. Returns `free` if the clip has no
-// constraints.
+// Returns the pose `free` with the clip's constraints applied; `free` itself if the clip has no constraints.
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 // Returns the pose to show after the user has changed the document's pose to `changed`: the new free pose, with the
 // constraints applied again.
@@ -49,11 +48,12 @@ Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
 Pose held_by_constraints(Context& context, const Pose& changed, const std::vector<int>& set = {});
 // Stores the free pose that belongs to the pose `shown` at the frame of the document's shown clip.
 void remember_free_pose(Timeline& timeline, const Document& document, const Pose& shown, const Pose& free);
-// Returns the stored free pose of the document's pose if the user made that pose by hand. Returns nothing if the pose
-// comes from the clip.
+// If the user made the document's pose by hand, returns the stored free pose of that pose. Returns nothing if the
+// document's pose comes from the clip.
 std::optional<Pose> free_pose_by_hand(const Context& context);
-// Changes the shown clip as one edit. The free pose does not change, so the user's changes are kept. The document's
-// pose becomes the free pose with the constraints of the changed clip applied.
+// Changes the shown clip as one edit. The free pose (the pose before constraints are applied) stays as it is, so the
+// changes that the user made by hand are kept. The document's pose becomes the free pose with the constraints of the
+// changed clip applied.
 void change_free_clip(Context& context, const std::string& label, const std::function<void(Clip&)>& change);
 
 }  // namespace limber::editor

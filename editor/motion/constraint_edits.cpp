@@ -65,8 +65,8 @@ void place_target(Constraint& constraint, const Armature& armature, const Pose& 
   const int bone = require_bone(armature, constraint.bone);
   const bool on_bone = !constraint.target.empty();
   const int target = on_bone ? require_bone(armature, constraint.target) : -1;
-  // The target is where the limb is now, also if it is stored relative to a target bone. A bone that aims at another
-  // bone gets that bone's tail as its target.
+  // The target position is the limb's current position; if there is a target bone, it is stored in that bone's
+  // coordinates. A bone that aims at another bone gets that bone's tail as its target position.
   const glm::dvec3 place =
       on_bone && constraint.kind == ConstraintKind::Aim ? rig.tail(target) : end_of(constraint, armature, rig, bone);
   constraint.place = on_bone ? inverse(rig.posed(target)) * place : place;
@@ -120,8 +120,8 @@ bool share_turned_bones(const ConstraintStack& stack, std::size_t one, std::size
   return std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
 }
 
-// Returns the names of the constraint and of all constraints that turn one of the same bones, in the order in which
-// they are applied.
+// Returns the names of this constraint and of all constraints that turn at least one of the bones that it turns, in the
+// order in which the constraints are applied.
 std::vector<std::string> order_of_rivals(const ConstraintStack& stack, const std::string& name) {
   const auto& list = stack.constraints()->list;
   const auto place = std::find_if(list.begin(), list.end(), [&](const Constraint& one) { return one.name == name; });

@@ -30,10 +30,11 @@ const Constraint* find_constraint(const Document& document, const std::string& n
 // target is a fixed position in the world, where the bone is now. Throws Error if the constraint cannot be added.
 void add_constraint(Context& context, ConstraintKind kind);
 void remove_constraint(Context& context, const std::string& name);
-// Returns the nearest earlier or later constraint that turns some of the same bones and that the named constraint can
-// be moved past; nullptr if there is none. If two constraints turn the same bone, the constraint that is applied later
-// decides the bone's final rotation. Constraints are applied in the order of the list, unless one constraint depends on
-// the other (core/motion/constraint_stack.h). Disabled constraints are treated as if they were enabled.
+// Returns the nearest earlier or later constraint that turns a bone which the named constraint turns too, and past
+// which the named constraint can be moved; nullptr if there is none. If two constraints turn the same bone, the
+// constraint that is applied later decides the bone's final rotation. Constraints are applied in the order of the list,
+// unless one constraint depends on the other (core/motion/constraint_stack.h). Disabled constraints are treated as if
+// they were enabled.
 enum class InOrder { Earlier, Later };
 const Constraint* order_neighbour(const Context& context, const std::string& name, InOrder where);
 // Moves a constraint in the list: before the constraint that order_neighbour() returns for Earlier, or after the one
@@ -45,8 +46,8 @@ void change_constraint(Context& context, const std::string& name, const std::str
                        const std::function<void(Constraint&)>& change);
 // Shows the pose with the changed constraint, without changing the document.
 void preview_constraint(Context& context, const std::string& name, const std::function<void(Constraint&)>& change);
-// Makes a bone the target of a constraint. If `bone` is "", the target becomes a fixed position in the world. A planted
-// hand or foot stays where it is now.
+// Makes a bone the target of a constraint. If `bone` is "", the target becomes a fixed position in the world. The
+// current position of a planted hand or foot does not change.
 void set_target(Context& context, const std::string& name, const std::string& bone);
 // Sets which point of a hand or foot the constraint plants, and whether its direction is fixed too. The target becomes
 // the current position and direction of that point.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Operators of constraints: one for each kind that adds a constraint, and those that change the active bone's
-// constraint.
+// Operators of constraints: for each kind of constraint an operator that adds one, and operators that change the active
+// bone's constraint.
 #include "core/project/job.h"
 #include "editor/context/context.h"
 #include "editor/context/menu_state.h"
@@ -37,7 +37,7 @@ std::string needs_any_constraint(const Context& context) {
   return constraints_of(context.document()).list.empty() ? "The clip has no constraints" : "";
 }
 
-// Returns the label of the operator that adds a constraint of a kind: "Add copy rotation".
+// Returns the label of the operator that adds a constraint of this kind, such as "Add copy rotation".
 std::string adding(const ConstraintRule& rule) {
   std::string name = rule.name;
   if (name[0] >= 'A' && name[0] <= 'Z') name[0] = static_cast<char>(name[0] - 'A' + 'a');

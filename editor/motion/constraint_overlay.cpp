@@ -14,7 +14,7 @@ namespace limber::editor {
 
 namespace {
 
-// Colour of a constraint's line, ABGR (RGB: 8FBEFF). The alpha of 45 % is for bones that are not selected.
+// Colour of the line of a constraint whose bone is not selected: RGB 8FBEFF with 45 % opacity, stored as ABGR.
 constexpr Colour kQuiet = 0x73FFBE8F;
 constexpr float kWidth = 1, kMark = 7;
 

@@ -35,8 +35,8 @@ struct Number {
   std::function<void(Context&, double)> preview, commit;
 };
 
-// Draws the field. The views show the changed pose while the user edits the number, and one edit is committed at the
-// end.
+// Draws the number field. While the user edits the number, the views show the changed pose; when the user has finished,
+// one edit is committed.
 void draw_number(Context& context, const Rect& rect, const Number& number) {
   auto& edited = context.field_edit->number;
   double value = edited.name == number.name ? edited.value : number.shown;
@@ -86,8 +86,8 @@ bool draw_small_icon(Ui& ui, const Rect& rect, const std::string& name, const ch
   return pressed.clicked;
 }
 
-// The nearest constraints before [0] and after [1] the constraint in the list that turn some of the same bones; null:
-// none.
+// Of the constraints that turn a bone which this constraint turns too: the nearest before it in the list ([0]) and the
+// nearest after it ([1]); null if there is none.
 using OrderNeighbours = std::array<const Constraint*, 2>;
 
 // Draws the up and down buttons that move a constraint in the list. Returns true if one was clicked.
@@ -354,7 +354,7 @@ void draw_constraints(Context& context, Column& column) {
   }
   if (column.begin_section("Constraints", indices.empty() ? "" : std::to_string(indices.size()))) {
     column.space(4);
-    // A copy, because an edit replaces the document.
+    // The list is copied, because a field that is drawn below may replace the document.
     const Constraints constraints = constraints_of(context.document());
     for (const std::size_t index : indices) {
       const ClipOnRig* clip = clip_on_rig(context);

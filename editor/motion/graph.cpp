@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kMostBones = 12;
 constexpr int kMostFrames = 20'000;            // largest number of frames shown; a longer clip shows its first frames
 constexpr std::chrono::milliseconds kTime{6};  // time limit per drawn frame for sampling the motion's poses
-// The graph editor enlarges the bottom area to this height, pixels at scale 1.
+// When the graph editor is shown, the area below the views gets this height, pixels at scale 1.
 constexpr float kHeight = 300;
 constexpr double kRoom = 0.12;  // margin above and below the curves, as a fraction of their height
 
@@ -53,8 +53,9 @@ const Value* key_at(const std::map<int, Value>& keys, double frame) {
   return found != keys.end() && found->first == frame ? &found->second : nullptr;
 }
 
-// Returns the values of the curve at a frame, as angles near `near` if the track is a rotation. At a key's frame it
-// returns the key's own values, which are known even where the motion is not sampled.
+// Returns the values of the curve at a frame, in degrees or mm. Of the equivalent angles of a rotation, it returns
+// those nearest to `near`. At a key's frame it returns the key's own values, which are known even where the motion is
+// not sampled.
 glm::dvec3 values_near(const GraphCurves& curves, const GraphTrack& track, const GraphCurve& curve, double frame,
                        const glm::dvec3& near) {
   if (track.is_shift) {
@@ -84,8 +85,9 @@ void extend(const GraphCurves& curves, const GraphTrack& track, GraphCurve& curv
   }
 }
 
-// Returns the smallest range that contains the clip's motion, playing range and markers, and the keys `keys` in place
-// of the clip's own. It runs in every drawn frame, so it reads only the first and last key of each track.
+// Returns the smallest range that contains the clip's motion, playing range and markers, and the keys `keys`. These
+// replace the clip's own keys. The function runs in every drawn frame, so it reads only the first and last key of each
+// track.
 FrameRange range_of(const Clip& clip, const Keys& keys) {
   Clip without = {.motion = clip.motion, .start = clip.start, .first = clip.first, .last = clip.last};
   without.range_start = clip.range_start;
@@ -109,7 +111,8 @@ bool same_motion(const Clip& a, const Clip& b) {
          a.map == b.map && a.retarget == b.retarget;
 }
 
-// When undo or redo shows another clip, selects the keys again that were selected in that clip.
+// If another clip is shown than in the last call, as after undo or redo, selects the keys that were last selected in
+// this clip.
 void meet_clip(Graph& graph, const std::shared_ptr<const Clip>& clip) {
   if (graph.met_clip.lock() == clip) return;
   graph.met_clip = clip;
@@ -117,8 +120,8 @@ void meet_clip(Graph& graph, const std::shared_ptr<const Clip>& clip) {
     if (known.lock() == clip) graph.chosen = chosen;
 }
 
-// Returns the sampled poses of `curves` that lie in `range`. Only poses without a gap from the start of `range` count,
-// so the list is empty if `range` begins earlier than the sampled range.
+// Returns the sampled poses of `curves` whose frames lie in `range`, one for each frame from the first frame of
+// `range`. If that first frame is not sampled, the list is empty.
 std::shared_ptr<std::vector<Pose>> known_motion(const GraphCurves& curves, const FrameRange& range) {
   if (range.low < curves.range.low) return std::make_shared<std::vector<Pose>>();
   const auto wanted = static_cast<std::size_t>(range.high - range.low + 1);
@@ -135,8 +138,8 @@ std::shared_ptr<std::vector<Pose>> known_motion(const GraphCurves& curves, const
 void meet_motion(Context& context, GraphCurves& curves, const ClipOnRig& on_rig) {
   FrameRange range = range_of(*on_rig.clip(), graph_keys(context));
   const bool same = curves.clip && curves.rig == on_rig.armature() && same_motion(*curves.clip, *on_rig.clip());
-  // While keys are dragged, the range only grows at its end. Otherwise each step of the drag could sample the motion
-  // again.
+  // While keys are dragged, the range keeps its first frame and never shrinks. Otherwise each step of the drag could
+  // discard the sampled poses.
   if (same && graph_of(context).preview) range = {curves.range.low, std::max(range.high, curves.range.high)};
   range.high = std::min(range.high, range.low + kMostFrames - 1);
   if (same && curves.range.low == range.low && curves.range.high == range.high) return;
@@ -158,7 +161,7 @@ Pose motion_pose(const GraphCurves& curves, const ClipOnRig& on_rig, int frame) 
                                                           : on_rig.base_at(frame);
 }
 
-// Returns the track's curve with its keys stored as corrections of the motion.
+// Returns the track's curve, with its keys and their corrections: the differences between the keys and the motion.
 GraphCurve keyed(const GraphCurves& curves, const ClipOnRig& on_rig, const Keys& keys, const GraphTrack& track) {
   GraphCurve curve;
   curve.bone = on_rig.armature()->find(track.bone).value_or(-1);
@@ -246,7 +249,8 @@ GraphTracks graph_tracks(const Context& context) {
       continue;
     }
     found.tracks.push_back({b.name, false});
-    // The whole body has a single shift, even if the rig has several root bones. Only the first root bone lists it.
+    // The whole body has a single translation (shift), even if the rig has several root bones. Its track is listed only
+    // at the first root bone.
     if (b.parent < 0 && !std::exchange(shift_listed, true)) found.tracks.push_back({b.name, true});
   }
   return found;
@@ -282,8 +286,8 @@ void update_curves(Context& context) {
   const Keys& keys = graph_keys(context);
   std::map<GraphTrack, GraphCurve> tracks;
   for (const GraphTrack& track : graph_tracks(context).tracks) {
-    // A walk of several metres would make the curves of angles look flat. So the shift's curves are hidden until the
-    // user shows them.
+    // A walk moves the body by several metres, and curves of angles on the same scale would look flat. So the curves of
+    // the body's translation are hidden until the user shows them.
     if (track.is_shift && graph_of(context).met_shifts.insert(track).second)
       for (int axis = 0; axis < 3; ++axis) graph_of(context).hidden.insert({track, axis});
     const auto before = curves.tracks.find(track);
@@ -339,7 +343,8 @@ void show_graph(Context& context, bool on) {
     Arrangement& arrangement = context.screen->arrangement();
     arrangement.timeline = true;
     arrangement.console = false;
-    context.timeline->chosen.clear();  // the graph hides the rows of keys, and hidden keys must not be changed
+    // Deselects the keys in the timeline's rows: the graph hides these rows, and hidden keys must not be changed.
+    context.timeline->chosen.clear();
     graph.fitted.clear();
     if (arrangement.bottom_height < kHeight)
       graph.heights_before[static_cast<std::size_t>(context.workspace())] =
@@ -348,7 +353,7 @@ void show_graph(Context& context, bool on) {
     for (std::size_t i = 0; i < context.screen->arrangements.size(); ++i) {
       const float before = std::exchange(graph.heights_before[i], 0.0f);
       float& height = context.screen->arrangements[i].bottom_height;
-      // Restores the height of the bottom area, unless the user has dragged its splitter while the graph was shown.
+      // Restores the height of the area below the views, unless the user has changed it while the graph was shown.
       if (before > 0 && height == kHeight) height = before;
     }
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The graph editor: shows the shown clip as curves, in place of the timeline's rows. A track is a selected bone's
-// rotation, or the body's shift. If no bone is selected, all bones with keys have tracks. A track has three channels:
-// the angles about X, Y and Z in degrees (core/motion/euler_channels.h), or the shift along X, Y and Z in mm. A key of
-// a bone is one rotation, so its three channels have keys at the same frames.
+// rotation, or the translation of the whole body (its shift). If no bone is selected, all bones with keys have tracks.
+// A track has three channels: the angles about X, Y and Z in degrees (core/motion/euler_channels.h), or the shift along
+// X, Y and Z in mm. A key of a bone is one rotation, so its three channels have keys at the same frames.
 //
 // The time axis is the same as in the timeline. Curves are sampled at whole frames, once for each change of the clip
 // or its keys. The poses of the recorded motion are sampled for a few milliseconds in each drawn frame, until all are
@@ -43,15 +43,17 @@ enum class KeySide { In, Out };  // the side of a key in time: In is before the 
 // The curves of one track.
 struct GraphCurve {
   int bone = -1;
-  std::map<int, glm::dquat> rotations;  // keys of a bone's rotation, by frame; empty if the track is the shift
-  std::map<int, glm::dvec3> places;     // keys of the shift, by frame, mm; empty if the track is a rotation
-  // The keys' corrections of the motion, by frame: rotations (`turns`) or shifts in mm (`shifts`). The curve
-  // interpolates the corrections. Without a motion, they equal the keys.
+  // Keys of a bone's rotation, by frame; empty if the track is the body's translation.
+  std::map<int, glm::dquat> rotations;
+  std::map<int, glm::dvec3> places;  // keys of the body's translation, by frame, mm; empty if the track is a rotation
+  // The differences between the keys and the recorded motion, by frame: rotations (`turns`) or translations in mm
+  // (`shifts`). The curve interpolates these corrections and adds them to the motion. Without a motion, they equal the
+  // keys.
   std::map<int, glm::dquat> turns;
   std::map<int, glm::dvec3> shifts;
   KeyShapes shapes;
-  // `values` is the curve with its keys, `motion` the curve of the recorded motion alone (empty: there is none). Both
-  // have one element for each frame, degrees or mm.
+  // `values` is the curve of the motion with its keys, `motion` the curve of the recorded motion alone (empty: there is
+  // no motion). Both lists have one element for each frame: the values of the three channels, degrees or mm.
   std::vector<glm::dvec3> values, motion;
 };
 
@@ -70,15 +72,17 @@ struct GraphCurves {
 
 struct Graph {
   std::set<GraphChannel> hidden;
-  std::set<GraphTrack> met_shifts;  // shift tracks that have been listed before; a new one is hidden at first
+  // Tracks of the body's translation that have been listed before; a new one is hidden at first.
+  std::set<GraphTrack> met_shifts;
   std::set<GraphKey> chosen;
   double low = -10, high = 10;  // the values at the plot's lower and upper edge
   // Text that identifies the clip and tracks to which `low` and `high` were fitted.
   std::string fitted;
-  std::optional<Keys> preview;            // while keys are dragged, the keys as they would become; empty: no drag
+  // While keys are dragged: all keys, with the dragged keys at their new frames and values; empty: no drag.
+  std::optional<Keys> preview;
   std::shared_ptr<const Clip> previewed;  // the clip whose keys `preview` replaces
-  // chosen_of_clips: the keys that were selected in each clip before and after an edit, so that undo and redo can
-  // select them again. met_clip: the clip whose selection `chosen` holds.
+  // chosen_of_clips: for each clip before and after an edit, the keys that were selected in it, so that undo and redo
+  // can select these keys again. met_clip: the clip to which the keys in `chosen` belong.
   std::vector<std::pair<std::weak_ptr<const Clip>, std::set<GraphKey>>> chosen_of_clips;
   std::weak_ptr<const Clip> met_clip;
   std::optional<Rect> box;  // the rectangle that the user draws around keys
@@ -113,14 +117,14 @@ void update_curves(Context& context);
 // whole frame before it.
 glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, double frame);
 
-// Returns the slopes of the three channels at a key, before or after it, in degrees or mm per frame. Over a motion,
-// these are the slopes of the correction. So a horizontal handle leaves the motion's own curve unchanged, even if that
-// curve is noisy. Returns nothing if there is no Bezier span on that side.
+// Returns the slopes of the three channels on one side of a key, in degrees or mm per frame. If the clip has a recorded
+// motion, these are the slopes of the keys' correction of the motion. So a horizontal handle leaves the motion's own
+// curve unchanged, even if that curve is noisy. Returns nothing if there is no Bezier span on that side.
 std::optional<glm::dvec3> graph_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 // Returns the tangent of a key that gives the channels these slopes.
 glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track, int frame, const glm::dvec3& speeds);
-// Returns the number of frames from a key to the end of its handle, which is a third of the span. Returns nothing if
-// there is no Bezier span on that side.
+// Returns the number of frames from a key to the end of its handle, which is a third of the frames to the next key on
+// that side. Returns nothing if there is no Bezier span on that side.
 std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 
 // ---- The view

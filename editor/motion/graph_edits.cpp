@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFurthest = 1e7;  // frame numbers are clamped to plus or minus this
 
-// For each track, the frames of its keys and the channels that are selected at each.
+// For each track, the frames at which keys are selected, and for each frame the selected channels (X, Y, Z).
 using FramesOfTracks = std::map<GraphTrack, std::map<int, glm::bvec3>>;
 
 FramesOfTracks by_track(const std::set<GraphKey>& keys) {
@@ -50,8 +50,8 @@ KeyShape freed(const GraphCurves& curves, const GraphTrack& track, int frame, Ke
 }
 
 // Returns the tangent of a rotation key after its angles have changed from `before` to `after` (degrees). The new
-// tangent gives each channel its old slope times its factor. In gimbal lock, a part of the tangent belongs to no
-// channel; this part does not change.
+// tangent gives each channel its old slope, multiplied by the channel's factor in `factors`. In gimbal lock, a part of
+// the tangent belongs to no channel; this part does not change.
 glm::dvec3 tangent_at_angles(const glm::dvec3& tangent, const glm::dvec3& before, const glm::dvec3& after,
                              const glm::dvec3& factors) {
   const glm::dvec3 speeds = channel_speeds(glm::radians(before), tangent);
@@ -83,8 +83,8 @@ void change_value(const GraphCurves& curves, Keys& keys, const GraphTrack& track
   if (shape.handles == HandleKind::Aligned || shape.handles == HandleKind::Free) put_shape(keys, track, frame, shape);
 }
 
-// Returns way(key, next key), the difference from a key's value to that of the next key, and the number of frames
-// between the two. Returns nothing for the last key.
+// Calls way() with the values of a key and of the next key, and returns the result and the number of frames between the
+// two keys. Returns nothing for the last key.
 template <class Value, class Way>
 std::optional<std::pair<glm::dvec3, int>> way_on(const std::map<int, Value>& keys, int frame, const Way& way) {
   const auto key = keys.find(frame);

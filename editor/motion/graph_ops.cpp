@@ -53,7 +53,7 @@ void change(Context& context, const std::string& label,
   edit_clip(context, label, PoseThen::FromClip, [&](Clip& clip) { clip.keys = next; });
 }
 
-// Returns true if keys are selected and `is` holds for the shape of each.
+// Returns true if keys are selected and is() returns true for the shape of each selected key.
 bool all_chosen(const Context& context, const std::function<bool(const KeyShape&)>& is) {
   const std::set<GraphKey> chosen = chosen_graph_keys(context);
   return !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](const GraphKey& key) {

@@ -19,9 +19,9 @@ namespace {
 
 // Widths, pixels at scale 1: the list of tracks, the numbers beside the plot, a channel's button.
 constexpr float kList = 176, kValues = 62, kButton = 20;
-constexpr float kLeastValues = 26;  // the values beside the plot are at least this far apart, pixels at scale 1
+constexpr float kLeastValues = 26;  // the numbers beside the plot are at least this far apart, pixels at scale 1
 constexpr int kMostTicks = 1000;
-// If frames are farther apart than this, curves are also drawn between frames; pixels at scale 1.
+// If neighbouring frames are farther apart than this, curves are also sampled between frames; pixels at scale 1.
 constexpr float kFine = 5;
 constexpr float kKeyRadius = 4, kHandleRadius = 3.5f;
 constexpr const char* kAxes[] = {"X", "Y", "Z"};
@@ -167,7 +167,7 @@ void draw_curves(Context& context) {
     }
 }
 
-// Draws the keys of one track. Of keys that are drawn at the same point, only the first key and the selected keys are
+// Draws the keys of one track. If several keys lie at the same point, only the first of these and the selected keys are
 // drawn.
 void draw_keys_of(Context& context, const GraphTrack& track) {
   const Look& look = context.ui->look;

@@ -19,15 +19,16 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kReach = 8;       // the pointer hits a key or a handle's end at most this far away, pixels at scale 1
-constexpr float kStart = 3;       // the pointer moves this far before a press on a key drags it, pixels at scale 1
-constexpr float kLeastThird = 2;  // a handle that would be less wide is not drawn, pixels at scale 1
-constexpr double kStep = 1.25, kMostFrames = 1e7;  // zoom factor per wheel step; zooming out stops at this many frames
-constexpr double kLeastValues = 1e-3, kMostValues = 1e7;  // zooming keeps the range of shown values between these
-// A move changes a key by at most this, in frames or in values.
+constexpr float kReach = 8;  // the pointer hits a key or a handle's end at most this far away, pixels at scale 1
+constexpr float kStart = 3;  // a press on a key becomes a drag after the pointer has moved this far, pixels at scale 1
+constexpr float kLeastThird = 2;                   // a handle narrower than this is not drawn, pixels at scale 1
+constexpr double kStep = 1.25, kMostFrames = 1e7;  // zoom factor per wheel step; the most frames that the graph shows
+// Zooming keeps the height of the plot between these limits, degrees or mm.
+constexpr double kLeastValues = 1e-3, kMostValues = 1e7;
+// A drag moves a key by at most this: frames, and degrees or mm.
 constexpr double kFurthestMove = 1e7;
 
-// Shows these keys instead of the clip's keys, in the graph and in the body's pose.
+// Shows `keys` instead of the clip's keys, in the graph and in the body's pose.
 void preview(Context& context, Keys keys) {
   Graph& graph = graph_of(context);
   const ClipOnRig* on_rig = clip_on_rig(context);
@@ -158,7 +159,7 @@ class ChangingGraphKeys final : public Modal {
                                           : std::string(time) + ", " + value);
   }
 
-  // Computes the maps that scale the keys, in time about the play head and in value about the middle of the keys'
+  // Computes the linear maps that scale the keys: frames about the play head, and values about the middle of the keys'
   // values.
   void scale() {
     const auto ratio = [](float reach, float way) { return std::abs(reach) < 1 ? 1.0 : (reach + way) / double{reach}; };

@@ -26,7 +26,7 @@ void press_graph(Context& context);
 enum class GraphChange { Move, Scale, Duplicate };
 void begin_changing_graph_keys(Context& context, GraphChange change);
 void pan_graph(Context& context);
-// Zooms about the pointer's position by the rotation of the mouse wheel.
+// Zooms the graph by the rotation of the mouse wheel. The point under the pointer keeps its position.
 enum class ZoomAxes { Both, Time, Value };
 void zoom_graph(Context& context, ZoomAxes axes);
 

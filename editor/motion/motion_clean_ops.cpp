@@ -38,10 +38,10 @@ enum class Becomes { NewClip, SameClip };
 // playing range.
 struct Cleaning {
   std::string label, made;  // label: name of the edit; made: suffix of the new clip's name
-  double smooth = 0;        // cutoff frequency of the smoothing filter, Hz; 0: not filtered
+  double smooth = 0;        // cutoff frequency of the smoothing filter, Hz; 0: no smoothing
   bool plants_feet = false;
   std::optional<Plant> hold;
-  bool stays_where_it_is = false;  // true: the limb is held at its position in the first frame of the hold
+  bool stays_where_it_is = false;  // true: the limb is held at the position that it has in the first frame of the hold
   double ease = 0.15;              // time in which a limb moves to the held position and back, s
   struct Gap {
     int first = 0, last = 0;
@@ -186,9 +186,10 @@ Result clean(const ClipOnRig& clip, int first, int last, Cleaning cleaning, Prog
 
 bool keeps_in_place(const Clip& clip) { return clip.motion && clip.retarget.travel != Travel::Free; }
 
-// Returns true if the cleaning lets the body travel, although the clip's root motion keeps it in place: planted feet
-// are found only in a travelling body, because a foot slides over the ground while the body stays in place. Returns
-// false if keys of the body's shift or constraints rely on the body's position.
+// Returns true if the cleaning lets the body travel, although the clip's root motion setting keeps the body in place.
+// Planting feet needs this: if the body stays in place, each foot slides over the ground, and no standing foot is
+// found. Returns false if the clip has constraints or keys of the body's translation, because these rely on the body's
+// position.
 bool is_let_go(const Clip& clip, const Cleaning& cleaning) {
   return cleaning.plants_feet && keeps_in_place(clip) && clip.keys.root.empty() && !clip.constraints;
 }
@@ -275,7 +276,8 @@ void ask_cleaning(Context& context) {
        [cleaning_of](Context& c, const std::vector<FormField>& fields) { start_cleaning(c, cleaning_of(fields)); }}));
 }
 
-// Reads "x, y, z". Throws NotYet if the text is something else, and Error if the position is beyond kFarthest.
+// Reads a position from a text of the form "x, y, z". Throws NotYet if the text has another form, and Error if a
+// coordinate is beyond kFarthest.
 glm::dvec3 position_in(const std::string& text) {
   glm::dvec3 position(0);
   int end = 0;
@@ -294,7 +296,7 @@ std::string position_text(const glm::dvec3& position) {
   return text;
 }
 
-// The fields of the form that holds a limb.
+// The fields of the form in which the user sets how a limb is held in place, in order.
 enum HoldField { kLimb, kFrom, kTo, kPlace, kPosition, kEase, kResult };
 enum class HoldPlace { WhereItIs, CrossHair, Position };
 
@@ -303,7 +305,8 @@ glm::dvec3 hold_position(const Views& views, const std::vector<FormField>& field
                                                                               : views.cross_hair;
 }
 
-// Returns the selected limb's position in the first frame of the hold; nothing if no pose of that frame is known.
+// Returns the position, in the first frame of the hold, of the limb that is selected in the form. Returns nothing if
+// the pose of that frame is not known.
 std::optional<glm::dvec3> place_before_hold(const Context& context, const std::vector<FormField>& fields) {
   const ClipOnRig* clip = context.timeline->prepared.get();
   if (!clip || clip->clip().get() != shown_clip(context.document()) || !clip->problem().empty()) return {};

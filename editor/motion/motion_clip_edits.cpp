@@ -26,10 +26,10 @@ namespace limber::editor {
 
 namespace {
 
-// Length units, in mm, among which the unit of a BVH file is selected; 0: found by fitting the motion to the rig.
+// The choices for the length unit of a BVH file, mm. 0: the unit is found by fitting the motion to the rig.
 constexpr double kUnits[] = {0, 1, 10, 1000, 25.4};
 
-// A motion that was read from a file, before the user confirms its import.
+// A motion that was read from a file, and whose import the user has not confirmed yet.
 struct Incoming {
   std::shared_ptr<const Motion> motion;
   std::string name;

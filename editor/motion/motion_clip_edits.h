@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Imports and selects motion clips, and returns how a clip's joints are matched to the bones of the rig.
+// Imports and selects motion clips, and tells how the joints of a clip's motion are matched to the bones of the rig.
 #pragma once
 
 #include <string>
@@ -12,10 +12,10 @@ namespace limber::editor {
 
 struct Context;
 
-// The number of bones of the rig that a clip moves, and how certain their matches are.
+// How many bones of the rig a clip moves, and how many of these bones are matched to joints with certainty.
 struct Matching {
   int bones = 0, joints = 0;  // number of bones that the clip moves, and of the motion's joints that move them
-  int sure = 0;               // number of bones that match a joint's name with certainty
+  int sure = 0;               // number of bones whose match with a joint is certain
 };
 Matching matching_of(const ClipOnRig& clip);
 int moved_bones(const ClipOnRig& clip);
@@ -30,10 +30,10 @@ RetargetMap map_in_use(const ClipOnRig& clip);
 Clip clip_for(const Document& document, std::shared_ptr<const Motion> motion, const std::string& name, int start = 0);
 
 // Adds a clip that a background task has computed from another clip of the document, or replaces that other clip. Then
-// goes to `frame`; without `frame`, stays at the current frame. Both are clamped to the playing range. Throws Error if
-// the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
-//   ratio  number of frames of the new clip for each frame of the source. When the source is replaced, strips of it
-//          then play the same part of the motion in the new clip
+// goes to `frame`; without `frame`, stays at the current frame. The frame is clamped to the playing range. Throws Error
+// if the document no longer has the source clip, or if its rig is not the one for which the clip was computed.
+//   ratio  number of frames of the new clip for each frame of the source. When the source is replaced, strips that
+//          played the source then play the same part of the motion from the new clip
 void take_in_clip(Context& context, const std::shared_ptr<const Clip>& source,
                   const std::shared_ptr<const Armature>& rig, const std::string& label, Clip clip, bool is_new,
                   std::optional<double> frame = {}, double ratio = 1);

@@ -30,7 +30,7 @@ namespace {
 
 const FileFilter kMaps{"Retarget maps", {".json"}};
 
-// Opens a dialog that asks for a new name of the shown clip. A number is added when another clip has that name.
+// Opens a dialog that asks for a new name of the shown clip. If another clip has that name, a number is added.
 void ask_clip_name(Context& context) {
   context.dialogs->open(make_form({"Rename clip",
                                    "Changes the name of the shown clip.",
@@ -91,8 +91,8 @@ Operator reference(const char* id, const char* label, const char* description, R
 }
 
 // Returns an operator that sets the kind of rest pose of the clip or of the rig, such as a T-pose. The operator
-// discards the rotation offsets at rest that were read from a retarget map file. They would override the offsets that
-// are computed for the new rest pose.
+// discards the rotation offsets between the two rest poses that were read from a retarget map file, because they would
+// override the offsets that are computed for the new rest pose.
 //   whose  which member of RestStances to set: `source` for the clip, `rig` for the rig
 Operator rest(const char* id, const char* label, const char* description, RestStance RestStances::*whose,
               RestStance which) {

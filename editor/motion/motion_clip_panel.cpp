@@ -57,8 +57,8 @@ void draw_match(Context& context, Column& column, const ClipOnRig& clip) {
   operator_button(context, "motion.map", {{rect.high.x - button, rect.low.y}, rect.high}, "Map...");
 }
 
-// Draws a note that names the joints whose rest rotation was changed to get the rest pose that the user selected, such
-// as a T-pose. They are changed where the rest pose in the motion's file differs from the selected one.
+// Draws a note that names the joints whose rest rotation was changed, because the rest pose in the motion's file
+// differs from the rest pose that the user selected, such as a T-pose.
 void draw_turned(Context& context, Column& column) {
   const Look& look = context.ui->look;
   const ClipOnRig* clip = clip_on_rig(context);
@@ -89,7 +89,7 @@ void draw_motion(Context& context, Column& column) {
       clip = shown_clip(context.document());  // read again: the user may have selected another clip in the row above
       const ClipOnRig* on_rig = clip_on_rig(context);
       if (clip && clip->motion && on_rig) {
-        // Read now, because the fields below may replace the clip and free `on_rig`.
+        // The settings are copied here, because the fields below may replace the clip and free `on_rig`.
         bool mirrored = clip->retarget.mirror;
         const std::string problem = on_rig->problem();
         draw_match(context, column, *on_rig);

@@ -24,7 +24,7 @@ namespace {
 
 constexpr char kPingPongIcon[] = "\uf07e";
 constexpr double kSpeeds[] = {0.1, 0.25, 0.5, 1, 2, 4};
-// Zoom factor per wheel step; zooming out stops at this many frames.
+// Zoom factor per wheel step, and the most frames that the timeline shows.
 constexpr double kZoomStep = 1.25, kMostFrames = 1e7;
 
 std::string needs_clip(const Context& context) {
@@ -132,8 +132,8 @@ void delete_chosen_keys(Context& context) {
   edit_clip(context, "Delete keys", PoseThen::FromClip, [&](Clip& clip) { delete_clip_keys(clip, chosen); });
 }
 
-// Sets the playing range from the first to the last selected key. When fewer than two keys are selected, sets it to the
-// frames that the timeline shows.
+// Sets the playing range to the frames from the first to the last selected key. If fewer than two keys are selected,
+// sets the playing range to the frames that the timeline shows.
 void range_of_chosen(Context& context) {
   const Timeline& timeline = *context.timeline;
   const bool keys = timeline.chosen.size() > 1;

@@ -14,13 +14,14 @@ namespace limber::editor {
 
 namespace {
 
-// Colours of the path before and after the shown frame (as the ghosts of the onion skin have), and of the keys'
-// diamonds (as in the timeline). ABGR (RGB: 4B8EF5, 5AD19A, F5A623).
+// Colours in ABGR: of the path before the shown frame (RGB 4B8EF5) and after it (RGB 5AD19A), the same as those of the
+// onion skin, and of the diamonds at keys (RGB F5A623), the same as in the timeline.
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A, kKey = 0xFF23A6F5;
 // Longest path, in frames; a longer playing range shows only its first frames.
 constexpr int kMostFrames = 100'000;
 constexpr std::size_t kMostBones = 8;  // if more bones are selected, only the active bone has a path
-constexpr float kRoom = 5;  // a frame gets a dot only this far or farther from the last dot, pixels at scale 1
+// A frame has a dot if its point lies at least this far from the last dot, pixels at scale 1.
+constexpr float kRoom = 5;
 constexpr std::chrono::milliseconds kTime{8};  // time limit per drawn frame for computing new points
 
 void add_points(const ClipOnRig& clip, MotionPaths& paths) {

@@ -21,7 +21,8 @@ struct MotionPaths {
   std::vector<int> bones;
   int first = 0, last = -1;
 
-  // For each bone, the positions of its tip by frame, beginning with the frame `first`; world, mm.
+  // Positions of the bones' tips, world, mm: one list for each frame from `first`, with one position for each of
+  // `bones`.
   std::vector<std::vector<glm::dvec3>> tips;
 };
 

@@ -29,7 +29,8 @@ std::string needs_clip_and_rig(const Context& context) {
 
 struct Wanted {
   ReduceSettings settings;
-  double plant_mm = 0;  // the keys may move planted feet and hands by at most this, mm; 0: not limited
+  // Planted feet and hands may differ by at most this from their positions in the motion, mm; 0: not limited.
+  double plant_mm = 0;
   bool is_new = true;
 };
 

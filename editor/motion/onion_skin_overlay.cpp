@@ -21,8 +21,8 @@ namespace {
 
 // Colours of ghosts before and after the shown frame, in ABGR (in RGB: 4B8EF5, 5AD19A).
 constexpr Colour kPast = 0xFFF58E4B, kComing = 0xFF9AD15A;
-// A bone is drawn as a kite. Distance from the head to its widest point, and half the width there, as shares of the
-// bone's length.
+// A bone is drawn as a kite. These are the distance from the bone's head to the kite's widest point, and half the width
+// there, as shares of the bone's length.
 constexpr double kWidest = 0.12, kHalfWidth = 0.0425;
 
 void draw_ghost(Ui& ui, const ViewProjection& view, const Armature& armature, const Pose& pose, Colour colour) {
@@ -45,9 +45,10 @@ void draw_ghost(Ui& ui, const ViewProjection& view, const Armature& armature, co
 // The surface from which outlines are made is simplified to at most this many vertices.
 constexpr std::int64_t kMostVertices = 20'000;
 constexpr float kCell = 2;  // edge of the grid cells from which silhouette() finds outlines, pixels at scale 1
-// Time limit per drawn frame for new outlines. At least one missing outline is computed in each drawn frame.
+// Time limit for computing outlines in one drawn frame. At least one missing outline is computed, even if this takes
+// longer.
 constexpr std::chrono::milliseconds kTime{8};
-constexpr std::size_t kMostKept = 1000;  // all cached outlines are discarded when there are more than this
+constexpr std::size_t kMostKept = 1000;  // if the cache holds more outlines than this, all of them are discarded
 
 void take_surface(Context& context, OnionOutlines& outlines) {
   const Document& document = context.document();
@@ -66,8 +67,8 @@ void take_surface(Context& context, OnionOutlines& outlines) {
   });
 }
 
-// Returns numbers that identify a view: its rectangle, and the pixels and view directions of four fixed points. Equal
-// numbers mean equal views.
+// Returns numbers that identify a view: its rectangle, and for four fixed points their pixels and the directions in
+// which they are seen. Two views with equal numbers are equal.
 std::vector<double> view_of(const ViewProjection& view) {
   std::vector<double> numbers{view.place.rect.low.x, view.place.rect.low.y, view.place.rect.high.x,
                               view.place.rect.high.y};
@@ -126,7 +127,7 @@ void draw_onion_skin(Context& context) {
   const FrameRange range = playing_range(context.document());
   const auto began = std::chrono::steady_clock::now();
   bool made_one = false, waits = false;
-  // The ghosts furthest in time are drawn first, so that nearer ones lie on top.
+  // Ghosts of frames far from the shown frame are drawn first, so that ghosts of nearer frames lie on top.
   for (int step = onion.count; step >= 1; --step)
     for (const int side : {-1, 1}) {
       const int frame = shown_frame(context) + side * step * onion.step;

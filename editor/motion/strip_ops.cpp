@@ -99,8 +99,8 @@ void make_strips(Context& context) {
   choose_strip(context, name);
 }
 
-// Returns the active track if it has room for the strip, else the lowest track above it that has room, else a new
-// track.
+// Returns the index of the lowest track from `from` upwards that has room for the strip. If there is none, adds a track
+// and returns its index.
 std::size_t track_for(Strips& strips, const Strip& strip, std::size_t from, double rate) {
   for (std::size_t t = from; t < strips.tracks.size(); ++t)
     if (has_room(strips.tracks[t], strip.start, std::max(strip.start + 1, end_of(strip, rate)), rate)) return t;

@@ -20,7 +20,8 @@ namespace {
 
 constexpr float kList = 176, kSwitch = 20;  // widths of the list of tracks and of a track's switch, pixels at scale 1
 constexpr float kRounding = 4, kLeastName = 18;
-constexpr float kLeastCycle = 6;  // px at scale 1; no lines between a strip's repeats if a repeat is narrower than this
+// If a repeat of a strip is narrower than this, no lines mark the repeats, pixels at scale 1.
+constexpr float kLeastCycle = 6;
 
 // ---- The list of tracks
 
@@ -206,7 +207,7 @@ void draw_strips(Context& context, const Rect& rect) {
   scroll_tracks(context, 0);  // keeps the scroll position valid if tracks were removed
   register_widget(context.ui, "strips", view.rows);
   draw_tracks(context, list);
-  if (!shown_strips(context)) return;  // a switch of a track may have replaced the document
+  if (!shown_strips(context)) return;  // a click on a track's switch may have replaced the document
   ImGui::PushClipRect(im(view.rows.low), im(view.rows.high + glm::vec2(look.px(kRulerEnds), 0)), true);
   draw_rows(context);
   ImGui::PopClipRect();

@@ -28,8 +28,8 @@ struct StripNumber {
   std::function<void(Strip&, double)> set;
 };
 
-// Draws the field. The strips and the body show the change while the user edits the number, and one edit is committed
-// at the end.
+// Draws the number field. While the user edits the number, the strips and the body show the change; when the user has
+// finished, one edit is committed.
 void draw_number(Context& context, const Rect& rect, const StripNumber& number) {
   auto& edited = context.field_edit->number;
   // The field is named after its strip, so that what is typed for one strip never changes another.

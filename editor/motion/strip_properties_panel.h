@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Section of the Pose workspace with the settings of the active strip, while strips are shown.
+// Section of the Pose workspace's sidebar with the settings of the active strip. It is drawn only while the timeline
+// shows strips.
 #pragma once
 
 #include "editor/ui/section.h"

@@ -19,16 +19,18 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kEnd = 6;          // the pointer trims a strip this close to the strip's end, pixels at scale 1
-constexpr float kSnap = 8;         // a strip snaps to a frame this close to it, pixels at scale 1
-constexpr float kStart = 3;        // the pointer moves this far before a press drags, pixels at scale 1
-constexpr double kFurthest = 1e7;  // frames; a drag moves strips at most this far
+constexpr float kEnd = 6;  // a drag that begins at most this far from a strip's end trims the strip, pixels at scale 1
+// A dragged strip snaps to a frame that is at most this far from its start or end, pixels at scale 1.
+constexpr float kSnap = 8;
+constexpr float kStart = 3;        // a press becomes a drag after the pointer has moved this far, pixels at scale 1
+constexpr double kFurthest = 1e7;  // a drag moves strips by at most this many frames
 
 double frames_of_pixels(const Timeline& timeline, float pixels) {
   return pixels / std::max(1.0f, timeline.ruler.width()) * timeline.window.count;
 }
 
-// Returns the frames to which dragged strips snap: the play head, and the ends of strips that stay.
+// Returns the frames to which dragged strips snap: that of the play head, and the starts and ends of all strips that
+// are not dragged.
 std::vector<int> snap_frames(const Context& context, const Strips& strips, const std::set<std::string>& moving) {
   std::vector<int> frames{shown_frame(context)};
   for (const StripTrack& track : strips.tracks)
@@ -80,7 +82,8 @@ struct Begun {
     change_strips(context, label, [&](Strips& next) { next = *changed; });
   }
 
-  // Shows the strips moved as `wanted`, as far as they fit and after snapping, and returns the move that is shown.
+  // Previews the selected strips after the move `wanted`. The move is changed if the strips snap to a frame or do not
+  // fit at the new position. Returns the changed move.
   StripMove move(Context& context, StripMove wanted, bool snaps) const {
     std::optional<int> snap;
     if (snaps) {
@@ -145,7 +148,8 @@ class MovingStrips final : public Modal {
 
  private:
   bool show(Context& context) {
-    if (!begun_.is_shown(context)) return drop(context);  // a job that ended may have shown another clip
+    // A background job that ended meanwhile may have shown another clip.
+    if (!begun_.is_shown(context)) return drop(context);
     const bool is_typed = number_.typed();
     const double frames = is_typed ? number_.value() : frames_of_pixels(*context.timeline, way_.x);
     StripMove wanted{static_cast<int>(std::round(std::clamp(frames, -kFurthest, kFurthest))), 0};
@@ -263,7 +267,7 @@ void press_strips(Context& context) {
   const int t = track_at(context, context.ui->input.pointer.y);
   if (t < 0 || t >= std::ssize(strips.tracks)) return draw_strip_box(context);
   const auto track = static_cast<std::size_t>(t);
-  // Where strips overlap, the later one is drawn on top, so it is hit first.
+  // Where strips overlap, the later strip in the list is drawn on top, so it is tested first.
   for (std::size_t i = strips.tracks[track].strips.size(); i-- > 0;) {
     const Rect place = strip_rect(context, {track, i});
     if (!place.contains(context.ui->input.pointer)) continue;

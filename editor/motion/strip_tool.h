@@ -12,8 +12,8 @@ namespace limber::editor {
 struct Context;
 
 // Handles a press of the left button. On an end of a strip, trims it. On a strip, selects it (Shift: adds it to the
-// selection, or removes it when the button is released at once) and drags the selected strips. Elsewhere, begins a
-// rectangle that selects the strips that it touches.
+// selection, or removes it when the button is released without a drag) and drags the selected strips. Elsewhere, begins
+// a rectangle that selects the strips that it touches.
 void press_strips(Context& context);
 // Begins a modal tool that moves the selected strips in time by the pointer or a typed number.
 void begin_moving_strips(Context& context);

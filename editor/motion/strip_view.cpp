@@ -16,7 +16,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr float kGap = 1;  // free height above and below a strip in its track, pixels at scale 1
+constexpr float kGap = 1;  // distance of a strip from the upper and lower edge of its track, pixels at scale 1
 
 // Applies an edit of the clip's strips. If the clip had no strips, or its playing range was the range of frames that
 // the strips filled, the playing range becomes the range that the changed strips fill.
@@ -36,7 +36,7 @@ Strip* find_active(Strips& strips, const std::string& name) {
   return place ? &strips.tracks[place->track].strips[place->index] : nullptr;
 }
 
-// Applies the edit to one strip, and sorts its track again.
+// Applies the edit to the strip with this name, and sorts the strips of its track by their starts again.
 void change_one(Strips& strips, const std::string& name, const std::function<void(Strip&)>& edit) {
   Strip* strip = find_active(strips, name);
   if (!strip) return;
@@ -65,7 +65,8 @@ void show_strips(Context& context, bool on) {
     Arrangement& arrangement = context.screen->arrangement();
     arrangement.timeline = true;
     arrangement.console = false;
-    context.timeline->chosen.clear();  // the rows of keys are hidden, and hidden keys must not be changed
+    // Deselects the keys in the timeline's rows: these rows are now hidden, and hidden keys must not be changed.
+    context.timeline->chosen.clear();
   }
   context.timeline->shows_strips = on;
   context.ui->touch();

@@ -18,7 +18,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr double kWindowRate = 60;  // at this drawing rate or above, playing is not reported as slow, frames per second
+constexpr double kWindowRate = 60;  // playing is reported as slow only if fewer frames than this are drawn per second
 
 std::shared_ptr<const Clip> clip_part(const Document& document) {
   return document.clips.empty() ? nullptr : document.clips[static_cast<std::size_t>(document.clip)];
@@ -31,8 +31,8 @@ std::shared_ptr<const Pose> pose_part(const Armature& armature, Pose pose) {
 // Returns whether the clip moves the rig, by a retargeted motion, by strips, by keys or by constraints.
 bool moves(const ClipOnRig& clip) { return clip.has_base() || !clip.clip()->keys.empty() || clip.constraints(); }
 
-// Returns the frame to show after a playing time, counted from the start of the playing range: 0 to count - 1. Returns
-// nothing when the clip has played to the end of the range and stops there.
+// Returns the frame to show after a playing time. Frames are counted from the start of the playing range: 0 to count -
+// 1. Returns nothing when the clip has played to the end of the range and stops there.
 //   frames  playing time since the start of the range, in frames
 //   count   number of frames of the range
 std::optional<int> frame_after(double frames, int count, AtEnd at_end) {

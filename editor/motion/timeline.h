@@ -46,7 +46,7 @@ struct Timeline {
     AtEnd at_end = AtEnd::Loop;
     double speed = 1;
     // The drawing rate while the clip plays. counted_since: time at which the count of drawn frames began, s; pictures:
-    // number of frames drawn since that time; pictures_per_second: measured rate, 0 if drawing is fast enough.
+    // number of frames drawn since that time; pictures_per_second: measured drawing rate, 0 if drawing is fast enough.
     double counted_since = 0, pictures_per_second = 0;
     int pictures = 0;
   } play;
@@ -59,7 +59,7 @@ struct Timeline {
     int count = 3, step = 10;
     std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: none yet
   } onion;
-  struct {  // the paths of the selected bones' tips
+  struct {  // the motion paths, which are the lines along which the tips of the selected bones move
     bool on = false;
     std::shared_ptr<MotionPaths> kept;  // the computed points; null: none yet
   } paths;
@@ -81,9 +81,10 @@ struct Timeline {
   struct {
     std::string clip;  // text with the name and frames of the clip to which the shown frames were fitted
     double low = 0, count = 250;
-    std::optional<int> followed;  // play head's frame when follow_head() ran last
+    std::optional<int> followed;  // frame of the play head at the last call of follow_head()
   } window;
-  // Rows: ruler, markers, clip, keys, and the area of all rows; pixels, empty: not shown.
+  // Rectangles of the ruler, of the rows of markers, clip and keys, and of all these rows together, pixels; empty: not
+  // shown.
   Rect ruler, marks, lane, keys, area;
 
   std::int64_t revision = -1;  // revision of the undo history after the last frame change; -1: none

@@ -177,8 +177,8 @@ class Transport {
     words("Frame");
     number("Frame", shown_frame(context_), {}, [this](int frame) {
       stop_playing(context_);
-      // A typed frame outside a clip that has a motion moves to the clip's nearest frame. A clip without a motion has
-      // no such limits, because keys may be set at any frame.
+      // A typed frame outside a clip with a motion is clamped to the clip's frames. For a clip without a motion, the
+      // frame is not clamped, because keys may be set at any frame.
       const Clip* clip = shown_clip(context_.document());
       const FrameRange all = clip && clip->motion ? all_frames(*clip) : FrameRange{frame, frame};
       go_to_frame(context_, std::clamp(frame, all.low, all.high));
@@ -331,7 +331,7 @@ void draw_curve(Context& context, const Rect& bar) {
   const auto& angles = timeline.curve.angles;
   float most = 1;
   for (const glm::vec2& angle : angles) most = std::max({most, angle.x, angle.y});
-  // The curve is lower than the bar, so that there is room for the clip's name above the curve.
+  // The curve's highest point stays below the top of the bar, so that the clip's name has room above the curve.
   const float low = bar.high.y - context.ui->look.px(5), height = bar.height() - context.ui->look.px(32);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   ImGui::PushClipRect(im(bar.low), im(bar.high), true);
@@ -410,7 +410,8 @@ void place_rows(Context& context, const Rect& rect) {
   };
   context.screen->timeline_area = timeline.area = {{left, y}, {right, rect.high.y}};
   timeline.ruler = row(look.px(kRulerHeight));
-  // If the timeline is low, its rows are thinner. If it is very low, the row of markers is left out.
+  // If there is little height for the timeline, its rows are thinner. If there is very little, the row of markers is
+  // left out.
   const float rest = rect.high.y - y;
   timeline.marks = rest > look.px(kMarks + 34 + 20) ? row(look.px(kMarks))
                    : rest >= look.px(3 * kThinRow)  ? row(look.px(kThinRow))

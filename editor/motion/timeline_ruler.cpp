@@ -30,7 +30,7 @@ std::string frame_text(int frame) { return "frame " + std::to_string(frame); }
 // as the ruler does. While the line is left or right of the shown frames, the tab stays at that end of the ruler.
 struct Head {
   float x;
-  int beyond;  // -1: left of the shown frames; 1: right of them; 0: visible
+  int beyond;  // where the play head is: -1 left of the shown frames, 1 right of them, 0 within them
   std::string text, other;
   Rect tab;
 };

@@ -18,7 +18,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFurthest = 1e7;     // frame numbers are clamped to plus or minus this
-constexpr double kLeastScale = 0.01;  // smaller factors of time, in absolute value, are raised to this
+constexpr double kLeastScale = 0.01;  // a factor that scales the keys' frames has at least this absolute value
 
 void show_under_pointer(Context& context) {
   const double frame =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Converts between frames and pixels of the timeline, fits the shown frames, and begins what the pointer does in the
-// timeline: scrubbing, selecting and changing keys, and panning.
+// Converts between frames and pixels of the timeline, fits the shown frames to the keys or the motion, and handles the
+// pointer in the timeline: scrubbing, selecting and changing keys, and panning.
 #pragma once
 
 namespace limber::editor {
