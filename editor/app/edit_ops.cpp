@@ -18,8 +18,8 @@ namespace {
 std::string nothing_to_undo(const Context& context) { return context.history->can_undo() ? "" : "Nothing to undo"; }
 std::string nothing_to_redo(const Context& context) { return context.history->can_redo() ? "" : "Nothing to redo"; }
 
-// Returns why the command Rename cannot run, or "" if it can. It renames the selected tissue, the selected bone or the
-// shown result. A list that has the keyboard renames its focused row without this command.
+// Returns why the command Rename cannot run, or "" if it can. The command renames the selected tissue, the selected
+// bone or the shown result. A list that has the keyboard focus renames its focused row itself, without this command.
 std::string nothing_to_rename(const Context& context) {
   return context.menus->shown_popup == "Result" || context.selection->tissue || needs_bone(context).empty() ||
                  shown_result(context)
@@ -47,8 +47,8 @@ void rename(Context& context) {
   begin_renaming(context.ui, "tissues" + std::to_string(tissue->label), tissue->name);
 }
 
-// Moves one step back or forward in the undo history. Then selects the bones that the step restored. If there are
-// none, selects the bones that have the names of the bones selected before.
+// Moves one step back or forward in the undo history. Then selects the bones that this step has added to the rig. If it
+// has added none, selects the bones that have the names of the previously selected bones.
 void step(Context& context, bool (History::*go)()) {
   const std::shared_ptr<const Armature> before = context.document().armature;
   ((*context.history).*go)();

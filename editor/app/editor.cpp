@@ -32,9 +32,11 @@ namespace {
 constexpr double kCameraMove = 0.18;  // duration of a camera move, s
 constexpr double kLongestRest = 60;   // the editor waits at most this long for an event before it draws again, s
 constexpr double kJobPulse = 0.1;     // time between frames while a job runs, s
-// Typed keys cause at most this many extra draws of the panels per frame; later keys wait.
+// In one frame, the panels are drawn at most this many extra times to handle typed keys. Further keys wait for the next
+// frame.
 constexpr int kMostTurns = 200;
-// Panels are drawn at most this many extra times per frame because a widget moved under the pointer.
+// If a widget has moved under the pointer while the panels were drawn, they are drawn again, at most this many times
+// per frame.
 constexpr int kMostAgain = 3;
 constexpr float kTurnSeconds = 1e-5f;  // ImGui's time step in an extra draw of the panels, s: almost no time passes
 constexpr double kUploadTime = 0.008;  // time limit per frame for uploading to the GPU, s: weights, images, bodies
@@ -189,8 +191,9 @@ void Editor::take_input() {
   dispatch(*this, events, before);
 }
 
-// Draws the panels again after each typed key that does more than insert a character, without drawing the views again.
-// The frame that is then shown reads the remaining input.
+// Handles all typed keys in one frame while a text field has the keyboard. A text field reads one group of keys each
+// time the panels are drawn. So the panels are drawn here, without the views, once for each group except the last; the
+// last group is read when the frame is drawn.
 void Editor::read_typed_text() {
   for (int turn = 0; turn < kMostTurns && (ui->keyboard.typed || ui->keyboard.waits()) && !host->events.empty();
        ++turn) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The editor: it owns the parts of a Context and draws the frames. frame() takes the input events, runs the operators
-// that they are bound to, and draws everything. Operators and panels do not know it; they get a Context.
+// that they are bound to, and draws everything. Operators and panels do not use the class Editor; they get a Context.
 #pragma once
 
 #include <memory>

@@ -15,7 +15,8 @@ namespace limber::editor {
 
 namespace {
 
-// Time from a change of the recent files until they are written, s. Changes in that time are written with the first.
+// The recent files are written this long after a change, s. All changes that the user makes within this time are
+// written together.
 constexpr double kRestBeforeWriting = 1;
 
 Path file_of(const Editor& editor) { return editor.folders->config / "remembered.json"; }

@@ -32,7 +32,8 @@ bool poll_jobs(Context& context) {
   if (!changed) return false;
   const auto volume = context.document().volume;
   if (volume != volume_before) {
-    // If the grid stays the same, only labels were edited, so the cameras and the selection do not change.
+    // If the grid stays the same, only labels were edited. Then the cameras do not move, and tissues stay selected if
+    // they still exist.
     if (volume && volume_before && volume->grid == volume_before->grid) {
       keep_present_tissues(context);
     } else {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The option --baked of `limber render`: files of baked joints, which `limber bake-joint` writes.
+// The option --baked of `limber render`: files of baked joints, which `limber bake-joint` writes. A baked joint stores
+// how the flesh around a joint differs between finite elements and blending by dual quaternions.
 #pragma once
 
 #include <string>

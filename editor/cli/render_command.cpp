@@ -203,7 +203,8 @@ PosedScene posed_scene(const Options& options, const Document& document, Progres
   const TissueVoxels tissue(*document.volume);
   scene.posed_from_rest = posed_from_rest(*document.armature, pose);
   const BakedJoints baked = baked_joints_for(options.baked, options.method, document, tissue, weights);
-  // "off": in pictures, joints rotate but do not glide (shift).
+  // The argument "off" says that the bones in this picture only rotate about their joints, without the small shifts
+  // that keep bones from overlapping.
   cmd::warn(doubts_of_baked(report_of_baked(baked, *document.armature, pose), "off"));
   if (options.preview) {
     LivePreview preview(document.volume, *document.tissues, tissue, weights, preview_step(tissue));

@@ -3,8 +3,9 @@
 
 namespace limber::editor {
 
-// A reference to a part of the editor's state. Its owner may set it later. Code that gets a constant Context cannot
-// change the part either. T may be an incomplete type; only who uses the part includes its header.
+// A reference to a part of the editor's state. The owner of the reference may set it later by refer_to(). Through a
+// constant Context, the part can only be read. T may be an incomplete type; only code that uses the part includes its
+// header.
 template <class T>
 class ContextPart {
  public:

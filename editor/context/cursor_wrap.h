@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keeps a long drag from ending at the edge of a view: when the pointer leaves a rectangle, it is moved ("leaps") to
-// the rectangle's opposite side. The leap does not count as a move of the user's hand. It is recognized by the
-// pointer's position, since moves from before the leap may arrive later. If the desktop refuses to move the pointer,
-// the drag goes on without leaps.
+// the rectangle's opposite side. The leap does not count as a move of the user's hand. The leap is recognized by the
+// pointer's position, because events of moves before the leap may arrive after the request for it. If the desktop
+// refuses to move the pointer, the drag goes on without leaps.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ class PointerWrap {
  private:
   std::optional<Rect> inside_;
   float margin_ = 0;
-  // The last leap, pixels, until the pointer's position shows that the leap happened; zero: none.
+  // A leap that was requested and that the pointer's position does not show yet, pixels; zero: there is no such leap.
   glm::vec2 awaited_{0};
 };
 

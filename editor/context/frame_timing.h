@@ -3,7 +3,7 @@
 // script's own clock is simulated.
 //
 // Each frame has two times in milliseconds: the time from its begin to its end, including waits for OpenGL, and the CPU
-// time of the drawing thread. The first is split into parts ("input", "body", "panels") in the order in which they
+// time of the drawing thread. The first time is split into parts ("input", "body", "panels") in the order in which they
 // ended. When a script runs, the time in which the window is painted for the script's pictures is not counted.
 #pragma once
 

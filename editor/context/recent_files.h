@@ -36,7 +36,7 @@ struct RecentFiles {
 // from these.
 struct RecentFilesOnDisk {
   RecentFiles contents;
-  std::vector<Recent> named;         // the recent files that have an operator which opens them
+  std::vector<Recent> named;         // the recent files for which operators such as "file.recent_1" exist
   std::optional<double> changed_at;  // time of the first change that is not written yet, seconds on the editor's clock
   bool failure_told = false;         // true: the user has been told that writing failed
 };

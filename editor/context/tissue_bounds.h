@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Computes each tissue's bounding box in voxels, in one pass over a volume. The boxes are kept, so that zooming to a
-// tissue needs no further pass.
+// Computes each tissue's bounding box in voxels, in one pass over a volume. The boxes are stored, so that zooming to a
+// tissue does not search the volume again.
 #pragma once
 
 #include <memory>

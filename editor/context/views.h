@@ -40,7 +40,7 @@ struct BodyView {
 
 struct SliceState {
   render::SliceCamera camera;
-  bool fitted = false;  // true: the camera shows the whole body; this has to wait until the view's size is known
+  bool fitted = false;  // true: the camera has been set to show the whole body, which needs the view's size
   std::unique_ptr<render::SliceView> picture, other;
 };
 
@@ -63,10 +63,10 @@ class ScratchFolder;
 
 // The grey image that was posed together with a result.
 struct PosedImage {
-  std::weak_ptr<const LabelVolume> result;  // the volume of the result together with which the image was posed
+  std::weak_ptr<const LabelVolume> result;  // the volume of the result that was posed together with the image
   std::shared_ptr<const GreyLevels> levels;
   std::shared_ptr<const ScratchFolder> folder;  // folder of `file`; deleted when no result needs the file any more
-  Path file;                                    // the posed image with the image's own values
+  Path file;                                    // file with the posed image, in the original image's grey values
 };
 
 struct Views {

@@ -10,9 +10,9 @@ namespace limber::editor {
 
 // Returns the scene without the elements that figures omit: background, grid and marks of selected objects.
 render::Scene figure_scene(render::Scene scene);
-// Returns the factor for the widths of lines and joints (Scene::line_scale) in the picture of a figure. It keeps the
-// ratio of these widths to the picture's height as on a screen. But it limits the widths on the page: they are at most
-// as wide as on a screen, and at least wide enough to print.
+// Returns the factor for the widths of lines and joints (Scene::line_scale) in the picture of a figure. With this
+// factor, the widths have the same ratio to the picture's height as on a screen. On the page, however, lines are at
+// most as wide as on a screen, and at least wide enough to print.
 float figure_line_scale(const FigureLayout& layout);
 
 using CameraAt = std::function<render::Camera(const glm::ivec2& size)>;

@@ -142,7 +142,7 @@ void FileBrowser::draw_list(Context& context, const Rect& rect) {
   const float date = look.px(110), size = look.px(80);
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(kRow)}};
   fill(head, look.theme.head);
-  // As in the rows below, the columns do not extend under the scroll bar, so each head stands above its column.
+  // The titles leave room for the scroll bar, as the rows below do, so that each title stands above its column.
   const float right = head.high.x - ImGui::GetStyle().ScrollbarSize - look.px(14), date_left = right - date,
               size_left = date_left - size;
   column_head(context, "Name", {{head.low.x + look.px(10), head.low.y}, {size_left, head.high.y}}, SortBy::Name,

@@ -96,7 +96,7 @@ std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
   return inputs;
 }
 
-// ---- reading in tasks, with a copy of the document made when the task began
+// ---- Reading files in background tasks. A task uses a copy of the document that was made when the task began
 
 // The content of a volume file: labels, a grey image, or both. A file is read as both if its values are whole numbers,
 // which may be labels, but are distributed like grey values.

@@ -59,8 +59,8 @@ struct LabelBrush {
 
 // Shows the labels of the running stroke in this frame's scene. Uploads only the changed voxels to the GPU.
 void show_label_stroke(Views& views, LabelBrush& brush);
-// After a stroke, makes the views show the painted volume (show_painted) or again the volume before the stroke,
-// without uploading the whole volume.
+// After a stroke, these functions make the views show the painted volume (show_painted) or again the volume before the
+// stroke (show_unpainted). They upload only the voxels that differ.
 void show_painted(Views& views, const LabelStroke& stroke);
 void show_unpainted(Views& views, const LabelStroke& stroke);
 // Returns the copy of the volume for the next stroke; null if there is none.

@@ -19,8 +19,8 @@ struct KnownBodyFrames {
 // rig.
 const BodyFrames& body_frames_of_rig(const Context& context);
 
-// Returns the document's pose with one angle of a joint changed. With Keep to joint limits on, the angle is clamped to
-// its range of motion (range_of_motion()), and bones are clamped to the rig's limits.
+// Returns the document's pose with one angle of a joint changed. With "Keep to joint limits" on, the angle is clamped
+// to its range of motion (range_of_motion()), and bones are clamped to the rig's limits.
 //   motion   index of the angle in JointMotions
 //   degrees  new angle, measured from the anatomical position
 Pose pose_at_angle(const Context& context, const SidedJoint& joint, std::size_t motion, double degrees);

@@ -20,7 +20,7 @@ namespace limber::editor {
 namespace {
 
 constexpr double kFarthest = 360;  // an angle beyond plus or minus this cannot be typed, degrees
-// Length that the slider shows beyond each end of the range, as a fraction of the range.
+// The slider extends beyond each end of the range of motion by this fraction of the range.
 constexpr double kBeside = 0.2;
 // An angle that exceeds the range by more than this is marked, degrees; numbers show one decimal.
 constexpr double kBeyond = 0.05;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Modal tools that drag a joint or a pole while the limb follows by inverse kinematics.
+// Modal tools that drag a joint or a pole while the limb follows by inverse kinematics. A pole is a point towards which
+// the middle joint of a limb, such as the elbow, is bent.
 #include <algorithm>
 #include <cmath>
 

@@ -26,8 +26,8 @@ int limb_of(const Armature& armature, int bone);
 // the bone's counterpart on the other side of the body. With X-mirror off, returns `next` unchanged.
 Pose mirrored_too(const Context& context, const Pose& before, Pose next);
 
-// Returns the pose with the rotations of `bones` restricted to their joint limits; unchanged while Keep to joint limits
-// is off.
+// Returns the pose with the rotations of `bones` restricted to their joint limits; unchanged while "Keep to joint
+// limits" is off.
 Pose limited(const Context& context, Pose pose, const std::vector<int>& bones);
 
 // Shows the changed pose without an edit, with the clip's constraints applied.

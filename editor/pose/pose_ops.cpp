@@ -241,8 +241,9 @@ void toggle_pins(Context& context) {
   commit_anchors(context, (all ? "Unpin " : "Pin ") + what, std::move(anchors));
 }
 
-// Returns the position of a new pole, world coordinates in mm. It lies beyond the limb's middle joint, on the side to
-// which that joint is bent now, so that adding the pole does not move the limb.
+// Returns the position of a new pole (the point towards which the limb's middle joint is bent), world coordinates in
+// mm. It lies beyond the limb's middle joint, on the side to which that joint is bent now, so that adding the pole does
+// not move the limb.
 glm::dvec3 pole_of(const Document& document, int bone) {
   const Armature& armature = *document.armature;
   const auto posed = posed_from_rest(armature, pose_of(document));
@@ -278,7 +279,7 @@ void toggle_pole(Context& context) {
   commit_anchors(context, (had ? "Remove pole of " : "Add pole to ") + name, std::move(anchors));
 }
 
-// Pins the end of the active bone's limb and adds a pole for its middle joint.
+// Pins the end of the active bone's limb, and adds a pole towards which the limb's middle joint is bent.
 void add_ik(Context& context) {
   const Armature& armature = *context.document().armature;
   const int bone = *context.selection->bone;

@@ -23,8 +23,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Returns the axis of the bone's hinge in the pose, world coordinates; nothing when the joint is no hinge or while Keep
-// to joint limits is off.
+// Returns the axis of the bone's hinge in the pose, world coordinates; nothing when the joint is no hinge or while
+// "Keep to joint limits" is off.
 std::optional<glm::dvec3> hinge_of(const PoseEditing& posing, const Armature& armature, const Pose& pose, int bone) {
   const Bone& b = armature.bones[bone];
   if (!posing.keep_limits || b.limits.type != JointLimits::Type::Hinge) return std::nullopt;

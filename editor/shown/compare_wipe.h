@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Helpers for the comparison of two results A and B in one view: a dividing line shows A at its left and B at its
-// right. The functions find which result a view shows, and which result lies under the pointer.
+// Functions for the comparison of two results A and B in one view, which shows A at the left and B at the right of a
+// dividing line. They find which result a view shows, and which result lies under the pointer.
 #pragma once
 
 #include "render/view.h"

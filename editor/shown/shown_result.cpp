@@ -18,7 +18,8 @@ std::shared_ptr<const Result> result_named(const Document& document, const std::
 
 namespace {
 
-// Returns the result of the side that the user selected, even if the workspace shows something else.
+// Returns the result that the user selected to be shown: A or B, or B while both are compared. Returns this result even
+// if the workspace shows something else.
 std::shared_ptr<const Result> result_of_side(const Context& context) {
   const Comparison& comparison = context.comparison;
   return result_named(context.document(), comparison.shows_a && !comparing(context) ? comparison.a : comparison.b);

@@ -33,8 +33,8 @@ std::string name_of_side(const Document& document, const std::string& result);
 // The Rig and Skin workspaces show the body itself. The Pose workspace shows a result only while the current pose is
 // the pose from which the result was made.
 std::shared_ptr<const Result> shown_result(const Context& context);
-// Returns the result that the tables of results describe. This is the result of the side that the user selected, even
-// if the workspace shows something else; if there is none, it is the document's last result.
+// Returns the result that the tables of results describe. This is the result A or B that the user selected to be shown,
+// even if the workspace shows something else. If the user has selected none, it is the document's last result.
 std::shared_ptr<const Result> chosen_result(const Context& context);
 
 // Returns the volume that the views show: the volume of the shown result, or the document's volume if no result is
