@@ -226,7 +226,7 @@ struct View3D::Impl {
 
   PassResources& resources;
   Target output, body, average;
-  Target lit;  // average of the pictures with fine light
+  Target lit;  // average of the pictures with fine (ray-traced) light
   // Pictures of the grey image: the picture that is shown, and the next one, which is drawn tile by tile.
   Target image, next_image;
   using Layers = std::array<GBuffer, kMostLayers>;

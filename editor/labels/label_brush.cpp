@@ -38,7 +38,8 @@ void show_label_stroke(Views& views, LabelBrush& brush) {
   if (!brush.running || views.scene.volume != brush.running->stroke->before()) return;
   const LabelStroke& stroke = *brush.running->stroke;
   render::PassResources& resources = views.renderer.resources();
-  // The first call uploads the stroke's volume; later calls do nothing.
+  // The first call of relabel() in a stroke replaces the document's volume on the GPU by the stroke's volume. In later
+  // frames it does nothing.
   resources.relabel(stroke.before(), stroke.volume(), {}, Surface::Waits);
   if (const limber::VoxelBox box = std::exchange(brush.running->unshown, {}); box.size.x > 0)
     resources.relabel(stroke.volume(), stroke.volume(), box, Surface::Waits);

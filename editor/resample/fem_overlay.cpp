@@ -46,8 +46,8 @@ std::optional<ShownMesh> mesh_of(const std::shared_ptr<const Result>& result) {
   return ShownMesh{result->volume, {solved, &solved->mesh}, {solved, &solved->V}, false};
 }
 
-// Returns the mesh that the views show. If `other_side`, returns the mesh of side A of the comparison. Returns nothing
-// when there is no mesh, and in workspaces other than Resample and Pose.
+// Returns the mesh that the views show. If `other_side` is true, returns the mesh of result A of the comparison.
+// Returns nothing when there is no mesh, and in workspaces other than Resample and Pose.
 std::optional<ShownMesh> shown_mesh(const Context& context, bool other_side) {
   if (context.workspace() != Workspace::Resample && context.workspace() != Workspace::Pose) return std::nullopt;
   if (other_side) return mesh_of(result_named(context.document(), context.comparison->a));

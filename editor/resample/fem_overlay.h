@@ -26,10 +26,11 @@ struct FemScale {
   std::vector<double> ticks;
 };
 const FemScale& scale_of(FemMeasure measure);
-// Returns the position of the value on the scale: 0 at low, 1 at high.
+// Returns the position of the value on the scale: 0 at `low`, 1 at `high`.
 double place_on(const FemScale& scale, double value);
 glm::vec3 colour_at(FemMeasure measure, double place);  // returns the colour at a position of the scale, sRGB
-// Returns the colour of a value of a measure, sRGB; grey for tets of joints, and for a gap if no skin is near.
+// Returns the colour of a value of a measure, sRGB; grey for the tets in joints, which have no value, and for a gap if
+// no other skin is near.
 glm::vec3 colour_of(FemMeasure measure, float value);
 std::string text_of(FemMeasure measure, float value);  // returns the value as text: "0.93", "joint"
 

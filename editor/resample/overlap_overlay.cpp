@@ -20,7 +20,7 @@ namespace limber::editor {
 
 namespace {
 
-// Number of results that stay cached: the two sides of this and of the last comparison.
+// Number of results that stay cached: results A and B of the current comparison and of the comparison before it.
 constexpr std::size_t kRemembered = 4;
 
 std::shared_ptr<const MarkedOverlap> marked(const Result& result, const std::shared_ptr<const TissueTable>& tissues) {

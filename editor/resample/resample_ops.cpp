@@ -75,14 +75,14 @@ Operator colours_operator(const char* id, const char* label, const char* descrip
 
 void toggle_posed(Context& context) { show_result(context, shown_result(context) ? "" : chosen_result(context)->name); }
 
-// Completes the comparison: if side A or B is not a valid result, side B becomes the last result. If the comparison is
-// still not valid, side A becomes the volume at rest.
+// Makes sure that two different volumes can be compared. If they cannot, selects the document's last result as B. If
+// they still cannot, selects the volume at rest as A.
 void choose_sides(Context& context) {
   if (!why_no_comparison(context).empty()) context.comparison->b = context.document().results.back()->name;
   if (!why_no_comparison(context).empty()) context.comparison->a.clear();
 }
 
-// Shows only side A or only side B of the comparison, over the whole view.
+// Shows only volume A or only volume B of the comparison, over the whole view.
 void show_side(Context& context, bool a) {
   stop_watching(context.fem);
   choose_sides(context);
@@ -90,7 +90,7 @@ void show_side(Context& context, bool a) {
   context.comparison->shows_a = a;
 }
 
-// Shows both sides of the comparison, with a dividing line or side by side. For Views::One, shows only side B.
+// Shows both volumes of the comparison, with a dividing line or side by side. For Views::One, shows only volume B.
 void show_sides(Context& context, Comparison::Views views) {
   stop_watching(context.fem);
   choose_sides(context);
@@ -124,8 +124,8 @@ void toggle_overlap(Context& context) {
   show_overlap_overlay(context, on);
 }
 
-// Shows the other side of the comparison while the user holds the operator's key. If the views show both sides next to
-// each other, swaps A and B.
+// Shows A in place of B, or B in place of A, while the user holds the operator's key. If the views show both sides next
+// to each other, swaps A and B.
 class Flicker final : public Modal {
  public:
   explicit Flicker(Context& context) : key_(Key::F) {

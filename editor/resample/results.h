@@ -56,8 +56,8 @@ std::string name_of_pose(const Armature& armature, const Pose& pose);
 // Returns `name`, with a number appended if a result already has that name.
 std::string unique_name(const std::vector<std::shared_ptr<const Result>>& results, const std::string& name);
 
-// Shows the newest result of the current pose that is not stale, if the views show a result of another pose, or the
-// volume at rest without the user having selected it. Otherwise changes nothing.
+// Shows the newest result of the current pose that is up to date. Does so only if the views show a result of another
+// pose, or show the volume at rest although the user did not select it.
 void show_result_of_pose(Context& context);
 void show_result(Context& context, const std::string& name);  // shows a result by its name; "": the volume at rest
 // Makes the views show the volume at rest, and marks it as selected by the user: show_result_of_pose() then keeps it.

@@ -70,7 +70,7 @@ std::string state_of(const std::string& side, bool shown) {
   return side + (shown ? std::string(side.empty() ? "" : ", ") + "shown" : "");
 }
 
-// Makes the result side B of the comparison, or side A if Shift is held.
+// Makes this result B of the comparison, or A if Shift is held.
 void choose_side(Context& context, const std::string& name) {
   stop_watching(context.fem);
   Comparison& comparison = context.comparison;
@@ -202,8 +202,8 @@ void draw_results(Context& context, const Rect& rect) {
   for (const char* id : {"compare.show_b", "compare.show_a"}) {
     const Operator* op = find_operator(context.operators, id);
     const float width =
-        // A pressed button has a wider label. Every button gets the width of a pressed one, so that no button moves
-        // when one is pressed.
+        // A pressed button has a wider label. Every button has the width that its pressed state needs, so that no
+        // button moves when the user presses one.
         width_of_button(context.ui, {op->icon, op->label, ButtonStyle::Chosen});
     operator_button(context, id, {{right - width, top}, {right, bottom}}, op->label,
                     op->checked(context) ? ButtonStyle::Chosen : ButtonStyle::Plain);
@@ -225,7 +225,7 @@ void draw_results(Context& context, const Rect& rect) {
   const float middle = wide ? body.high.x - look.px(430) : body.high.x;
   const Rect table_head{body.low, {middle, body.low.y + look.px(kTableHead)}};
   const Colour grey = look.theme.text2;
-  // As in the rows below, the columns do not extend under the scroll bar, so each head stands above its column.
+  // The titles leave room for the scroll bar, as the rows below do, so that each title stands above its column.
   const Rect heads{table_head.low, {table_head.high.x - ImGui::GetStyle().ScrollbarSize, table_head.high.y}};
   put_cells(context.ui, heads, {"Result", "Method", "Time", "Volume", "Overlap", "Inverted", "State"},
             {grey, grey, grey, grey, grey, grey, grey}, look.fonts.regular, look.fonts.regular);

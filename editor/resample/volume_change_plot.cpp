@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws a bar chart beside the table of results: each tissue's volume change in percent, for both sides of the
+// Draws a bar chart beside the table of results: each tissue's volume change in percent, for both results of the
 // comparison or for the shown result.
 #include <algorithm>
 #include <cmath>

@@ -39,7 +39,7 @@ const BoneTable::Known* bone_table(Context& context);
 std::string why_no_bone_table(const Document& document);
 
 // Sets the rig bone that a label of bone tissue follows, and commits this change of the bone map as one edit.
-//   side  sets the bone for the label's voxels on this side of the body only; nothing: for the whole label
+//   side  sets the bone only for the label's voxels on this side of the body; nothing: for all voxels of the label
 //   bone  index into the rig's bones; nothing: the bone is found automatically
 void map_label(Context& context, Label label, std::optional<BodySide> side, std::optional<int> bone);
 void clear_bone_map(Context& context);

@@ -70,7 +70,8 @@ void start_joint_fit(Context& context) {
   const Document from = context.document();
   const int bone = *context.selection->bone;
   const JointLimits& limits = from.armature->bones[bone].limits;
-  // A joint that is not a hinge is fitted as a hinge about its flexion axis, over the default range of FitJoint.
+  // A joint that is not a hinge is fitted as a hinge about its flexion axis, over the range of angles that FitJoint has
+  // by default.
   FitJoint settings;
   if (limits.type == JointLimits::Type::Hinge)
     settings = {.minimum_degrees = glm::degrees(limits.minimum), .maximum_degrees = glm::degrees(limits.maximum)};

@@ -31,7 +31,8 @@ std::vector<std::string> names_of(const Armature& armature) {
 }
 
 // Returns for each bone of the old rig the index of the bone in the new rig that takes over the old bone's weights.
-// This is the old bone itself or, if the edit removed it, its nearest ancestor in the new rig; -1: there is none.
+// This is the old bone itself or, if the edit removed it, its nearest ancestor in the new rig; -1: there is no such
+// bone.
 //   from  for each bone of the new rig, its index in the old rig; -1: a new bone
 std::vector<int> heirs(const Armature& before, const std::vector<int>& from) {
   std::vector<int> to(before.bones.size(), -1);

@@ -33,8 +33,8 @@ float row_height(const FemView& fem, const JobStatus& job) {
   return fem.solves.contains(job.id) ? kSolveRowHeight : kRowHeight;
 }
 
-// Returns the time left of a job, s. A FEM solve makes an estimate of its own. For other jobs, and until the solve has
-// an estimate, returns the estimate from the job's progress.
+// Returns the time left of a job, s. A FEM solve estimates its time left itself. For other jobs, and while the solve
+// has no estimate yet, the time is estimated from the job's progress.
 std::optional<double> seconds_left(const FemView& fem, const JobStatus& job) {
   const auto solve = fem.solves.find(job.id);
   if (solve != fem.solves.end())

@@ -132,7 +132,7 @@ void draw_body_overlay(Context& context, const ViewPlace& place) {
   const BodyView& body = context.views->body;
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   if (context.screen->layout.by_sides) draw_side_chip(context, place);
-  // In a side-by-side comparison, the view of side A has only its title, clip handles and scale bar.
+  // In a side-by-side comparison, the view of result A has only its title, clip handles and scale bar.
   if (place.side_a) {
     draw_clip_handles(context, rect);
     return draw_scale_bar(context, rect, visible_height / rect.height());

@@ -47,7 +47,7 @@ void draw_picture(Context& context, const ViewPlace& place) {
   ImGui::PopClipRect();
 }
 
-// Lets the user drag the divider between sides A and B of a comparison.
+// Lets the user drag the divider between results A and B of a comparison.
 //   least  smallest fraction of the width of `rect` that is left for each side
 Pressed press_divider(Context& context, const std::string& name, float x, const Rect& rect, float least) {
   Comparison& comparison = context.comparison;
@@ -78,7 +78,7 @@ void draw_divider(Context& context, const Rect& a, const Rect& b) {
   put_icon(look.fonts.small, look.theme.view_text, grip, icon::kWipe);
 }
 
-// Draws the line that divides a view between sides A and B of a comparison, with the names of both results. In a low
+// Draws the line that divides a view between results A and B of a comparison, with the names of both results. In a low
 // view, only the letters A and B are drawn, because the names would cover too much of the picture.
 void draw_wipe(Context& context, const Rect& rect) {
   if (!context.views->other_scene || context.screen->layout.by_sides) return;
@@ -253,7 +253,7 @@ void draw_side_chip(Context& context, const ViewPlace& place) {
     std::snprintf(words, sizeof words, facts->seconds < 10 ? "%.1f s" : "%.0f s", facts->seconds);
   const float high = look.px(26), text_left = look.px(54),
               seconds = *words ? text_size(look.fonts.regular, words).x + look.px(10) : 0;
-  // Width available for the title, px. In the view of side B, some width is left free for the axis ball.
+  // Width available for the title, px. In the view of result B, some width is left free for the axis ball.
   const float room = place.rect.width() - look.px(24) - (place.side_a ? 0 : look.px(100));
   if (result && text_left + text_size(look.fonts.semibold, title).x + look.px(12) > room)
     title = method_name(result->method);

@@ -43,8 +43,8 @@ EditMask mask_of(const Context& context, const LabelBrush& brush, const BrushPla
 void paint_labels_to(Context& context, const glm::vec2& pixel) {
   Painting& painting = *context.skin->painting;
   LabelBrush::Running& running = *painting.labels->running;
-  // In a slice, the brush paints the whole capsule between two pointer positions in one step. On the curved surface of
-  // the body, it follows the pointer in short steps.
+  // In a slice, the brush paints the whole area between two pointer positions (a capsule) in one step. On the curved
+  // surface of the body, it follows the pointer in short steps.
   const int steps =
       running.view.id == ViewId::Body
           ? std::clamp(static_cast<int>(glm::distance(pixel, running.pixel) / (4 * context.ui->look.scale)), 1, 24)

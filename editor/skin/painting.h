@@ -62,7 +62,7 @@ struct Painting {
 
   std::shared_ptr<BrushPresets> presets;  // the user's brush presets (editor/skin/brush_presets.h); null: not read yet
 
-  int dragged_point = -1;  // the point of `falloff_curve` being dragged; -1: none
+  int dragged_point = -1;  // index of the point of `falloff_curve` that the user drags; -1: none
   // The weight layer being painted (editor/skin/weight_layers.h).
   std::optional<std::size_t> layer;  // index of the painted layer; none: the base
   bool mask = false;                 // true: strokes paint the layer's mask instead of its weights

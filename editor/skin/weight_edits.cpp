@@ -43,7 +43,7 @@ TissueRegion region_of(const WeightsToEdit& what, const WeightOperation& operati
 
 struct Done {
   EditedWeights edited;
-  std::optional<EditedLayers> made;  // the layers with the edit; none: nothing changed
+  std::optional<EditedLayers> made;  // the document's layers after the edit; no value: the edit changed nothing
 };
 
 Done done(const WeightsToEdit& what, const WeightOperation& operation, Progress& progress) {

@@ -22,9 +22,10 @@ void set_weights(Document& document, std::shared_ptr<const SkinWeights> weights)
 // The weights that strokes and edits change: the weights of the active layer, of the base below all layers, or of a
 // document without layers.
 struct LayerToEdit {
-  std::shared_ptr<const WeightLayers> layers;   // the document's layers; null: no layers
-  std::optional<std::size_t> layer;             // index of the active layer; none: the base, or no layers
-  std::shared_ptr<const SkinWeights> weights;   // weights before the edit; of a layer, composed with all layers below
+  std::shared_ptr<const WeightLayers> layers;  // the document's layers; null: no layers
+  std::optional<std::size_t> layer;            // index of the active layer; none: the base, or no layers
+  // Weights before the edit; if a layer is active, its weights composed with those of all layers below it.
+  std::shared_ptr<const SkinWeights> weights;
   std::shared_ptr<const SkinWeights> came_out;  // composed weights of all layers: the document's weights
 };
 // Returns the weights that a stroke or an edit would change now. The document must have weights.
@@ -43,7 +44,8 @@ Document with_edited(const Document& now, const LayerToEdit& edited, const Edite
 // Commits the edited layers and weights as one edit.
 void commit_weights(Context& context, const std::string& label, const LayerToEdit& edited, const EditedLayers& made);
 
-// Returns the index of the layer that strokes and edits change; none if they change the base, or without layers.
+// Returns the index of the layer that strokes and edits change; nothing if they change the base, or if there are no
+// layers.
 std::optional<std::size_t> active_layer(const Context& context);
 void choose_layer(Context& context, std::optional<std::size_t> layer);
 // Returns why the active layer cannot be painted ("The layer Elbow is hidden"); "" when it can.

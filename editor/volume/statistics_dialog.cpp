@@ -87,7 +87,7 @@ void StatisticsDialog::draw_table(Context& context, const Rect& rect) {
   const Look& look = context.ui->look;
   const Rect head{rect.low, {rect.high.x, rect.low.y + look.px(26)}};
   fill(head, look.theme.head);
-  // As in the rows below, the columns do not extend under the scroll bar, so each head stands above its column.
+  // The titles leave room for the scroll bar, as the rows below do, so that each title stands above its column.
   const Rect heads{head.low, {head.high.x - ImGui::GetStyle().ScrollbarSize, head.high.y}};
   put_row(context.ui, heads, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Parts"},
           look.fonts.regular);

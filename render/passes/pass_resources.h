@@ -93,7 +93,7 @@ struct PassResources {
 
   TextureLimits limits;
   int pictures_at_rest = 6;  // number of pictures that are averaged while nothing in the 3D view moves
-  bool fine_light = false;   // true: after the other pictures, as many with light by rays are averaged
+  bool fine_light = false;  // true: after these pictures, the same number of pictures with ray-traced light is averaged
   ShadePass shade;
   LightPass light;
   ComposePass compose;

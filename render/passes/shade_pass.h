@@ -32,7 +32,8 @@ class ShadePass {
 
  private:
   gl::Program solid_, posed_, ghost_, weights_, posed_weights_;
-  std::unique_ptr<gl::Program> lit_, lit_weights_;  // for pictures with light by rays; compiled at the first of them
+  // For pictures with ray-traced light; compiled for the first such picture.
+  std::unique_ptr<gl::Program> lit_, lit_weights_;
   gl::VertexArray nothing_;
 };
 

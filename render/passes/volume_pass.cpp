@@ -150,7 +150,7 @@ void VolumePass::draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer
   const float far = 1, nothing[4] = {-kNothingDepth, -kNothingDepth, 0, 0};
   glClearBufferfv(GL_DEPTH, 0, &far);
   glClearBufferfv(GL_COLOR, 0, nothing);
-  // The hull only has to mark the pixels that it covers, so it may have any depth in front of the far plane.
+  // The depth buffer only has to mark the pixels that the hull covers, so any depth in front of the far plane will do.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   glEnable(GL_BLEND);
@@ -180,8 +180,8 @@ void VolumePass::march(const VolumeTexture& volume, const VisibleField& field, c
   if (buffer.place) glClearBufferuiv(GL_COLOR, 3, label);
   if (hull.empty()) return;
 
-  // Covers the picture with a triangle at the far plane. Only pixels with the hull in front of the far plane pass the
-  // depth test, so that all others are skipped.
+  // Draws one triangle over the whole picture, at the far plane. Only pixels where the hull of the visible tissue was
+  // drawn in front of this triangle pass the depth test, so all other pixels are skipped.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);

@@ -21,8 +21,8 @@ void WeightPass::draw(const VolumeTexture& volume, const WeightTexture& weights,
   glViewport(0, 0, buffer.size().x, buffer.size().y);
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.low.x, rect.low.y, std::max(rect.high.x - rect.low.x, 0), std::max(rect.high.y - rect.low.y, 0));
-  // Covers the picture with a triangle at the far plane. Only pixels with the hull in front of the far plane pass the
-  // depth test, so that all others are skipped.
+  // Draws one triangle over the whole picture, at the far plane. Only pixels where the hull of the visible tissue was
+  // drawn in front of this triangle pass the depth test, so all other pixels are skipped.
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   glDepthMask(GL_FALSE);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws the lines of the ground grid, which fade with the distance.
 in vec2 place;
-uniform vec2 u_offset;  // coordinates of the grid's middle modulo 5 grid steps, mm
+// Coordinates of the grid's middle modulo 5 grid steps, because every fifth line is stronger; mm.
+uniform vec2 u_offset;
 uniform float u_reach, u_step, u_line;
 layout(location = 0) out vec4 colour;
 float line(vec2 at, float width) {

@@ -9,7 +9,7 @@
 
 in vec2 ndc;
 uniform sampler2D u_transfer;  // colour, and opacity of a layer one millimetre thick
-uniform vec2 u_values;         // the level of the transfer function's first sample, and samples per level
+uniform vec2 u_values;  // x: level of the transfer function's first sample; y: 1 / (level of its last sample - x)
 uniform float u_step;          // length of a ray's steps, mm
 uniform float u_nearest;       // depth at which rays start, mm
 uniform vec3 u_low, u_high;    // box in which the image can be visible, padded coordinates

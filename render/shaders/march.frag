@@ -22,7 +22,9 @@ layout(location = 3) out uvec4 out_place;
 const float kNodeTap = 0.5 / 1.4;
 #endif
 
-uniform float u_tap;  // distance of gradient samples along each axis, voxels; negative: mirrored tetrahedron
+// The gradient is computed from four corners of a tetrahedron. Each is this far from the hit along each axis, voxels;
+// negative: the tetrahedron is mirrored.
+uniform float u_tap;
 uniform vec3 u_label_shift;
 uniform float u_places;            // number of steps of out_place per padded voxel
 uniform bool u_smooth_cuts;        // true: borders between labels on cut faces are smooth
@@ -30,7 +32,8 @@ uniform bool u_smooth_cuts;        // true: borders between labels on cut faces 
 bool in_layer(uint label) { return (texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) > u_layer; }
 
 // Returns the number of consecutive voxels with the label in a row through `voxel`, counting at most two on each side.
-// Voxels farther than two from `middle` may lie outside the slot; they count as if they had the label.
+// Voxels farther than two from `middle` may lie outside the voxels that the atlas stores for this block; they count as
+// if they had the label.
 int row_length(uint atlas, ivec3 middle, ivec3 voxel, ivec3 axis, uint label) {
   int count = 1;
   for (int side = -1; side <= 1; side += 2)
@@ -151,9 +154,9 @@ void main() {
   vec3 a = vec3(1, -1, -1) * u_tap, b = vec3(-1, -1, 1) * u_tap, c = vec3(-1, 1, -1) * u_tap, e = vec3(u_tap);
 #ifdef POSED
   // The rest of this function works in rest positions. The matrix that turns directions is computed from differences
-  // between the rest positions at the four corners of a tetrahedron. On a mirrored sheet, rest positions are
-  // extrapolated from the cube on the other side of the node. The tetrahedron therefore lies around the centre of a
-  // cube, so that its mirror image lies in one cube too.
+  // between the rest positions at the four corners of a tetrahedron. Beside a fold (sheet.mirrored), the map is read at
+  // the mirror images of these corners, on the other side of the nearest node. The tetrahedron lies around the centre
+  // of a cube of the map, so that all four mirror images lie in one cube.
   vec3 node = node_of(p);
   if (sheet.mirrored) node = sheet.node + 0.5 * sign(node - sheet.node);
   vec3 at_a = rest_on(sheet, node + a * kNodeTap), at_b = rest_on(sheet, node + b * kNodeTap),
@@ -179,7 +182,7 @@ void main() {
 #endif
 #ifdef POSED
   vec3 normal = normalize(-(u_view_from_gradient * (inward * rest_from_posed)));
-  normal.z = abs(normal.z);  // in a fold the ray may hit the inside of a sheet
+  normal.z = abs(normal.z);  // in a fold, the ray may hit the surface from inside
   if (sheet.mirrored) normal = normalize(normal + vec3(0, 0, 1.5));  // smooths the scattered normals of a fold
 #else
   vec3 normal = normalize(-(u_view_from_gradient * inward));

@@ -2,7 +2,9 @@
 // Converts posed positions to rest positions by the inverse map of a posed body (core/deform/preview_map.h). Where two
 // parts of the body touch, the map has two sheets (smooth pieces) with a fold between them.
 uniform sampler3D u_map;           // rest positions at the nodes, as fractions of the map's extent
-uniform sampler3D u_apart;  // at rest, distance from a node to tissue beyond its sheet's border; 1 is kFarApart
+// Distance at rest from a node to the tissue beyond the border of the node's sheet, as a fraction of kFarApart;
+// negative: the node lies beyond the border.
+uniform sampler3D u_apart;
 uniform usampler3D u_cubes;  // state of the cube between nodes n and n + 1 (PreviewMap::cubes)
 uniform vec3 u_node_offset;
 uniform float u_node_scale;        // nodes per padded voxel

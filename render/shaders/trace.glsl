@@ -11,13 +11,15 @@ uniform vec3 u_low, u_high;  // box of the hull, intersected with the clip box
 uniform vec4 u_plane;        // points p with dot(xyz, p) <= w stay visible
 
 #ifdef POSED
-uniform usampler3D u_near_cubes;  // states of the map's cubes; 0 for those far from the layer's labels
+// States of the map's cubes; 0 for cubes that are far from the labels of the drawn layer.
+uniform usampler3D u_near_cubes;
 uniform ivec3 u_blocks;
 const float kStretch = 3.0;  // length of the pieces of a ray that are tested for straightness, steps between nodes
 #endif
 
 const float kSurface = float(SURFACE) / 255.0;
-const float kBand = 72.0 / 255.0;  // field value from which a ray reads filtered values, since the surface may be near
+// At this field value or a larger one, the surface may be near, so the ray reads filtered values.
+const float kBand = 72.0 / 255.0;
 const float kFirstFieldValue = 7.5 / 255.0;
 
 struct Slot { ivec3 offset; uint atlas; };
@@ -33,7 +35,8 @@ Slot slot_of(ivec3 block) {
   return Slot(ivec3(entry.xyz) * SLOT + APRON - block * BLOCK, entry.w);
 }
 
-// Returns the slot of the block that contains p. It may differ from the block in which the march found p.
+// Returns the slot (place in an atlas) of the block that contains p. This may be another block than that in which the
+// march found p.
 Slot slot_at(vec3 p) { return slot_of(ivec3(p) >> BLOCK_SHIFT); }
 
 // Where a ray hits the surface: the position s (-1e30: no hit) and the field's value there; the last position before

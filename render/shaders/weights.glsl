@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Reads the colours of skin weights. RAMP: the weight of the active bone as a colour ramp; FILTERED: filtered colours;
-// VOXELS: the colours of single voxels. The weights are stored in ATLASES textures (atlases.glsl).
+// Reads the colours of skin weights. One of three macros is defined and says which colours: RAMP, the weight of the
+// active bone as a colour ramp; FILTERED, colours that are interpolated between voxels; VOXELS, the colours of single
+// voxels. The weights are stored in ATLASES textures (atlases.glsl).
 uniform sampler3D u_weights0;
 #if ATLASES > 1
 uniform sampler3D u_weights1;
