@@ -18,7 +18,8 @@ struct Image {
 };
 
 // Writes a PNG file atomically: never leaves a partial file.
-//   dots_per_inch  resolution stored in the file for programs that print or place the picture; 0: none
+//   dots_per_inch  resolution stored in the file for programs that print or place the picture; 0: the file has no
+//                  resolution
 void write_png(const Image& image, const Path& path, double dots_per_inch = 0);
 // Reads a PNG file. Throws Error if the file is not a PNG, or if it is wider or higher than 16384 pixels.
 Image read_png(const Path& path);

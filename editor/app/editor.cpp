@@ -49,7 +49,7 @@ Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
 }
 
 // Draws a view's picture. If two results A and B are compared side by side, each view shows one of them. In other
-// comparisons a view draws pictures of both, one over the other.
+// comparisons a view draws pictures of both results, one over the other.
 void draw_view_picture(Views& views, const Document& document, const Layout& layout, const ViewPlace& place,
                        double now) {
   const glm::ivec2 size(place.rect.size());

@@ -30,7 +30,7 @@ struct Dialogs {
   void close();
   void change();  // shows the dialog that was opened, or none after close(); called once in a frame
 
-  std::unique_ptr<Dialog> shown;                // the open dialog; null: none
+  std::unique_ptr<Dialog> shown;                // the open dialog; null: no dialog is open
   std::optional<std::unique_ptr<Dialog>> next;  // the dialog that change() will show; no value: `shown` stays
   std::deque<std::unique_ptr<Dialog>> waiting;  // dialogs that no action of the user's opened
   bool of_users_act = true;                     // true: what happens now was caused by an action of the user's

@@ -37,7 +37,7 @@ struct Interaction {
   Tool tool = Tool::Select;
   std::optional<PendingPress> pending_press;
   std::optional<Drag> drag;
-  std::shared_ptr<Modal> modal;  // the modal tool that gets all input; null: none
+  std::shared_ptr<Modal> modal;  // the modal tool that gets all input; null: no modal tool is active
   PointerWrap modal_wrap;
   float wheel_rest = 0;  // fraction of a wheel step that has not moved a slice yet; touch pads send fractions
 };

@@ -17,7 +17,7 @@ struct OperatorRegistry;
 struct Operator {
   std::string id;           // unique name of the operator, such as "view.frame_all"
   std::string label;        // text in menus, such as "Frame all"; ends in "..." if the operator opens a dialog
-  const char* icon = "";    // icon, one of the constants in icons.h; "": none
+  const char* icon = "";    // icon, one of the constants in icons.h; "": the operator has no icon
   std::string category;     // the menu that the operator belongs to, such as "View"; the search shows it
   std::string description;  // text of the tool tip: what the operator does
   std::function<void(Context&)> run;

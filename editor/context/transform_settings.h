@@ -37,7 +37,7 @@ struct TransformSettings {
     glm::dvec3 place{0};
   } shown_pole;
 
-  // Joint axis that the user may accept (joint_axis_fit.h); null: none is proposed.
+  // Joint axis that the user may accept (joint_axis_fit.h); null: no axis is proposed.
   std::shared_ptr<ProposedJoint> proposed_joint;
   // Result of the last rig check (rig_check.h); null: not checked yet.
   mutable std::shared_ptr<KnownRigCheck> rig_check;

@@ -18,7 +18,8 @@ namespace limber::editor {
 struct FigureOptions {
   glm::dvec2 size{120, 90};  // size of the whole figure, mm, each in [kSmallestFigure, kLargestFigure]
   double dots_per_inch = 300;
-  std::string letter, title;  // letter of the figure in a row of figures, such as "a"; title; empty: none
+  // The figure's letter in a row of figures, such as "a", and its title; an empty text is not drawn.
+  std::string letter, title;
   enum class Paper { White, Black, Transparent } paper = Paper::White;
   bool scale_bar = true, legend = true;
 };

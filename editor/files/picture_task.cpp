@@ -19,7 +19,7 @@ struct Board {
   std::mutex mutex;
   std::condition_variable changed;
   std::optional<render::Image> picture;
-  std::exception_ptr failure;  // the exception that stopped drawing; null: none
+  std::exception_ptr failure;  // the exception that stopped drawing; null: nothing stopped it
 };
 
 // Waits in the task's thread for the next picture. If drawing threw an exception, throws it again.

@@ -59,7 +59,7 @@ class GuideReader final : public Dialog {
   Book book_;
   std::string search_, searched_;
   std::vector<Found> found_;
-  int page_ = 0, marked_ = 0;  // indices of the shown page, and of the block that a search has led to (0: none)
+  int page_ = 0, marked_ = 0;  // indices of the shown page, and of the block that a search has led to (0: no block)
   std::optional<Target> target_;
   std::vector<int> before_, after_;  // stacks of pages for Alt+Left and Alt+Right; the last page is shown next
   bool focus_ = false, scroll_to_mark_ = false, first_found_ = false, show_row_ = false;

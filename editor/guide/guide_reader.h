@@ -15,7 +15,8 @@ struct Context;
 // Reads the guide, with the keys that the editor has now. Throws Error when a page of the guide is missing.
 Book read_guide(const Context& context);
 // Makes the dialog.
-//   page, block  where it is opened: an index into the book's pages, and the block of this page that is marked; 0: none
+//   page, block  what the dialog shows first: an index into the book's pages, and the block of this page that is
+//                marked; 0: no block
 std::unique_ptr<Dialog> open_guide(Book book, int page = 0, int block = 0);
 
 }  // namespace limber::editor

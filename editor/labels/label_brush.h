@@ -36,9 +36,10 @@ struct LabelBrush {
   struct Running {
     std::unique_ptr<LabelStroke> stroke;
     ViewPlace view;
-    glm::vec2 pixel{0};        // position of the pointer up to which the stroke has painted
-    std::string label;         // name of the edit that the stroke will become
-    limber::VoxelBox unshown;  // box of the voxels that have changed since the views were last updated; size 0: none
+    glm::vec2 pixel{0};  // position of the pointer up to which the stroke has painted
+    std::string label;   // name of the edit that the stroke will become
+    // Box of the voxels that have changed since the views were last updated; size 0: no voxel has changed.
+    limber::VoxelBox unshown;
   };
   std::shared_ptr<Running> running;  // null: no stroke is being painted
 

@@ -96,7 +96,7 @@ Graph& graph_of(Context& context);  // creates the state if there is none
 // Returns the clip's keys, or their preview during a drag; needs a shown clip.
 const Keys& graph_keys(const Context& context);
 bool graph_is_shown(const Context& context);
-std::shared_ptr<const Clip> graph_clip(const Document& document);  // returns the shown clip; null: none
+std::shared_ptr<const Clip> graph_clip(const Document& document);  // returns the shown clip; null if there is no clip
 // Stores which keys are selected in a clip, for undo.
 void remember_chosen(Graph& graph, const std::shared_ptr<const Clip>& clip, const std::set<GraphKey>& chosen);
 
@@ -113,8 +113,8 @@ bool exists(const Graph& graph, const Keys& keys, const GraphKey& key);
 
 // Updates the curves for changes of the clip, its keys or the rig. Needs a shown clip and a rig.
 void update_curves(Context& context);
-// Returns the values of the three channels at a frame, which may be fractional. Angles are chosen near those of the
-// whole frame before it.
+// Returns the values of the three channels at a frame, which may be fractional. Of the equivalent angles of a rotation,
+// returns those nearest to the angles at the whole frame before it.
 glm::dvec3 graph_values(const GraphCurves& curves, const GraphTrack& track, double frame);
 
 // Returns the slopes of the three channels on one side of a key, in degrees or mm per frame. If the clip has a recorded

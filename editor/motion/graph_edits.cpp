@@ -49,9 +49,9 @@ KeyShape freed(const GraphCurves& curves, const GraphTrack& track, int frame, Ke
   return {shape.next, HandleKind::Free, tangents.in, tangents.out};
 }
 
-// Returns the tangent of a rotation key after its angles have changed from `before` to `after` (degrees). The new
-// tangent gives each channel its old slope, multiplied by the channel's factor in `factors`. In gimbal lock, a part of
-// the tangent belongs to no channel; this part does not change.
+// Returns the tangent (angular velocity) of a rotation key after its angles have changed from `before` to `after`
+// (degrees). The new tangent gives each channel its old slope, multiplied by the channel's factor in `factors`. In
+// gimbal lock, a part of the tangent belongs to no channel; this part does not change.
 glm::dvec3 tangent_at_angles(const glm::dvec3& tangent, const glm::dvec3& before, const glm::dvec3& after,
                              const glm::dvec3& factors) {
   const glm::dvec3 speeds = channel_speeds(glm::radians(before), tangent);

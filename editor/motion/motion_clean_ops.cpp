@@ -46,7 +46,7 @@ struct Cleaning {
   struct Gap {
     int first = 0, last = 0;
   };
-  std::optional<Gap> gap;  // frames that are replaced by new ones; empty: none
+  std::optional<Gap> gap;  // frames that are replaced by new ones; no value: no frame is replaced
   Becomes becomes = Becomes::NewClip;
 };
 
@@ -103,7 +103,7 @@ WorstPlant worst_of(const Armature& rig, const std::vector<PlantedLimb>& limbs, 
 
 // If a limb does not reach the position at which it should stay, adds this to the result's message.
 //   plants  all limbs that should stay in place
-//   told    index of the limb that the result's detail already describes; -1: none
+//   told    index of the limb that the result's detail already describes; -1: it describes no limb
 void tell_of_short(const Armature& rig, const std::vector<PlantedLimb>& limbs, const std::vector<Plant>& plants,
                    int told, Result& result) {
   const WorstPlant worst = worst_of(rig, limbs, plants, result.poses);

@@ -53,15 +53,16 @@ struct Timeline {
 
   bool auto_key = false;
   std::string constraint;  // name of the constraint that is unfolded in the panel, and that operators change
-  std::shared_ptr<HandPoses> by_hand;  // the free poses of poses made by hand (constrained_pose.h); null: none
+  // The poses made by hand, and what they are before constraints are applied (constrained_pose.h); null: no such poses.
+  std::shared_ptr<HandPoses> by_hand;
   struct {  // the onion skin: `count` ghosts before and after the shown frame, `step` frames apart
     bool on = false;
     int count = 3, step = 10;
-    std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: none yet
+    std::shared_ptr<OnionOutlines> outlines;  // the ghosts' cached outlines; null: nothing is cached yet
   } onion;
   struct {  // the motion paths, which are the lines along which the tips of the selected bones move
     bool on = false;
-    std::shared_ptr<MotionPaths> kept;  // the computed points; null: none yet
+    std::shared_ptr<MotionPaths> kept;  // the computed points of the paths; null: no point is computed yet
   } paths;
   bool seconds = false;       // true: the ruler counts seconds instead of frames
   std::set<int> chosen;       // frames of the selected keys
@@ -87,7 +88,7 @@ struct Timeline {
   // shown.
   Rect ruler, marks, lane, keys, area;
 
-  std::int64_t revision = -1;  // revision of the undo history after the last frame change; -1: none
+  std::int64_t revision = -1;  // revision of the undo history after the last frame change; -1: no frame change yet
   std::unique_ptr<ClipOnRig> prepared;
   std::unique_ptr<FrameLog> frame_log;  // measured drawing times; null: not measured
 

@@ -30,7 +30,7 @@ struct DenseWish {
   Blend blend = Blend::DualQuaternion;
   // Surfaces where limbs touch at rest, edited by the user; null: they are found automatically.
   std::shared_ptr<const Seams> seams = nullptr;
-  // The user's choice of the rig bone that each bone label follows; null: none.
+  // The user's choice of the rig bone that each bone label follows; null: no choice.
   std::shared_ptr<const BoneMap> bone_map = nullptr;
 
   bool operator==(const DenseWish&) const = default;
@@ -72,7 +72,7 @@ class LiveMetrics {
   std::shared_ptr<const LabelVolume> metrics_of_;
   bool is_known_ = false, wanted_ = false;
   std::string trouble_;
-  int job_ = 0;  // id of the background task that measures; 0: none
+  int job_ = 0;  // id of the background task that measures; 0: no task runs
 };
 
 }  // namespace limber::editor

@@ -33,10 +33,11 @@ struct PosedBody {
   std::shared_ptr<const LabelVolume> volume;
   std::shared_ptr<const TissueTable> tissues;
   std::shared_ptr<const SkinWeights> weights;
-  std::shared_ptr<const Armature> armature;  // rig from whose bone names the limbs are found; null: none
+  std::shared_ptr<const Armature> armature;  // rig from whose bone names the limbs are found; null: there is no rig
   // Surfaces where limbs touch at rest, edited by the user; null: they are found automatically.
   std::shared_ptr<const Seams> seams;
-  std::shared_ptr<const BoneMap> bone_map;  // user's choice of the rig bone that each bone label follows; null: none
+  // User's choice of the rig bone that each bone label follows; null: no choice.
+  std::shared_ptr<const BoneMap> bone_map;
 
   bool operator==(const PosedBody&) const = default;
 };

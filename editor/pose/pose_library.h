@@ -11,7 +11,8 @@ namespace limber::editor {
 class Column;
 struct Context;
 
-const NamedPose* chosen_pose(const Context& context);  // the selected pose of the library; nullptr: none
+// Returns the selected pose of the library; nullptr if no pose is selected.
+const NamedPose* chosen_pose(const Context& context);
 
 // Returns the document's pose with the selected bones blended towards the named pose.
 //   share  blend factor, [0, 1]; 1: the named pose

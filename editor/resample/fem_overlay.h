@@ -50,7 +50,7 @@ struct MeasuredMesh {
   std::optional<FemMeasure> measure;
   std::shared_ptr<const Eigen::MatrixX3i> faces;
   std::shared_ptr<const TissueVoxels> tissue;
-  // For each tissue voxel, the index of the tet at the voxel; -1: none.
+  // For each tissue voxel, the index of the tet at the voxel; -1: there is no tet.
   std::shared_ptr<const std::vector<std::int32_t>> tets;
   std::vector<float> values;                              // the measure of each tet; empty: no measure is shown
   float least = 0, most = 0;                              // least and largest of `values` in soft tissue
@@ -72,7 +72,7 @@ std::string why_no_fem_overlay(const Context& context);
 // Puts the FEM colours and tets into the scenes of this frame. Call it after show_posed(), which puts the result or the
 // watched solve into the scenes.
 void show_fem(Context& context);
-// Returns the mesh whose colours the views show; null: none.
+// Returns the mesh whose colours the views show; null if they show no such colours.
 const MeasuredMesh* shown_measure(const Context& context);
 // Returns the shown measure's value at a voxel of the shown volume, such as "det F 0.93"; "" if no measure is shown.
 std::string measure_text_at(const Context& context, const glm::ivec3& voxel);

@@ -37,7 +37,7 @@ struct Request {
   double spacing = 0;  // voxel spacing of the posed volume, mm; 0: same as the volume at rest
   bool bones_apart = false, mass_exact = false, contact = false;
   std::string quality;  // quality of the FEM mesh: "draft", "normal" or "fine"; unused by other methods
-  Path image;           // the shown grey image, to pose with the volume; empty: none
+  Path image;           // the shown grey image, to pose with the volume; empty: no image is shown
   std::string scratch;
   WorkerSettings worker;
   std::shared_ptr<SolveFeed> feed;  // passes the steps of a FEM solve to the views; null: no FEM

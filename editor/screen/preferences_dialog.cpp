@@ -57,7 +57,7 @@ class PreferencesDialog final : public Dialog {
 
   PreferencesPage page_;
   KeymapPage keys_;
-  std::string edited_;  // label of the number field that the user drags or types into; "": none
+  std::string edited_;  // label of the number field that the user drags or types into; "": the user edits no number
   double edited_value_ = 0;
 };
 

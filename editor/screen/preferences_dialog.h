@@ -41,7 +41,7 @@ class KeymapPage {
   void draw_foot(Context& context, const Rect& rect, const std::vector<Clash>& clashes);
 
   std::string search_;
-  std::string waiting_context_, waiting_operator_;  // the command that waits for a new key; empty: none
+  std::string waiting_context_, waiting_operator_;  // the command that waits for a new key; empty: no command waits
 };
 
 // Returns the title of a keymap context, which is the part of the window where keys work, such as "3D view".

@@ -35,7 +35,7 @@ float scroll_of(const ImGuiWindow& sidebar) {
 
 ImGuiID id_of(const Widget& widget) { return ImHashStr(widget.name.c_str()); }
 
-// Returns the smallest widget of the sidebar under the pointer; null: none.
+// Returns the smallest widget of the sidebar under the pointer; null if there is no widget.
 const Widget* pointed_at(const Context& context) {
   const Widget* found = nullptr;
   for (const Widget& widget : context.ui->widgets.widgets())

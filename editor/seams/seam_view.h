@@ -47,7 +47,7 @@ struct SeamView {
     std::optional<Blade> blade;
     std::int64_t faces = 0;  // number of voxel faces that the stroke has changed
   };
-  std::shared_ptr<Running> running;  // the stroke in progress; null: none
+  std::shared_ptr<Running> running;  // the stroke in progress; null: no stroke is in progress
 
   // Cache of the seam geometry that was drawn last (`sheet`). of: the seams for which it was computed; strokes: the
   // number of voxel faces that the stroke in progress had changed at that time, -1: no stroke.

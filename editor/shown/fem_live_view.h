@@ -27,7 +27,7 @@ class SolveFeed {
   struct Seen {
     WorkerProgress progress;
     std::shared_ptr<const FemMesh> rest;
-    MeshPose mesh;                        // tets and node positions after the last iteration; empty: none yet
+    MeshPose mesh;  // tets and node positions after the last iteration; empty: no iteration has ended yet
     std::vector<RigidTransform> motions;  // transform from rest to posed of each bone, as of the last iteration
     double reached = 0;                   // fraction of the pose that the last iteration applied, [0, 1]; 0: rest
   };
@@ -50,7 +50,7 @@ struct Solve {
 
 struct FemView {
   std::map<int, Solve> solves;  // the finite element solves that are queued or running; key: id of the solve's job
-  int watched = 0;              // id of the job whose solve the views show; 0: none
+  int watched = 0;              // id of the job whose solve the views show; 0: they show no solve
 };
 
 // Returns the solve that the views show. Returns null if they show no solve, or if the document's volume has been

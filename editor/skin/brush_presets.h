@@ -38,7 +38,7 @@ std::vector<BrushPreset> brush_presets_from_json(const std::string& text, const 
 const std::vector<BrushPreset>& brush_presets(Context& context);
 // Returns false if the user is known to have no preset. Does not read the file.
 bool has_brush_presets(const Context& context);
-// Returns the index of the preset whose settings all equal the brush's settings; -1: none.
+// Returns the index of the preset whose settings all equal the brush's settings; -1 if there is no such preset.
 int brush_preset_in_use(Context& context);
 
 // save_brush_preset() saves the brush's settings under a name and replaces a preset of the same name.

@@ -62,7 +62,7 @@ struct Painting {
 
   std::shared_ptr<BrushPresets> presets;  // the user's brush presets (editor/skin/brush_presets.h); null: not read yet
 
-  int dragged_point = -1;  // index of the point of `falloff_curve` that the user drags; -1: none
+  int dragged_point = -1;  // index of the point of `falloff_curve` that the user drags; -1: the user drags no point
   // The weight layer being painted (editor/skin/weight_layers.h).
   std::optional<std::size_t> layer;  // index of the painted layer; none: the base
   bool mask = false;                 // true: strokes paint the layer's mask instead of its weights
@@ -73,8 +73,8 @@ struct Painting {
   } canvas;
 
   std::shared_ptr<const FoundProblems> problems;  // result of the search for weight problems; null: not searched yet
-  int problem = -1;                               // index of the problem visited last; -1: none
-  std::shared_ptr<const RepairedJoint> repaired_joint;  // outcome of the last repair of a joint; null: none yet
+  int problem = -1;                               // index of the problem visited last; -1: no problem was visited
+  std::shared_ptr<const RepairedJoint> repaired_joint;  // outcome of the last repair of a joint; null: no repair yet
 
   std::optional<BrushPlace> place;  // the brush's position in the last frame; none: no tissue was under the pointer
 

@@ -33,7 +33,7 @@ WeightsToEdit weights_to_edit(Context& context);
 
 struct EditedWeights {
   WeightEdit edit;
-  std::string warning;                       // a warning for the user about a completed edit; "": none
+  std::string warning;                       // a warning for the user about a completed edit; "": no warning
   std::vector<std::int64_t> unmatched = {};  // indices of the tissue voxels for which Mirror weights found no match
 };
 

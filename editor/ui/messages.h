@@ -14,9 +14,10 @@ enum class Severity { Info, Ok, Warning, Error };
 struct Toast {
   Severity severity;
   std::string line, detail;
-  std::string action;   // id of the operator that the toast's button runs; empty: no button
-  std::string failure;  // an Error's whole line, which the toast's button "Details" shows; empty: none
-  double since = -1;    // time at which the toast was drawn first, s; -1: not drawn yet
+  std::string action;  // id of the operator that the toast's button runs; empty: no button
+  // An Error's whole line, which the toast's button "Details" shows; empty: there is no such button.
+  std::string failure;
+  double since = -1;  // time at which the toast was drawn first, s; -1: not drawn yet
   int times = 1;
 };
 

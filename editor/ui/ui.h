@@ -19,7 +19,7 @@ namespace limber::editor {
 struct Keyboard {
   bool typed = false;    // a text field had the keyboard when the panels were drawn last
   unsigned awaited = 0;  // ImGui's id of the field that will get the keyboard; 0: the field was not drawn yet
-  int turns = 0;         // number of draws of the panels for which keys still wait for the awaited field; 0: none
+  int turns = 0;  // number of draws of the panels for which keys still wait for the awaited field; 0: keys do not wait
 
   bool waits() const { return turns > 0; }
 };
@@ -63,7 +63,7 @@ struct Ui {
   ListFocus list_focus;
   std::optional<Renaming> renaming;
   std::map<std::string, bool> open_sections;  // true: a section of a column is open; by the section's title
-  std::string wanted_section;                 // the section to scroll to in the next frame; empty: none
+  std::string wanted_section;                 // the section to scroll to in the next frame; empty: no section
 
   // The region of the window that is being drawn, and the path with which the names of its widgets begin.
   struct {

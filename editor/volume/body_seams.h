@@ -21,7 +21,8 @@ struct SeamSource {
   std::shared_ptr<const Armature> armature;
   // Seams stored in the document; null: none are stored, so seams must be found.
   std::shared_ptr<const Seams> kept;
-  std::shared_ptr<const BoneMap> bone_map;  // user's choice of the rig bone that each bone label follows; null: none
+  // User's choice of the rig bone that each bone label follows; null: no choice.
+  std::shared_ptr<const BoneMap> bone_map;
 
   bool operator==(const SeamSource&) const = default;
 };

@@ -38,7 +38,7 @@ void drag_window(Context& context) {
   const MouseButton button = context.ui->input.down(MouseButton::Right)    ? MouseButton::Right
                              : context.ui->input.down(MouseButton::Middle) ? MouseButton::Middle
                                                                            : MouseButton::Left;
-  // The drag adds up small movements in `level` and `width`. The image gets both rounded to `step`.
+  // The drag adds up small movements in `level` and `width`. The image gets both numbers rounded to `step`.
   context.interaction->drag = Drag{
       button,
       [level = before.level, width = before.width](Context& c, const glm::vec2& pixels) mutable {

@@ -93,7 +93,7 @@ struct ShownWeights {
   std::shared_ptr<const SkinWeights> weights;  // the weights to show; null for WeightDisplay::Field
   std::shared_ptr<const TissueVoxels> tissue;  // the tissue voxels of the volume
   WeightDisplay display = WeightDisplay::Active;
-  int bone = -1;                                           // the active bone, an index in the weights' bones; -1: none
+  int bone = -1;  // the active bone, an index in the weights' bones; -1: no bone is active
   std::shared_ptr<const std::vector<glm::vec3>> swatches;  // colour of each bone of the weights, sRGB
   // One byte for each voxel of `tissue`. Voxels with 0 have dimmed colours. Null: no colours are dimmed.
   std::shared_ptr<const std::vector<std::uint8_t>> region;

@@ -4,7 +4,8 @@ in vec2 ndc;
 uniform usampler2D u_label;
 uniform uint u_outlined;
 uniform vec2 u_scale;       // buffer pixels per picture pixel
-uniform float u_line;       // distance between two samples, picture pixels; scales the line width
+// Distance between neighbouring samples around a pixel, picture pixels; the outline's width is proportional to it.
+uniform float u_line;
 layout(location = 0) out vec4 colour;
 bool shows(vec2 pixel) {
   return texelFetch(u_label, clamp(ivec2(pixel * u_scale), ivec2(0), textureSize(u_label, 0) - 1), 0).r == u_outlined;

@@ -123,7 +123,8 @@ vec3 lit(vec3 albedo, vec3 normal, float open) {
 #ifdef WEIGHTS
 uniform sampler2D u_weight;
 uniform usampler2D u_place;
-uniform int u_lines;  // lines to draw; 0: none, 1: between ranges of the weight, 2: between colours
+// Lines to draw; 0: no lines; 1: lines between ranges of the weight; 2: lines between different colours.
+uniform int u_lines;
 // Two pixels that are the width of a line apart lie on one surface if their rest positions differ by less than
 // u_joined.x + u_joined.y * their distance, in steps of u_place.
 uniform vec2 u_joined;

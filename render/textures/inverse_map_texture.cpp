@@ -20,7 +20,7 @@ constexpr Format3D kApart = {GL_R8_SNORM, GL_RED, GL_BYTE, true};
 constexpr Format3D kCubes = {GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, false};
 
 // Uploads the slices (z layers) that differ from the uploaded ones. Consecutive slices are uploaded together.
-//   before  the texels that are on the graphics card now, of the same size; null: none are
+//   before  the texels that are on the graphics card now, of the same size; null: the card has no such texels
 template <class Texel>
 void write(const gl::Texture& texture, const glm::ivec3& size, const Format3D& format, const std::vector<Texel>& texels,
            const std::vector<Texel>* before) {

@@ -104,7 +104,7 @@ class WeightTexture {
   int edits_ = 0;                      // number of times that shown_ has changed
 
   // These vectors have one entry for each slot.
-  std::vector<TexelBox> waiting_;      // texels of the slot that wait for their upload; empty: none
+  std::vector<TexelBox> waiting_;      // box of the slot's texels that wait for their upload; empty: no texel waits
   std::vector<int> edited_;            // value of edits_ at the last edit that changed the slot
   std::vector<std::uint8_t> present_;  // 1 if the slot's texels were computed for the current display
   int waiting_count_ = 0;
