@@ -18,7 +18,7 @@ namespace {
 constexpr double kRest = 0.1;          // time without a change after which the picture is refined, seconds
 constexpr double kFrame = 0.024;       // time limit for drawing the body while something moves, seconds
 constexpr double kTileBudget = 0.018;  // time limit for refining the picture in one call, seconds
-constexpr int kTile = 128;             // edge length of a tile, pixels
+constexpr int kTile = 128;             // edge length of the square tiles in which the picture is refined, pixels
 constexpr int kLightTile = 64;         // edge length of a tile in pictures with light by rays, pixels
 // Edge length of a tile of a grey image, whose rays take ten times as long, pixels.
 constexpr int kImageTile = 40;
@@ -360,7 +360,7 @@ struct View3D::Impl {
       resources.weigh.draw(*source.body->volume, *source.weights, rays, buffers[layer], part);
     weight_changes = source.weights ? source.weights->changes() : 0;
   }
-  // Adds the shaded layers of one rectangle to the picture of the body.
+  // Shades the layers (surfaces of sets of labels) in one rectangle and adds them to the picture of the body.
   void shade_layers(const Source& source, const ViewRays& rays, const Layers& buffers, const PixelRect& part,
                     bool lit_by_rays) {
     // A coarse picture is stretched later, so its lines are narrower here.

@@ -50,7 +50,8 @@ struct PassResources {
     std::unique_ptr<PosedTexture> pose;  // inverse map of the posed body that was drawn last
     std::vector<std::unique_ptr<PosedHull>> posed_hulls;
     std::unique_ptr<WeightTexture> weights;  // the weights that were shown last
-    // For each layer, the slots whose labels changed since its field was computed (SurfaceField::update()).
+    // For each layer, one byte per slot (a stored block of 32^3 voxels): nonzero if labels in the slot have changed
+    // since the layer's field was computed (SurfaceField::update()).
     std::vector<std::vector<std::uint8_t>> changed;
     bool surface_waits = false;  // true: labels have changed, but the fields are not updated yet
     int revision = 0;            // changes whenever labels change or are uploaded again

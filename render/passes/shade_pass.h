@@ -19,8 +19,9 @@ class ShadePass {
   // What colours the body: the tissues, or the skin weights of the buffer. Weights can have contour lines between
   // ranges of the weight, or lines at the borders between different colours.
   enum class Colours { Tissues, Weights, WeightsWithContours, WeightsWithBorders };
-  // Blends one layer, with premultiplied alpha, over the bound framebuffer. The framebuffer must have the buffer's
-  // size, and the first layer's GBuffer::hull_depth as its depth. Layers must be drawn from the innermost outward.
+  // Blends one layer (the surface of a set of labels), with premultiplied alpha, over the bound framebuffer. The
+  // framebuffer must have the buffer's size, and the first layer's GBuffer::hull_depth as its depth. Layers must be
+  // drawn from the innermost outward.
   //   ghost       draws the layer as the outer layer of X-ray
   //   layer       index of the layer; labels that also belong to a deeper layer are not drawn here
   //   posed       the inverse map of the posed body; null: the body is at rest

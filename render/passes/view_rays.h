@@ -42,7 +42,7 @@ ViewRays view_rays(const Camera& camera, const Grid& grid, const glm::ivec2& siz
                    const glm::vec3& low, const glm::vec3& high);
 
 // Returns the matrix that converts directions in view axes to padded coordinates, scaled so that a unit vector becomes
-// at most one brick long, for any voxel spacing.
+// at most one brick (4 voxels) long, for any voxel spacing.
 glm::mat3 padded_from_view(const ViewRays& rays);
 
 // Sets the uniforms that shaders/rays.glsl declares.

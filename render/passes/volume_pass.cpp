@@ -10,8 +10,9 @@ namespace limber::render {
 
 namespace {
 
-// The gradient at a hit is computed from four samples of the field, this far from the hit along each axis, voxels. The
-// distance smooths the steps between voxels, and stays within the apron (2 voxels) of a block in its atlas.
+// The gradient at a hit is computed from four samples of the field, this far from the hit along each axis, voxels. This
+// distance smooths the steps between voxels. It is less than 2 voxels, because the atlas stores only 2 voxels around
+// each block.
 constexpr float kTap = 1.4f;
 
 void set_scissor(const PixelRect& rect) {
@@ -35,8 +36,8 @@ bool inside(const glm::dvec3& point, const glm::vec3& low, const glm::vec3& high
          glm::all(glm::lessThan(point, glm::dvec3(high) + margin));
 }
 
-// Returns true if the eye is within the hull's box. The eye then sees no front faces of the hull, so rays start at the
-// near plane.
+// Returns true if the eye is inside the box around the hull (the faces around the visible tissue, at which rays start).
+// The eye then sees no front faces of the hull, so rays start at the near plane.
 bool eye_inside(const Hull& hull, const ViewRays& rays) {
   if (!rays.perspective) return false;  // the depth range of an orthographic camera begins before the body
   const double voxels_per_depth = glm::length(rays.toward) + glm::length(rays.toward_x) + glm::length(rays.toward_y);

@@ -64,8 +64,8 @@ class GBuffer {
   glm::ivec2 size_{0};
 };
 
-// Returns the step, in padded voxels, between the positions that GBuffer::place can store. It is the finest step with
-// which 16 bits cover the volume.
+// Returns the step, in voxels of the drawn volume, between the positions that GBuffer::place can store. It is the
+// finest step with which 16 bits cover the volume.
 float place_step(const VolumeTexture& volume);
 
 class VolumePass {
@@ -79,7 +79,8 @@ class VolumePass {
 
   // Draws the hull into the buffer, and so stores where every ray inside `rect` starts and ends.
   void draw_hull(const Hull& hull, const ViewRays& rays, const GBuffer& buffer, const PixelRect& rect);
-  // Follows the rays inside `rect` until they hit a label of one layer (appearance_texture.h).
+  // Follows the rays inside `rect` until they hit a label of one layer, which is a set of labels with a common surface
+  // (appearance_texture.h).
   //   field              the field of the layer
   //   posed, posed_hull  inverse map and hull of the posed body; null if the body is at rest
   void march(const VolumeTexture& volume, const VisibleField& field, const PosedTexture* posed,

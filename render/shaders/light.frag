@@ -8,7 +8,7 @@
 uniform sampler2D u_depth, u_normal;
 uniform int u_every;     // light is computed for every n-th pixel along each axis
 uniform ivec2 u_offset;  // the first pixel for which light is computed
-uniform mat3 u_padded_from_view;  // converts directions; a unit normal becomes one brick long
+uniform mat3 u_padded_from_view;  // converts directions; a unit normal becomes one brick (4 voxels) long
 uniform int u_picture;            // number of pictures that were averaged before this one
 layout(location = 0) out vec2 light;
 

@@ -5,7 +5,7 @@
 
 in vec2 ndc;
 uniform sampler2D u_range;
-uniform float u_nearest;         // depth at which rays start if the eye is inside the hull; else -1e30
+uniform float u_nearest;  // depth at which rays start if the eye is inside the hull of the visible tissue; else -1e30
 uniform usampler2D u_looks;
 uniform uint u_layer;
 uniform bool u_clipped;
@@ -26,7 +26,7 @@ const float kNodeTap = 0.5 / 1.4;
 // negative: the tetrahedron is mirrored.
 uniform float u_tap;
 uniform vec3 u_label_shift;
-uniform float u_places;            // number of steps of out_place per padded voxel
+uniform float u_places;            // number of steps of out_place per voxel of the drawn volume
 uniform bool u_smooth_cuts;        // true: borders between labels on cut faces are smooth
 
 bool in_layer(uint label) { return (texelFetch(u_looks, ivec2(label & 255u, label >> 8), 0).a & 7u) > u_layer; }
@@ -183,14 +183,15 @@ void main() {
 #ifdef POSED
   vec3 normal = normalize(-(u_view_from_gradient * (inward * rest_from_posed)));
   normal.z = abs(normal.z);  // in a fold, the ray may hit the surface from inside
-  if (sheet.mirrored) normal = normalize(normal + vec3(0, 0, 1.5));  // smooths the scattered normals of a fold
+  // Beside a fold, normals are noisy; this turns them towards the viewer.
+  if (sheet.mirrored) normal = normalize(normal + vec3(0, 0, 1.5));
 #else
   vec3 normal = normalize(-(u_view_from_gradient * inward));
 #endif
 
-  // Finds the first label of the layer by walking inward from a little outside the surface, first through air, then
-  // through hidden tissue. After a diagonal step out of air, the voxels beside the step are also read, so that a skin
-  // one voxel thick has no gaps.
+  // Finds the first label that belongs to the drawn layer, by walking inward from a little outside the surface, first
+  // through air, then through hidden tissue. After a diagonal step out of air, the voxels beside the step are also
+  // read, so that a skin one voxel thick has no gaps.
   vec3 step = (cap ? d : inward) * 0.5;
   vec3 inside = at + u_label_shift + (cap ? step * 0.02 : inward * -1.4);
   uint label = cap && u_smooth_cuts ? voted_label(slot.atlas, at + step * 0.02) : label_at(slot.atlas, ivec3(inside));

@@ -7,11 +7,12 @@ uniform sampler3D u_map;           // rest positions at the nodes, as fractions 
 uniform sampler3D u_apart;
 uniform usampler3D u_cubes;  // state of the cube between nodes n and n + 1 (PreviewMap::cubes)
 uniform vec3 u_node_offset;
-uniform float u_node_scale;        // nodes per padded voxel
+uniform float u_node_scale;        // nodes of the map per voxel of the drawn volume
 uniform vec3 u_rest_offset, u_rest_scale;  // convert a fraction of the map's extent to a padded rest position
 uniform vec3 u_map_texel;
 uniform ivec3 u_map_size;
-uniform float u_steepest;  // largest change of the rest position over half a node step within one sheet, padded voxels
+// Largest change of the rest position over half a step between nodes within one sheet, voxels of the drawn volume.
+uniform float u_steepest;
 
 const vec3 kNowhere = vec3(-1e6);
 const uint kBordered = 64u, kBroken = 128u;

@@ -16,7 +16,7 @@ uniform vec2 u_pixel;       // a pixel is x + y * depth wide, mm
 #else
 uniform sampler3D u_occupancy;
 uniform vec3 u_occupancy_texel;
-uniform mat3 u_padded_from_view;   // converts directions; a unit normal becomes one brick long
+uniform mat3 u_padded_from_view;   // converts directions; a unit normal becomes one brick (4 voxels) long
 #endif
 uniform uint u_layer;
 uniform int u_line;  // width of contour lines, and of the outlines of tissues on cut faces, pixels

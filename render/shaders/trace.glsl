@@ -7,7 +7,7 @@
 #endif
 
 uniform usampler3D u_index;
-uniform vec3 u_low, u_high;  // box of the hull, intersected with the clip box
+uniform vec3 u_low, u_high;  // box around the hull of the visible tissue, intersected with the clip box
 uniform vec4 u_plane;        // points p with dot(xyz, p) <= w stay visible
 
 #ifdef POSED
@@ -54,7 +54,7 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
   for (int tries = 0; tries < 1024 && s < s_end && found.s < -1e29; ++tries) {
     // Advance block by block until the surface may be near.
     Slot slot = Slot(ivec3(0), 0u);
-    vec3 at;  // the line's base in texels of the slot
+    vec3 at;  // the line's base, in texels of the atlas that stores the block
     float value = 0.0;
     for (int blocks = 0; blocks < 1024 && s < s_end; ++blocks) {
       vec3 p = base + d * s;
@@ -73,8 +73,8 @@ void march(vec3 base, vec3 d, float rate, float s_start, float s_end, inout floa
     }
     if (value < kBand) break;
     // Starts half a voxel earlier, so that a surface is not hit from its inside. The field rises by about 3/8 per
-    // voxel, from which the next step is estimated. The step is short enough not to skip a thread, and the apron of the
-    // slot is wide enough for all reads.
+    // voxel, from which the next step is estimated. The step is short enough not to skip a thread. All reads stay
+    // within the voxels that the atlas stores around the block.
     float s_near = max(s - 0.5 * voxel, s_start), s_far = min(s + 1.5 * voxel, s_end);
     found.value_before = 0.0;
     found.s_before = s_near - 0.5 * voxel;

@@ -4,7 +4,7 @@
 
 uniform usampler2D u_place;
 uniform float u_place_step;
-uniform vec3 u_shift;  // offset of the positions at which single voxels are read, padded voxels
+uniform vec3 u_shift;  // offset of the positions at which single voxels are read, voxels of the drawn volume
 layout(location = 0) out vec4 colour;
 void main() {
   uvec4 place = texelFetch(u_place, ivec2(gl_FragCoord.xy), 0);

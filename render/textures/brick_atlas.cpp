@@ -11,8 +11,8 @@ namespace limber::render {
 
 namespace {
 
-// Marks every block within kBrick voxels of a tissue voxel: all blocks that touch the voxel's brick, or one of the 26
-// bricks around that brick.
+// Marks every block within kBrick voxels of a tissue voxel: all blocks that touch the voxel's brick (kBrick^3 voxels),
+// or one of the 26 bricks around that brick.
 void mark_blocks(const LabelVolume& volume, const BlockLayout& layout, std::vector<std::uint8_t>& marked) {
   const glm::ivec3 size = volume.grid.size;
   // Number of bricks along each axis, without the padding (one brick on each side).

@@ -12,8 +12,9 @@ namespace limber::render {
 
 namespace {
 
-constexpr int kReach = 2;                  // farthest neighbour that the blur of a voxel reads, voxels
-constexpr int kRead = kSlot + 2 * kReach;  // edge length of the region on which the field of a slot depends, voxels
+constexpr int kReach = 2;  // farthest neighbour that the blur of a voxel reads, voxels
+// Edge length of the region on which the field of a slot (stored block) depends, voxels.
+constexpr int kRead = kSlot + 2 * kReach;
 // Field value (in 1/255) that is given to a voxel which the blur would make vanish, so that the voxel keeps its size.
 constexpr int kRaised = 230;
 constexpr int kFarthest = kFirstFieldValue - 1;  // largest distance that a texel can store, bricks
@@ -22,8 +23,9 @@ constexpr size_t kSlotTexels = size_t{kSlot} * kSlot * kSlot;
 
 using Slot = std::vector<std::uint8_t>;
 
-// Sets `member` to 1 for the voxels whose label is in the set. `member` covers a slot and the voxels around it that the
-// slot's blur reads. Returns the number of voxels set. If `labels` is not null, it receives all labels of this region.
+// Sets `member` to 1 for the voxels whose label is in the set. `member` covers the block's slot (the voxels that the
+// atlas stores for it) and the voxels around the slot that the blur reads. Returns the number of voxels set. If
+// `labels` is not null, it receives all labels of this region.
 int gather(const LabelVolume& volume, const glm::ivec3& block, const LabelSet& set, Slot& member,
            std::vector<Label>* labels) {
   const glm::ivec3 low = block * kBlock - kApron - kReach - kPad, size = volume.grid.size;
@@ -93,8 +95,8 @@ void blur(const Slot& member, Slot& field, std::vector<std::uint8_t>& along_x, s
   for (const int at : swallowed) field[static_cast<size_t>(at)] = kRaised;
 }
 
-// What rays need to know of a brick: whether any of its voxels has a blurred value above 0, whether the brick belongs
-// to the hull, and the mean of its blurred values.
+// What rays need to know of a brick (4^3 voxels): whether any of its voxels has a blurred value above 0, whether the
+// brick belongs to the hull, and the mean of its blurred values.
 struct BrickFacts {
   bool touched, hull;
   std::uint8_t mean;
@@ -155,8 +157,8 @@ void spread_distance(std::vector<std::uint8_t>& distance, const glm::ivec3& size
   sweep(-1);
 }
 
-// Writes the distance of each empty brick of a slot into the brick's texels. The texels of the apron keep 0, since rays
-// do not step there.
+// For each brick of the block whose distance is not 0, writes the distance into the brick's texels. The texels around
+// the block (its apron) keep their values, since rays do not step there.
 void write_distances(Slot& field, const BlockLayout& layout, const glm::ivec3& block,
                      const std::vector<std::uint8_t>& distance) {
   for (int z = 0; z < kBlock; ++z)
@@ -203,7 +205,7 @@ std::vector<std::uint8_t> outside_of(const std::vector<std::uint8_t>& hull, cons
   return outside;
 }
 
-// Returns true if a brick of the block is nearer to the set than before.
+// Returns true if the distance of a brick of this block is smaller than before.
 bool any_nearer(const BlockLayout& layout, const glm::ivec3& block, const std::vector<std::uint8_t>& distance,
                 const std::vector<std::uint8_t>& before) {
   const glm::ivec3 low = block * kBricksPerBlock;
@@ -244,8 +246,8 @@ SurfaceField::Texels SurfaceField::update(const LabelVolume& drawn, const BlockL
   labels_of_slot_.resize(slots);
   slot_present_.resize(slots, 0);
 
-  // Computes the fields again in the slots that depend on an added or removed label. In `touched`, a brick has 1 if any
-  // of its voxels has a blurred value above 0.
+  // Computes the fields again in the slots (stored blocks) that depend on an added or removed label. In `touched`, a
+  // brick has 1 if any of its voxels has a blurred value above 0.
   std::vector<Slot> fields(slots);
   std::vector<std::uint8_t> touched(brick_count);
   for (size_t b = 0; b < brick_count; ++b) touched[b] = distance_[b] == 0;

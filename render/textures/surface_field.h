@@ -30,7 +30,7 @@ using LabelSet = std::vector<std::uint8_t>;  // for each of the 65536 labels: 1 
 // The field of a set in the main memory. It needs no OpenGL, so any thread may compute it.
 class SurfaceField {
  public:
-  // For each slot, the texels to upload; empty for a slot that does not need an upload.
+  // For each slot (stored block), the texels to upload; empty for a slot that does not need an upload.
   using Texels = std::vector<std::vector<std::uint8_t>>;
 
   // Changes the set of labels. Computes the field again only in blocks that contain, or are near, an added or removed
@@ -72,7 +72,7 @@ class SurfaceField {
   // no ray can hit the body anywhere.
   std::vector<std::uint8_t> met_, upward_;
   glm::ivec3 bricks_{0};
-  // For each slot: the labels in the voxels on which its field depends.
+  // For each slot (stored block): the labels in the voxels on which the slot's field depends.
   std::vector<std::vector<Label>> labels_of_slot_;
   std::vector<std::uint8_t> slot_present_;
 };

@@ -58,7 +58,7 @@ class VisibleField {
   SurfaceField::Texels texels_;  // texels that upload() has not uploaded yet
   Hull::Faces faces_;
   std::vector<std::uint8_t> occupancy_;
-  std::int64_t next_slot_ = 0;  // the next slot to upload; -1: everything was uploaded
+  std::int64_t next_slot_ = 0;  // index of the next slot (stored block) to upload; -1: everything was uploaded
   std::vector<gl::Texture> atlases_;
   gl::Texture index_, occupancy_texture_;
   Hull hull_;

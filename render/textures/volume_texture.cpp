@@ -18,11 +18,12 @@ constexpr int kBlockShift = 5;
 
 constexpr Format3D kLabels = {GL_R16UI, GL_RED_INTEGER, GL_UNSIGNED_SHORT, false};
 constexpr int kMostHalvings = 3;
-// Distance in voxels over which a changed label can affect a slot and its surface. A block gets a slot if there is
-// tissue within two bricks. The slot's apron and the blur of the surface reach less far.
+// A changed label can affect the stored texels (the slot) of every block up to this far away, voxels. A block gets a
+// slot if there is tissue within two bricks. A slot's apron and the blur of the surface reach less far.
 constexpr int kNear = 2 * kBrick;
 
-// Collects the labels of a slot, including its apron. Voxels outside the grid are air.
+// Collects the labels of a block and of the kApron voxels around it, which are stored together. Voxels outside the grid
+// are air.
 void gather(const LabelVolume& volume, const glm::ivec3& block, std::vector<Label>& slot) {
   const glm::ivec3 low = block * kBlock - kApron - kPad, size = volume.grid.size;
   slot.assign(static_cast<size_t>(kSlot) * kSlot * kSlot, 0);

@@ -81,7 +81,7 @@ class VolumeTexture {
   std::vector<gl::Texture> atlases_;
   gl::Texture index_;
   std::string note_;
-  int next_slot_ = 0;  // the next slot to upload; -1: everything was uploaded
+  int next_slot_ = 0;  // index of the next slot (stored block) to upload; -1: everything was uploaded
 };
 
 // The format of a 3D texture: a sized internal format of one or four channels, the matching pixel format and type, and

@@ -70,7 +70,7 @@ Box box_of(const TissueVoxels::Brick& brick, int halvings) {
   return {(brick.corner >> halvings) + kPad, (last >> halvings) + kPad + 1};
 }
 Box grown(const Box& box) { return {box.low - 1, box.high + 1}; }
-// Returns the box of a block, including its apron.
+// Returns the box of a block and of the kApron voxels around it, which are stored with the block.
 Box box_of_block(const glm::ivec3& block) { return {block * kBlock - kApron, (block + 1) * kBlock + kApron}; }
 
 std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue,
@@ -78,7 +78,7 @@ std::vector<Part> parts_of(const BlockLayout& layout, const TissueVoxels& tissue
   std::vector<Box> boxes(layout.block_of_slot.size());
   for (std::size_t b = 0; b < changed.size(); ++b) {
     if (!changed[b]) continue;
-    // The box is grown by one voxel, since the air beside a brick is coloured like the brick.
+    // The box is grown by one voxel, since air voxels beside tissue get the tissue's colour.
     const Box brick = grown(box_of(tissue.bricks()[b], halvings));
     const glm::ivec3 first = glm::max((brick.low - kApron) >> 5, glm::ivec3(0)),
                      last = glm::min((brick.high - 1 + kApron) >> 5, layout.blocks - 1);
@@ -326,8 +326,8 @@ void WeightTexture::take_over(const VolumeTexture& volume, UploadTime* time) {
       return;
     std::vector<Part> parts = lot_.get();
     if (time) time->used = true;
-    // A slot whose weights were edited while its texels were computed keeps waiting, since these texels are out of
-    // date.
+    // A slot (a stored block of voxels) whose weights were edited while its texels were computed keeps waiting, since
+    // these texels are out of date.
     std::erase_if(parts, [this](const Part& part) { return edited_[static_cast<std::size_t>(part.slot)] > lot_edit_; });
     for (const Part& part : parts) waiting_[static_cast<std::size_t>(part.slot)] = {};
     waiting_count_ -= static_cast<int>(parts.size());

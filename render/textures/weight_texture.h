@@ -55,7 +55,8 @@ class WeightTexture {
  public:
   // Largest change that update() uploads at once, texels. It takes some 2 ms on two cores. Larger changes wait.
   static constexpr std::int64_t kAtOnce = 8 * kSlot * kSlot * kSlot;
-  static constexpr int kLot = 16;  // number of slots that are computed together; their texels take 3 MB
+  // Number of slots (stored blocks of voxels) that are computed together; their texels take 3 MB.
+  static constexpr int kLot = 16;
 
   // Allocates textures for the volume's weights, but uploads nothing. Throws Error when the driver has no memory for
   // them.
@@ -81,7 +82,7 @@ class WeightTexture {
   // free unit.
   int bind(const VolumeTexture& volume, gl::Program& program, int first) const;
 
-  // A box to upload, which lies within one slot, and its texels.
+  // A box to upload, which lies within one slot (a stored block of voxels), and its texels.
   struct Part {
     int slot;
     TexelBox box;
@@ -98,7 +99,7 @@ class WeightTexture {
   void upload(const VolumeTexture& volume, const std::vector<Part>& parts);
 
   std::vector<gl::Texture> atlases_;
-  // Index texture as VolumeTexture::index, but only with the slots marked in present_.
+  // Index texture in the format of VolumeTexture::index(). It lists only the slots (stored blocks) that present_ marks.
   gl::Texture index_;
   std::optional<ShownWeights> shown_;  // weights that are uploaded, or will be when all waiting slots are
   int edits_ = 0;                      // number of times that shown_ has changed
