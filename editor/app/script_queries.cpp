@@ -26,7 +26,7 @@ namespace limber::editor {
 
 namespace {
 
-// An FNV-1a hash, 64 bits.
+// Computes the 64-bit FNV-1a hash of the values that are added.
 class Hash {
  public:
   template <class T>

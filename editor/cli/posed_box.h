@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The part of space that a posed body takes up.
+// Computes the bounding box of a posed body.
 #pragma once
 
 #include <array>

@@ -66,40 +66,40 @@ struct Context {
   Workspace workspace() const;       // the workspace that the window shows (context/workspace.h)
 
   // The window and what the user does in it
-  ContextPart<Host> host;                   // context/platform_window.h
-  ContextPart<Ui> ui;                       // ui/ui.h
-  ContextPart<WindowState> window;          // context/window_state.h
+  ContextPart<Host> host;                   // declared in context/platform_window.h
+  ContextPart<Ui> ui;                       // declared in ui/ui.h
+  ContextPart<WindowState> window;          // declared in context/window_state.h
   ContextPart<Screen> screen;               // the regions of the window (context/screen.h)
-  ContextPart<MenuState> menus;             // context/menu_state.h
-  ContextPart<Dialogs> dialogs;             // context/dialogs.h
-  ContextPart<Messages> messages;           // ui/messages.h
+  ContextPart<MenuState> menus;             // declared in context/menu_state.h
+  ContextPart<Dialogs> dialogs;             // declared in context/dialogs.h
+  ContextPart<Messages> messages;           // declared in ui/messages.h
   ContextPart<Interaction> interaction;     // the tool, the drag or the modal tool (context/interaction.h)
   ContextPart<FieldEdit> field_edit;        // the field that the user is changing (context/field_edit.h)
-  ContextPart<OperatorRegistry> operators;  // context/operator_registry.h
-  ContextPart<Keymap> keymap;               // input/keymap.h
+  ContextPart<OperatorRegistry> operators;  // declared in context/operator_registry.h
+  ContextPart<Keymap> keymap;               // declared in input/keymap.h
 
   // The open project
   ContextPart<OpenProject> project;        // its name and files (context/open_project.h)
-  ContextPart<History> history;            // core/project/history.h
+  ContextPart<History> history;            // declared in core/project/history.h
   ContextPart<ProjectLife> life;           // how much of the project is on the disk (context/project_life.h)
-  ContextPart<Jobs> jobs;                  // core/project/job.h
+  ContextPart<Jobs> jobs;                  // declared in core/project/job.h
   ContextPart<BackgroundWork> background;  // tasks, and what is done when a job ends (context/background_task.h)
 
-  // Stored on disk between runs of the program
-  ContextPart<Preferences> preferences;             // context/preferences.h
+  // Settings and lists that are stored on disk between runs of the program
+  ContextPart<Preferences> preferences;             // declared in context/preferences.h
   ContextPart<PreferencesState> preferences_state;  // the preferences' file (context/preferences_state.h)
-  ContextPart<Folders> folders;                     // context/user_folders.h
-  ContextPart<RecentFiles> recent_files;            // context/recent_files.h
+  ContextPart<Folders> folders;                     // declared in context/user_folders.h
+  ContextPart<RecentFiles> recent_files;            // declared in context/recent_files.h
   ContextPart<Pictures> pictures;                   // small pictures of files (ui/texture_cache.h)
 
-  // What is shown
-  ContextPart<Views> views;               // context/views.h
-  ContextPart<Selection> selection;       // context/selection.h
+  // What the views and panels show
+  ContextPart<Views> views;               // declared in context/views.h
+  ContextPart<Selection> selection;       // declared in context/selection.h
   ContextPart<PickList> pick_list;        // what is under the pointer (context/pick_list.h)
-  ContextPart<OutlinerState> outliner;    // context/outliner_state.h
-  ContextPart<StartScreen> start_screen;  // context/start_screen_state.h
-  ContextPart<Tour> tour;                 // context/tour_progress.h
-  ContextPart<ConsoleState> console;      // screen/console_state.h
+  ContextPart<OutlinerState> outliner;    // declared in context/outliner_state.h
+  ContextPart<StartScreen> start_screen;  // declared in context/start_screen_state.h
+  ContextPart<Tour> tour;                 // declared in context/tour_progress.h
+  ContextPart<ConsoleState> console;      // declared in screen/console_state.h
   ContextPart<Comparison> comparison;     // two results side by side (context/comparison.h)
 
   // Settings and state of single tools and panels
@@ -108,13 +108,13 @@ struct Context {
   ContextPart<SkinDisplay> skin;                      // how the Skin workspace shows weights (skin/weight_display.h)
   ContextPart<TestPose> trial;                        // settings of the test pose (shown/test_pose.h)
   ContextPart<Timeline> timeline;                     // playback, keys and the shown frame (motion/timeline.h)
-  ContextPart<PoseEditing> posing;                    // context/pose_editing.h
+  ContextPart<PoseEditing> posing;                    // declared in context/pose_editing.h
   ContextPart<LastOperation> last_operation;   // what can be redone with other numbers (dialogs/redo_last_operator.h)
   ContextPart<LivePose> live;                  // the posed body while it is posed (pose/live_preview.h)
   ContextPart<FemView> fem;                    // the running FEM solves and the shown one (shown/fem_live_view.h)
   ContextPart<FemOverlay> fem_overlay;         // the shown FEM measure and mesh (resample/fem_overlay.h)
-  ContextPart<ResamplingSettings> resampling;  // context/resampling_settings.h
-  ContextPart<ResultList> results;             // resample/result_list.h
+  ContextPart<ResamplingSettings> resampling;  // declared in context/resampling_settings.h
+  ContextPart<ResultList> results;             // declared in resample/result_list.h
   ContextPart<DifferenceView> difference;      // the comparison of two volumes (resample/difference_overlay.h)
   ContextPart<OverlapView> overlap;            // the shown overlap of a result (resample/overlap_overlay.h)
   ContextPart<SeamView> seams;                 // the shown seams and the seam brush (seams/seam_view.h)

@@ -19,7 +19,7 @@ struct Pickable {
 // The list of bones and tissues under the pointer.
 struct PickList {
   bool opens = false;          // true: the list opens in the next frame
-  std::vector<Pickable> rows;  // nearest first
+  std::vector<Pickable> rows;  // the bones and tissues of the list, the nearest to the eye first
 };
 
 }  // namespace limber::editor

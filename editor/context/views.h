@@ -76,7 +76,7 @@ struct Views {
   explicit Views(int largest_texture = 0);
 
   render::Renderer renderer;
-  std::shared_ptr<ArrivingBodies> arriving;  // never null
+  std::shared_ptr<ArrivingBodies> arriving;  // the bodies that wait for their upload; never null
   BodyView body;
   std::array<SliceState, 3> slices;  // the three slices, indexed by render::SliceAxis
   glm::dvec3 cross_hair{0};          // the point at which the three slices meet, world, mm

@@ -251,7 +251,7 @@ void open_project(Context& context, const Path& path, Then then, Leftover leftov
   });
 }
 
-// ---- saving
+// ---- Saving the project
 
 void ask_where_to_save(Context& context, Then then) {
   browse(context, {.purpose = "project",
@@ -300,7 +300,7 @@ void save_project_copy(Context& context, const Path& path) {
   });
 }
 
-// ---- recovery of edits left by sessions that ended in a crash
+// ---- Recovery of edits left by sessions that ended in a crash
 
 void look_for_leftovers(Context& context) {
   if (context.folders->edits.empty()) return;

@@ -41,7 +41,7 @@ struct LabelBrush {
     // Box of the voxels that have changed since the views were last updated; size 0: no voxel has changed.
     limber::VoxelBox unshown;
   };
-  std::shared_ptr<Running> running;  // null: no stroke is being painted
+  std::shared_ptr<Running> running;  // the stroke in progress; null: no stroke is being painted
 
   std::weak_ptr<const LabelVolume> last;  // the document's volume in the last frame, to notice when the volume changes
 

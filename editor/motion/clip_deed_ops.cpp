@@ -86,7 +86,7 @@ void bake(Context& context) {
   });
 }
 
-// ---- Speed
+// ---- Change the speed of a clip
 
 const Clip& require_clip(const Document& document) {
   const Clip* clip = shown_clip(document);
@@ -171,7 +171,7 @@ void ask_speed(Context& context) {
        }}));
 }
 
-// ---- Loop
+// ---- Repeat a clip as a loop
 
 void tell_of_loop(Messages& messages, const LoopedPoses& loop, int repeats) {
   char text[160];

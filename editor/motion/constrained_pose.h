@@ -42,11 +42,12 @@ Pose unconstrained_pose(Context& context);
 Pose unconstrained_pose(Context& context, const Pose& changed, const std::vector<int>& set = {});
 // Returns the pose `free` with the clip's constraints applied; `free` itself if the clip has no constraints.
 Pose constrained_pose(const ClipOnRig& clip, const Pose& free, int frame);
-// Returns the pose to show after the user has changed the document's pose to `changed`: the new free pose, with the
-// constraints applied again.
+// Returns the pose to show after the user has changed the document's pose to `changed`. This is the new free pose (the
+// pose before constraints are applied), with the constraints applied again.
 //   set  bones whose rotations the user has set to a value; the free pose gets exactly these rotations
 Pose held_by_constraints(Context& context, const Pose& changed, const std::vector<int>& set = {});
-// Stores the free pose that belongs to the pose `shown` at the frame of the document's shown clip.
+// Stores the free pose `free`, from which applying the constraints gave the pose `shown`, for the document's clip and
+// frame.
 void remember_free_pose(Timeline& timeline, const Document& document, const Pose& shown, const Pose& free);
 // If the user made the document's pose by hand, returns the stored free pose of that pose. Returns nothing if the
 // document's pose comes from the clip.

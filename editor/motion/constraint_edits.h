@@ -55,7 +55,7 @@ void set_planted_point(Context& context, const std::string& name, PlantPoint poi
 void keep_direction(Context& context, const std::string& name, bool keeps);
 void aim_at_cross_hair(Context& context, const std::string& name);
 
-// ---- Weights
+// ---- Weights of constraints
 bool has_weight_key(const Document& document, const Constraint& constraint, int frame);
 // Returns the constraint's weight at the shown frame.
 double shown_weight(const Context& context, const Constraint& constraint);

@@ -92,7 +92,7 @@ struct Graph {
   GraphCurves curves;
 };
 
-Graph& graph_of(Context& context);  // creates the state if there is none
+Graph& graph_of(Context& context);  // returns the state of the graph editor; creates it if there is none
 // Returns the clip's keys, or their preview during a drag; needs a shown clip.
 const Keys& graph_keys(const Context& context);
 bool graph_is_shown(const Context& context);
@@ -127,7 +127,7 @@ glm::dvec3 tangent_of_speeds(const GraphCurves& curves, const GraphTrack& track,
 // that side. Returns nothing if there is no Bezier span on that side.
 std::optional<double> handle_frames(const GraphCurves& curves, const GraphTrack& track, int frame, KeySide side);
 
-// ---- The view
+// ---- What the graph editor shows
 void show_graph(Context& context, bool on);
 // Fits the value axis to the keys; nullptr: to all shown curves.
 void fit_graph_values(Context& context, const std::set<GraphKey>* keys = nullptr);

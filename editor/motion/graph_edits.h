@@ -17,7 +17,7 @@ struct GraphMap {
 // Moves or scales keys in time and in value. Only the selected channels change their value, but a frame change moves
 // all channels of a bone's key. Tangents that the user has set are scaled with the keys.
 //   time   maps frames; its scale is positive
-//   value  maps degrees, or mm for a shift
+//   value  maps degrees, or mm if the track is the body's translation
 Keys with_keys_changed(const GraphCurves& curves, const Keys& keys, const std::set<GraphKey>& changed,
                        const GraphMap& time, const GraphMap& value);
 // Copies the keys and moves or scales the copies as with_keys_changed() does. A copy replaces an existing key at the

@@ -85,7 +85,7 @@ void draw_list(Context& context, const Rect& area, const GraphTracks& found) {
 
 // ---- The plot
 
-// Returns the unit of the shown values: "" when both angles and shifts are shown.
+// Returns the unit of the shown values: "" when both angles and translations are shown.
 const char* unit_of(const Graph& graph) {
   bool angles = false, shifts = false;
   for (const auto& [track, curve] : graph.curves.tracks)

@@ -194,7 +194,7 @@ bool is_let_go(const Clip& clip, const Cleaning& cleaning) {
   return cleaning.plants_feet && keeps_in_place(clip) && clip.keys.root.empty() && !clip.constraints;
 }
 
-// Returns the clip whose poses are cleaned.
+// Returns the clip whose poses are cleaned: `source`, or a copy in which the body travels (is_let_go()).
 std::shared_ptr<const Clip> cleaned_source(const std::shared_ptr<const Clip>& source, const Cleaning& cleaning) {
   if (!is_let_go(*source, cleaning)) return source;
   Clip travels = *source;

@@ -44,7 +44,7 @@ class MapDialog final : public Dialog {
   std::shared_ptr<const Armature> armature_;
   RetargetMap map_;
   std::vector<MatchKind> kinds_;
-  std::vector<std::string> choices_;  // "nothing", then the names of the joints
+  std::vector<std::string> choices_;  // the choices of each row: "nothing", then the names of the joints
 };
 
 // Returns the x coordinates of the left edges of the columns "Moved by" and "Found by", pixels.

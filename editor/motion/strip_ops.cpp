@@ -66,7 +66,7 @@ std::string needs_clip_of_strips(const Context& context) {
   return any ? "" : "Import a motion first: strips play other clips";
 }
 
-// ---- Strips of clips
+// ---- Adding strips of clips
 
 std::string track_name_of(const Strips& strips) {
   return unique_track_name(strips, "Track " + std::to_string(strips.tracks.size() + 1));
@@ -302,7 +302,7 @@ void begin_where_body_is(Context& context) {
   });
 }
 
-// ---- Tracks
+// ---- Edits of tracks
 
 void change_track(Context& context, const std::string& label, const std::function<void(StripTrack&)>& edit) {
   const std::size_t track = *active_track(context);

@@ -29,7 +29,7 @@ struct StripView {
 
 constexpr float kTrackHeight = 26;  // height of a track, pixels at scale 1
 
-StripView& strip_view(Timeline& timeline);  // creates the state if there is none
+StripView& strip_view(Timeline& timeline);  // returns the state of the strips' view; creates it if there is none
 bool strips_are_shown(const Context& context);
 void show_strips(Context& context, bool on);
 
@@ -55,7 +55,7 @@ void drop_strip_preview(Context& context);
 void change_active_strip(Context& context, const std::string& label, const std::function<void(Strip&)>& edit);
 void preview_active_strip(Context& context, const std::function<void(Strip&)>& edit);
 
-// ---- Places in the view
+// ---- Positions in the strips' view
 Rect track_rect(const Context& context, std::size_t track);  // the track's row over its whole width, pixels
 Rect strip_rect(const Context& context, const StripPlace& place);
 // Returns the index of the track at the y coordinate `y` of the window, pixels. The lowest track has the index 0. Above

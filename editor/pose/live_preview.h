@@ -127,7 +127,7 @@ class LivePose {
   bool was_lent_ = false;
   MapMaker::Made coarse_, fine_;  // newest coarse map, from swift_, and newest fine map, from thorough_
   PoseWish wish_;
-  double since_ = 0;  // Ui::now when wish_ changed last, s
+  double since_ = 0;  // time (Ui::now) at which wish_ changed last, s
   std::shared_ptr<const PreviewMap> shown_;
   PoseWish seen_;  // the body and pose that the views show
   std::string trouble_;

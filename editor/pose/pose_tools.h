@@ -33,8 +33,9 @@ struct PoseBlend {
   std::string words;  // text shown below the amount
   Pose from, to;
   double base = 0, slope = 1;
-  double begin = 0, most = 1;     // initial amount; largest amount that the pointer can set
-  std::optional<Pose> back = {};  // pose that negative amounts blend towards; none: amounts are not negative
+  double begin = 0, most = 1;  // initial amount; largest amount that the pointer can set
+  // The pose towards which negative amounts blend; no value: the amount cannot be negative.
+  std::optional<Pose> back = {};
 };
 std::unique_ptr<TransformTool> begin_blending(Context& context, const PoseBlend& blend);
 // Begins to drag the pole of the active bone's limb. The limb's middle joint turns towards the pole.

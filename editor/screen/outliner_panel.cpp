@@ -148,7 +148,7 @@ class Tree {
   std::vector<std::vector<int>> children_;  // indices of the children of each bone, at [bone + 1]; [0]: the root bones
 };
 
-// ---- actions on a row
+// ---- Actions on a row
 
 void toggle_eye(Context& context, const Row& row, bool alone) {
   std::set<Label> all;
@@ -211,7 +211,7 @@ void open_menu(Context& context, const Row& row) {
   }
 }
 
-// ---- drawing
+// ---- Drawing the rows
 
 void draw_fold(Context& context, const Row& row, const Rect& rect) {
   if (!row.folds) return;

@@ -27,7 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "limber-brushes/1";
-// Names in the file, in the order of FalloffShape.
+// Names of the falloff shapes in the presets file, in the order of FalloffShape.
 constexpr std::array kFalloffs = {"smooth", "sphere", "root", "sharp", "linear", "constant"};
 // A falloff curve with more points is ignored; the Brush panel has the same limit.
 constexpr std::size_t kMostPoints = 16;

@@ -18,7 +18,7 @@ struct BrushPreset {
   double radius = 20, strength = 0.75, value = 1;  // radius in mm; strength and value in [0, 1]
   double blend = 40;  // Painting::blend_mm of the joint capsule brush, mm; always 40 for other brushes
   FalloffShape falloff = {};
-  std::vector<glm::dvec2> falloff_curve;  // points in the format of Painting::falloff_curve
+  std::vector<glm::dvec2> falloff_curve;  // points of a custom falloff curve, as in Painting; empty: `falloff` is used
 
   bool operator==(const BrushPreset&) const = default;
 };

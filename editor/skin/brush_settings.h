@@ -21,7 +21,8 @@ std::string why_not_paint(const Context& context);
 // Returns why a brush with the current settings would reach no tissue; "" when it would reach some.
 std::string why_brush_reaches_nothing(const Context& context);
 
-// Returns the stroke settings from the current brush settings, selection, locks, clip and region.
+// Returns the settings of a stroke: from the brush's settings, the selected bones, the locked bones, the clip box and
+// plane, and the region that limits brushes.
 StrokeSettings stroke_settings(const Context& context, BrushKind kind);
 // Returns how strokes normalize weights. This is the user's setting, except that WhenComposed becomes Unlocked when
 // the base weights or a mask are painted: only a layer's weights can be normalized when the layers are composed.

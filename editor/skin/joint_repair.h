@@ -14,7 +14,7 @@ namespace limber::editor {
 class Column;
 struct Context;
 
-// The outcome of the last repair.
+// The outcome of the last repair of a joint.
 struct RepairedJoint {
   std::string bone;  // name of the bone below the joint
   // What the repair has changed, with ratings of the joint before and after it. The weights in it are empty.

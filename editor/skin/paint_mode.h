@@ -12,7 +12,7 @@ struct ViewPlace;
 
 // Begins a stroke with this brush at the pointer. The stroke ends when the button is released.
 void begin_stroke(Context& context, BrushKind kind);
-// Returns the number of dabs of the running stroke; 0 without a stroke.
+// Returns the number of dabs (single touches of the brush) of the running stroke; 0 without a stroke.
 int dabs_of_stroke(const SkinDisplay& skin);
 // Moves the brush's cursor to the pointer. Call once per frame.
 void follow_brush(Context& context);

@@ -42,13 +42,13 @@ struct Painting {
 
   BrushKind kind = BrushKind::Add;
   double radius = 20;      // radius of the brush, mm
-  double strength = 0.75;  // strength of one dab, [0, 1]; 1: the full change
+  double strength = 0.75;  // strength of one dab (a single touch of the brush), [0, 1]; 1: the full change
   double value = 1;        // weight that the brushes Set and Multiply use, [0, 1]
   FalloffShape falloff = FalloffShape::Smooth;
   // Points of a custom falloff curve, sorted by x. x: distance from the brush's centre, relative to the radius; y: the
   // brush's effect, [0, 1]. Empty: use `falloff`.
   std::vector<glm::dvec2> falloff_curve;
-  double spacing = 0.2;  // distance between dabs, a fraction of the radius
+  double spacing = 0.2;  // distance between the dabs of a stroke, as a fraction of the radius
   double blend_mm = 40;  // length over which the joint capsule brush blends a bone with its parent
   bool accumulate = false;
   BrushDistance distance = BrushDistance::Geodesic;
@@ -64,8 +64,9 @@ struct Painting {
 
   int dragged_point = -1;  // index of the point of `falloff_curve` that the user drags; -1: the user drags no point
   // The weight layer being painted (editor/skin/weight_layers.h).
-  std::optional<std::size_t> layer;  // index of the painted layer; none: the base
-  bool mask = false;                 // true: strokes paint the layer's mask instead of its weights
+  // Index of the painted layer; no value: the base weights below all layers are painted.
+  std::optional<std::size_t> layer;
+  bool mask = false;  // true: strokes paint the layer's mask instead of its weights
   struct {  // cache of the weights that a stroke on a layer changes, with the layers that they are composed of
     std::shared_ptr<const WeightLayers> of;
     std::size_t layer = 0;

@@ -60,7 +60,7 @@ WeightOperation smoothing(const std::string& label, int passes, double amount) {
           }};
 }
 
-// ---- flood
+// ---- Flood: apply a brush to all tissue at once
 
 constexpr int kSmoothFlood = 4;
 
@@ -103,7 +103,7 @@ void flood(Context& context) {
       });
 }
 
-// ---- fill connected tissue, assign a tissue
+// ---- Fill connected tissue, assign a tissue to a bone
 
 void fill_part(Context& context) {
   const glm::ivec3 voxel = context.views->hover.voxel;
@@ -157,7 +157,7 @@ void assign_tissue(Context& context) {
       });
 }
 
-// ---- mirror
+// ---- Mirror weights
 
 // Returns a message that names the bones that have no counterpart on the other side of the body; "" if all have one. A
 // bone without a counterpart gets its own mirrored weights.
@@ -211,7 +211,7 @@ void mirror(Context& context) {
       });
 }
 
-// ---- edits of all bones at once
+// ---- Edits of the weights of all bones
 
 void smooth_all(Context& context) {
   edit_weights(
@@ -335,7 +335,7 @@ void ask_copy(Context& context) {
                                    weight_act(make)}));
 }
 
-// ---- transfer from another project
+// ---- Transfer weights from another project
 
 EditedWeights transfer(const Path& path, const WeightsToEdit& what, const EditScope& scope) {
   const Project project = read_project(path, *scope.progress);

@@ -30,7 +30,7 @@ std::shared_ptr<const T> shared(T value) {
   return std::make_shared<const T>(std::move(value));
 }
 
-// Sets the document's layers and its weights. Without layers, the base becomes the document's weights.
+// Sets the document's layers and its weights. Without layers, the base weights become the document's weights.
 //   came_out  the composed weights of all layers
 void set_layers(Document& document, WeightLayers layers, std::shared_ptr<const SkinWeights> came_out) {
   if (layers.layers.empty()) {

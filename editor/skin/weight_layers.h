@@ -19,11 +19,12 @@ struct Context;
 // base below these layers. Otherwise the layers are removed.
 void set_weights(Document& document, std::shared_ptr<const SkinWeights> weights);
 
-// The weights that strokes and edits change: the weights of the active layer, of the base below all layers, or of a
-// document without layers.
+// The weights that strokes and edits change: the weights of the active layer, the base weights below all layers, or the
+// weights of a document without layers.
 struct LayerToEdit {
   std::shared_ptr<const WeightLayers> layers;  // the document's layers; null: no layers
-  std::optional<std::size_t> layer;            // index of the active layer; none: the base, or no layers
+  // Index of the active layer; no value: the base weights below all layers are active, or there are no layers.
+  std::optional<std::size_t> layer;
   // Weights before the edit; if a layer is active, its weights composed with those of all layers below it.
   std::shared_ptr<const SkinWeights> weights;
   std::shared_ptr<const SkinWeights> came_out;  // composed weights of all layers: the document's weights

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Reads a grey image (render/textures/grey_texture.h) at positions in the padded coordinates of the label volume.
-uniform sampler3D u_grey;         // levels, [0, 1]
+uniform sampler3D u_grey;  // the image's grey levels, [0, 1]
 uniform sampler3D u_grey_ranges;  // least and largest level of each block of 8^3 voxels and the voxels beside it
 uniform mat3 u_grey_linear;       // with u_grey_offset: from padded coordinates to fractions of the image
 uniform vec3 u_grey_offset, u_grey_size;

@@ -146,7 +146,7 @@ void main() {
     return;
   }
   bool cap = cut && found == s_start;
-  // Finds the crossing by the secant method.
+  // Finds where the ray crosses the surface, by the secant method.
   if (!cap)
     found = mix(max(met.s_before, s_start), found,
                 clamp((kSurface - met.value_before) / max(met.value - met.value_before, 1e-3), 0.0, 1.0));

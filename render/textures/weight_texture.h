@@ -42,7 +42,7 @@ namespace limber::render {
 enum class WeightReading { Ramp, Filtered, Voxels };
 WeightReading reading_of(WeightDisplay display);
 
-// A box [low, high) in padded coordinates.
+// A box of texels [low, high) in padded coordinates, which are voxel coordinates plus kPad (brick_atlas.h).
 struct TexelBox {
   glm::ivec3 low{1 << 30}, high{-(1 << 30)};
   bool empty() const { return glm::any(glm::greaterThanEqual(low, high)); }
