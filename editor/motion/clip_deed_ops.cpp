@@ -32,8 +32,8 @@ namespace {
 constexpr std::int64_t kMostFrames = 1e6;  // a command that would record or repeat more frames fails with an error
 // The speed of a clip with fewer frames than this is changed at once, that of a longer clip in a background task.
 constexpr double kFewFrames = 2000;
-// Where the end of a loop is blended into its start, bones turn faster than in the recorded motion. If they turn faster
-// by more than this factor, the user is warned.
+// Where the end of a loop is blended into its start, bones can turn faster than in the recorded motion. If they turn
+// faster by more than this factor, the user is warned.
 constexpr double kHasty = 1.5;
 
 std::string needs_clip(const Context& context) {

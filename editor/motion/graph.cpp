@@ -17,7 +17,7 @@ namespace limber::editor {
 
 namespace {
 
-// If more bones are selected, only the curves of the first ones are shown.
+// If more bones than this are selected, only the curves of the first kMostBones bones are shown.
 constexpr std::size_t kMostBones = 12;
 constexpr int kMostFrames = 20'000;            // largest number of frames shown; a longer clip shows its first frames
 constexpr std::chrono::milliseconds kTime{6};  // time limit per drawn frame for sampling the motion's poses

@@ -26,7 +26,7 @@ namespace limber::editor {
 
 namespace {
 
-constexpr std::int64_t kMostFrames = 1e6;  // strips that play more frames are not baked
+constexpr std::int64_t kMostFrames = 1e6;  // strips that play more frames than this are not baked into a motion
 
 // ---- Why operators cannot run
 

@@ -24,8 +24,9 @@ constexpr float kWidth = 340, kRow = 22, kPad = 10, kMargin = 8, kNumber = 92;
 
 struct Row {
   std::string letter, name;
-  std::optional<std::array<std::int64_t, 2>> counts;  // voxel counts in the legend's two columns; none: not computed
-  std::optional<std::array<glm::vec3, 2>> marks;      // swatch colours in the two columns, sRGB; none: no swatches
+  // Voxel counts in the legend's two columns; no value: not computed yet.
+  std::optional<std::array<std::int64_t, 2>> counts;
+  std::optional<std::array<glm::vec3, 2>> marks;  // swatch colours in the two columns, sRGB; none: no swatches
 };
 struct Legend {
   std::string title;

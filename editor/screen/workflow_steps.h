@@ -18,7 +18,7 @@ struct Step {
   std::string line;               // text that tells what the step has produced, or what is missing for it
   std::string operator_id;        // operator of the step's main button
   std::string button;             // label of the main button
-  std::vector<std::string> more;  // operators shown while Advanced steps is on
+  std::vector<std::string> more;  // operators that are shown while "Advanced steps" is on
 };
 // Returns the five steps Prepare, Rig, Skin, Pose and Resample. At most one step has the state Next, which marks the
 // first step that is not done.

@@ -42,7 +42,7 @@ class LightPass {
             LightBuffer& into, int picture, const PixelRect& rect);
 
  private:
-  // One program for each number of atlas textures, at rest (false) and posed (true).
+  // The shader programs. First key: the number of atlas textures; second key: true if the body is posed.
   std::map<std::pair<int, bool>, std::unique_ptr<gl::Program>> programs_;
   gl::VertexArray nothing_;
 };

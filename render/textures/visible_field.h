@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A set of labels as a smooth body on the graphics card (surface_field.h).
+// Stores a set of labels as a smooth body (surface_field.h) in textures on the graphics card.
 #pragma once
 
 #include <cstdint>
