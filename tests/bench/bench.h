@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the benchmarks share. Each row runs five times and reports the median of CPU time (user + system), and counters:
+// What the benchmarks share. Each benchmark runs five times. Its row in the output holds the median of the CPU time
+// (user + system) and these counters:
 //   peer      the same quantity for the program that Limber is compared with, on a comparable 2-core machine
 //   ahead     how many times better Limber is than that program
 //   goal      how many times better Limber should be

@@ -109,7 +109,7 @@ void brush_dab(benchmark::State& state, const Body& (*of)(), BrushKind kind, Bru
   settings.brush.distance = distance;
   settings.brush.strength = 0.5;
   settings.filter.depth = depth;
-  settings.filter.depth_mm = 25;  // the editor's default
+  settings.filter.depth_mm = 25;  // mm below the surface, the editor's default
   std::optional<Stroke> stroke;
   std::size_t next = 0;
   std::int64_t memory = 0;

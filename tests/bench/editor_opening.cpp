@@ -5,10 +5,11 @@
 //   window_cpu_seconds         CPU seconds (user and system, all threads) before the first frame: libraries, fonts,
 //                              shaders
 //   first_picture_cpu_seconds  from the first frame, which shows the empty window, to the first that shows the volume
-//   first_picture_seconds      the same divided by two: the time on two cores that are otherwise idle
-//   longest_frame_cpu_seconds  CPU seconds of the interface's own thread in its longest frame until then
+// //   first_picture_seconds      first_picture_cpu_seconds / 2: the time on two cores that are otherwise idle
+// //   longest_frame_cpu_seconds  CPU seconds of the interface's own thread in its longest frame before the volume
+// shows
 //   complete_cpu_seconds       from the first frame until the picture is at full resolution
-//   longest_frame_to_complete_cpu_seconds  of the interface's own thread in its longest frame until then
+// //   longest_frame_to_complete_cpu_seconds  the same for all frames until the picture is at full resolution
 //   frames_with_progress       how many frames in between showed the job's progress
 #include <sys/wait.h>
 #include <unistd.h>

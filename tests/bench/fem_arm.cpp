@@ -53,8 +53,8 @@ TissueModel model_with_contact(const test::BentArm& arm, double spacing) {
   return model;
 }
 
-// The cost of one row. The row also gives the seconds of one iteration divided by those of one factorization, and
-// divided by those of one factorization and one ordering together.
+// What one case of the command line costs. The printed row also gives the seconds of one iteration divided by those of
+// one factorization, and divided by those of one factorization and one ordering together.
 //   mesh  CPU seconds of meshing; 0 if the mesh was made before the measurement began
 struct Cost {
   long long tets, crossings;

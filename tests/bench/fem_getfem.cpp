@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Compares a Newton iteration with that of GetFEM with MUMPS on a real arm's mesh, where python3-getfem is installed.
-// Called as
+// Compares the cost of a Newton iteration with that of GetFEM with MUMPS on the mesh of a real arm, where
+// python3-getfem is installed. Called as
 //   limber_fem_getfem VOLUME RIG [SPACING_MM [DEGREES]]
 // Both programs start from the arm bent by DEGREES, and compute the exact Newton step of flesh and springs, without
 // contact, towards the pose that is bent by 7.5 degrees more. The two steps must be the same. Prints CPU seconds of one

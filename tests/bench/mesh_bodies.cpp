@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Meshes real bodies and prints how much of them is covered, how good the tets are, and which step takes how long.
-// Called as
+// Meshes real bodies. Prints how much of each body the mesh covers, how good the tets are, and how long each step
+// takes. Called as
 //   limber_mesh_bodies DATA_FOLDER [SPACING_MM [BODY...]]
 // Bodies that are not in the folder are left out, with a message. Times are CPU seconds of one thread.
 #include <algorithm>

@@ -3,8 +3,8 @@
 // Measures how long the editor's frames take while finite elements are solved, and how long a cancel takes. The real
 // editor runs in an offscreen window of 1280x720, on the arm of the Bender project where LIMBER_SHARED names it, else
 // on the procedural one, its elbow bent by 90 degrees. The mouse turns the view while the body follows the pose by
-// blending: without a solve, while a worker process of low priority solves with contact, and without one again; then in
-// the Resample workspace while it shows the steps of the solve, and there while it shows the result of blending and
+// blending: before a solve, while a worker process of low priority solves with contact, and after the solve; then in
+// the Resample workspace while it shows the steps of a solve, and there while it shows the result of blending and
 // nothing is solved. Frames are drawn 60 a second or as fast as they can. For each case, prints as JSON the number of
 // frames and the median, the 95th percentile and the maximum of a whole frame (with the window painted and OpenGL
 // done), in milliseconds. Then cancels solves in each of their stages, and prints the milliseconds from the request to

@@ -79,7 +79,8 @@ struct PaintEditor : LimbEditor {
         body(world * glm::dvec3(voxel), voxel, weights().chunk(brick)[place - tissue.bricks()[brick].first]);
       });
   }
-  // Counts the voxels of one half that have weight of `bone`, and returns with it the largest distance to `from`, mm.
+  // Counts the voxels of one half in which `bone` has weight. Returns the count, and the largest distance of these
+  // voxels to `from`, mm.
   std::pair<int, double> painted(int bone, const glm::dvec3& from, bool upper) const {
     int count = 0;
     double furthest = 0;

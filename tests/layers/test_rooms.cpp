@@ -168,8 +168,9 @@ TEST_CASE("rooms: few files of the editor name the struct that owns its state") 
 }
 
 TEST_CASE("rooms: a volume, a click and a dab pass through rooms in their order, down and up once") {
-  // Each walk lists units along the calls of one deed: a unit includes the next and lies in the same room or a later
-  // one. Calls return along the same units, so that a walk leads down once and up once.
+  // Each walk lists units in the order in which one user action calls them: a unit includes the next one, and the next
+  // one lies in the same folder or in one that comes earlier in the lists. Calls return along the same units, so a walk
+  // leads down once and up once.
   const std::vector<std::vector<std::string>> walks = {
       // A label volume from its file, through a pose, to the posed file.
       {"core/cmd/resample", "core/cmd/body_options", "core/body/body", "core/volume_io/volume_io",
@@ -186,7 +187,7 @@ TEST_CASE("rooms: a volume, a click and a dab pass through rooms in their order,
       {"editor/skin/paint_mode", "editor/context/views", "render/view", "render/passes/pass_resources",
        "render/textures/weight_texture"},
   };
-  std::map<std::string, int> place;  // of every room, from the lowest of the core to the highest of the editor
+  std::map<std::string, int> place;  // position of each folder, from the lowest of core to the highest of editor
   for (const Floor& floor : kFloors)
     for (const std::string& room : floor.rooms)
       place.emplace(room.empty() ? floor.name : floor.name + "/" + room, static_cast<int>(place.size()));

@@ -64,8 +64,8 @@ bool lies_within(const std::vector<int>& labels, int x, int y) {
   return true;
 }
 
-// Returns the fraction of the silhouette's pixels that show another label. Pixels in the band at borders are not
-// counted.
+// Returns the fraction of the silhouette's pixels whose label differs from that in the picture at rest. Pixels near the
+// borders between labels are not counted.
 double share_of_others(const std::vector<int>& labels, const std::vector<int>& at_rest) {
   int covered = 0, others = 0;
   for (int y = 0; y < kSize.y; ++y)

@@ -87,7 +87,7 @@ FitBody rebuilt(const FitBody& body, const Build& build, const StandingLandmarks
   const AffineTransform to_world = world_from_voxel(grid), to_voxel = voxel_from_world(from);
   for (int z = 0; z < grid.size.z; ++z)
     for (int y = 0; y < grid.size.y; ++y) {
-      glm::dvec3 moved_by(0);  // a voxel moves by nearly as much as the one beside it
+      glm::dvec3 moved_by(0);  // the shift of the previous voxel, mm, with which the search at the next voxel begins
       for (int x = 0; x < grid.size.x; ++x) {
         const glm::dvec3 after = to_world * glm::dvec3(x, y, z);
         const glm::dvec3 before = place_before(after, after - moved_by, build, at);

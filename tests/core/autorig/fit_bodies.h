@@ -24,7 +24,8 @@ struct Build {
   double wider_pelvis = 0, shorter_limbs = 0, larger_head = 0, size = 1;
 };
 
-// Where on the standing body a change of build acts, mm. The defaults are those of the BodyParts3D man.
+// Where on the standing body a change of build acts, mm: heights of hip, shoulder and neck; distances from the midplane
+// at which the arms begin and the trunk is widest; the head's position. The defaults are those of the BodyParts3D man.
 struct StandingLandmarks {
   double hip = 820, shoulder = 1322, neck = 1470, arm_from = 165, arm_to = 215, widest = 190;
   glm::dvec3 head{0, -86, 1490};

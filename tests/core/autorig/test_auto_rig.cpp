@@ -25,8 +25,8 @@ namespace limber {
 
 namespace {
 
-// Returns the distances in mm between joints of the same name. A bone is also compared with the bone of `truth` whose
-// name is "Right" and this name.
+// Returns the distances in mm between joints of the same name. If `truth` has no bone of a name, its bone "Right" +
+// name is taken.
 std::vector<std::pair<double, std::string>> errors(const Armature& found, const Armature& truth) {
   std::vector<std::pair<double, std::string>> result;
   for (const Bone& bone : found.bones) {

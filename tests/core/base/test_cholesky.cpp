@@ -143,7 +143,7 @@ TEST_CASE(
   sparse.analyse(graph);
   const Cholesky own(graph);
   CHECK(sparse.factor_operations() < 1.3 * own.factor_operations());
-  // Nodes that were not moved keep their order up to postordering, so most ranks hardly change.
+  // Mending moves few nodes, so most nodes change their rank by no more than the number of nodes that meet.
   const std::vector<int> mended = ranks();
   int near = 0;
   for (int i = 0; i < base.node_count(); ++i) near += std::abs(mended[i] - first[i]) <= kMeet;

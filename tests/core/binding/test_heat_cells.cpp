@@ -229,7 +229,7 @@ TEST_CASE("heat cells: a cell is a connected set of soft voxels of one block, an
   for (const int shift : {1, 2, 3}) {
     CAPTURE(shift);
     const HeatCells cells = cells_of(hand, held_by, law, shift);
-    // Floods the soft voxels of each block from each voxel. All that is reached, and nothing else, is the voxel's cell.
+    // A flood through the soft voxels of a block must reach exactly the voxels of the cell in which it starts.
     auto cell_at = [&](const glm::ivec3& v) {
       const std::int64_t place = hand.body.volume.grid.contains(v) ? hand.tissue.index_of(v) : -1;
       if (place < 0 || held_by[place] != kSoft) return -1;

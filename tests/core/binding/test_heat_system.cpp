@@ -174,7 +174,8 @@ TEST_CASE("heat system: 1, 2 and 4 threads give the same bits" * doctest::test_s
 }
 
 TEST_CASE("heat system: bricks that are left out count as cold") {
-  // Solves for the lower half of the bricks only.
+  // Solves with the lower half of the bricks only. The result must equal exact temperatures with the upper half held at
+  // 0.
   const RandomBody body({16, 16, 32}, glm::dvec3(1), 5);
   const HeatGraph soft(body.volume, body.tissue, body.tissues, body.held_by, body.nearest);
   std::vector<std::int32_t> lower;

@@ -39,7 +39,7 @@ CellGraph box_graph(const glm::ivec3& size, const glm::dvec3& spacing, double sh
       glm::ivec3 q(p);
       q[axis] += direction & 1 ? 1 : -1;
       diagonal += g;
-      if (q[axis] < 0 || q[axis] >= size[axis]) continue;  // outside the box, where the value is held
+      if (q[axis] < 0 || q[axis] >= size[axis]) continue;  // outside the box, where the value is held at 0
       if (number[at(q)] < 0) {
         diagonal -= 0.9f * g;
         continue;

@@ -75,7 +75,8 @@ TEST_CASE("spacing: an arm at 2, 3 and 4 mm gets the same weights, and its elbow
     const AffineTransform to_coarse = voxel_from_world(coarse.volume.grid);
     const double width = width_across(coarse, tissues, joint, axis, forearm);
 
-    // Differences over the voxels that both grids have: the mean over all bones, and for the two bones of the elbow.
+    // Differences of the weights at voxels that both grids have: the mean over all bones, and over the two bones of the
+    // elbow.
     double difference = 0, at_elbow = 0;
     std::int64_t voxels = 0;
     fine.tissue.for_each([&](std::int64_t, const glm::ivec3& v) {

@@ -199,7 +199,7 @@ TEST_CASE("bone parts: two bones that touch part where they touch, shafts stay w
     CHECK((parts.part_of[place] > 0) == (body.volume.at(v) == kBone));
     if (parts.part_of[place]) wrong += (parts.parts[parts.part_of[place] - 1].bone == 0) != (v.z < 46);
   });
-  CHECK(wrong <= 40);  // voxels of the disc in which the bones touch
+  CHECK(wrong <= 40);  // at most the voxels of the disc in which the bones touch
 }
 
 TEST_CASE("bone parts: one tube drawn along several rig bones is cut at their joints") {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Clinical angles that `limber resample` was asked for, measured by an independent goniometer on the bones of the posed
-// volume: 40 poses of four bodies, each angle within one degree.
+// Compares the clinical angles that `limber resample` was asked for with those that an independent goniometer measures
+// on the bones of the posed volume: in 40 poses of four bodies, each angle must agree within one degree.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -201,7 +201,7 @@ class Goniometer {
                                     bones.begin());
   }
 
-  // Returns true in the middle part of a bone, away from its joints and from the bones beside it.
+  // Returns true if p lies in the middle part of a bone, away from its joints and from the bones beside it.
   static bool is_around_middle(const Bone& bone, const glm::dvec3& p) {
     const glm::dvec3 along = bone.tail - bone.head;
     const double share = glm::dot(p - bone.head, along) / glm::dot(along, along);

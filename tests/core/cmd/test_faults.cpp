@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Makes every n-th file system call of a command fail, or kills the program at this call. A command that could not
-// write reports it, inputs and older outputs are unchanged, and nothing is left behind after the next start. The calls
-// fail by tests/support/failing_calls.cpp.
+// Makes every n-th file system call of a command fail, or kills the program at this call (by the preloaded library
+// tests/support/failing_calls.cpp). A command that could not write reports the failure, inputs and older outputs are
+// unchanged, and nothing is left behind after the next start.
 #include <algorithm>
 #include <csignal>
 #include <map>

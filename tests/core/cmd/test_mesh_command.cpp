@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Whole bodies as tets: what `limber mesh` and `limber resample --mesh-out` write is read as other programs read it.
+// Tests `limber mesh` and `limber resample --mesh-out` on whole bodies. Reads the files that they write by the rules of
+// other programs.
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -60,7 +61,7 @@ struct ByGeant4 {
       density[number] = std::atof(density_word.c_str());
       for (;;) {
         material >> word;
-        CHECK(word.size() < 50);  // the buffer into which Geant4 reads it
+        CHECK(word.size() < 50);  // Geant4 reads each word into a buffer of 50 characters
         if (word == "C" || material.eof()) break;
         material >> word;
       }

@@ -52,7 +52,8 @@ TEST_CASE("depth: it is the distance to the nearest air, with voxels of any shap
         }
     CHECK(worst < 1e-6);
   }
-  // Depths too large for whole numbers are stored as floats for cubic voxels too.
+  // If the limit is 20, the squared depths of this body exceed it, so they are stored as floats. The depths must equal
+  // those that are stored as whole numbers.
   const TissueDepth as_steps(tissue, glm::dvec3(0.7)), as_floats(tissue, glm::dvec3(0.7), 20);
   double furthest = 0;
   tissue.for_each([&](std::int64_t, const glm::ivec3& v) {
@@ -60,7 +61,8 @@ TEST_CASE("depth: it is the distance to the nearest air, with voxels of any shap
     furthest = std::max(furthest, double{as_steps.at_voxel(v)});
   });
   CHECK(furthest > 0.7 * std::sqrt(20.0) + 1);
-  // With voxels of 0.5 mm all depths are stored as floats.
+  // With voxels of 0.5 mm, squared depths are multiples of 0.25 mm2. Floats hold them exactly, so the depths must be
+  // equal bit for bit.
   const TissueDepth depth(tissue, glm::dvec3(0.5));
   for (const glm::ivec3 v : {glm::ivec3(13, 11, 16), glm::ivec3(9, 14, 20), glm::ivec3(2, 11, 15)})
     CHECK(depth.at_voxel(v) == std::sqrt(static_cast<float>(squared_depth(volume, v, glm::dvec3(0.5)))));

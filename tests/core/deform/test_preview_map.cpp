@@ -130,7 +130,8 @@ TEST_CASE(
   for (const Blend blend : {Blend::Linear, Blend::DualQuaternion}) {
     LivePreview stepwise = tube.preview();
     std::shared_ptr<const PreviewMap> last;
-    // Maps that are still in use, each with a copy of it. A map must stay equal to its copy.
+    // Maps that are still in use, each with a copy that was made when the map was new. A map must stay equal to its
+    // copy.
     std::vector<std::pair<std::shared_ptr<const PreviewMap>, PreviewMap>> held;
     for (const double degrees : {0.0, 25.0, 24.0, 24.5, 24.6, 24.7, 24.8, 80.0, 81.0, 80.5, 81.0}) {
       last = stepwise.update(tube.motions(tube_pose(tube, degrees, degrees / 2)), blend);

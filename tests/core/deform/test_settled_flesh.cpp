@@ -322,7 +322,7 @@ TEST_CASE("volume shifts: the nearest matrix of volume one") {
     if (std::abs(glm::determinant(F)) < 0.2) continue;
     const glm::dmat3 P = with_volume(F, 1);
     CHECK(glm::determinant(P) == doctest::Approx(1).epsilon(0.03));
-    // The result is nearer to F than F scaled uniformly to volume one.
+    // The result P must be nearer to F than F scaled uniformly to volume one is.
     if (glm::determinant(F) > 0) {
       const glm::dmat3 scaled = F / std::cbrt(glm::determinant(F));
       const auto square = [](const glm::dmat3& M) {

@@ -92,7 +92,8 @@ TEST_CASE("decks: a volume with other axes is turned, and stays where it is in t
   CHECK(warnings.empty());
   CHECK(turned.voxels[0] == 3);
   const SimulationBody body{turned, {material(1, "a"), material(2, "b"), material(3, "c")}, 1e9};
-  // Voxel 0 of the original, with label 1, has its centre at x = 10.
+  // Voxel 0 of the original, with label 1, has its centre at x = 10. The x axis is turned round, so it becomes the last
+  // of the three cells, from 9 to 11.
   CHECK(openems_xml(body).find("<XLines>5,7,9,11</XLines>") != std::string::npos);
   volume.grid.direction = glm::dmat3(0.8, 0.6, 0, -0.6, 0.8, 0, 0, 0, 1);
   turned_to_lps(volume, warnings);

@@ -74,7 +74,7 @@ std::string square(int mode, const std::vector<std::uint32_t>& indices, int comp
 TEST_CASE("gltf surface: nodes move, turn, scale and mirror their meshes, which keep their outside") {
   const std::string nodes = R"("nodes": [{"mesh": 0}])";
   const auto with = [&](const std::string& by) { return mesh_of(replaced(kGltf, nodes, "\"nodes\": [" + by + "]")); };
-  // glTF's x, y, z are the body's x, z, -y.
+  // glTF's x, y and z in metres are the body's x, z and -y in millimetres.
   check_corners(with(R"({"mesh": 0, "translation": [1, 2, 3]})"), {1000, -3000, 2000}, {1010, -3000, 2000});
   check_corners(with(R"({"mesh": 0, "scale": [2, 2, 2]})"), {0, 0, 0}, {20, 0, 0});
   check_corners(with(R"({"mesh": 0, "scale": [-1, 1, 1]})"), {0, 0, 0}, {-10, 0, 0});

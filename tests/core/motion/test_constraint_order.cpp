@@ -39,7 +39,8 @@ TEST_CASE("constraint order: the later one of a bone has the last word, also whe
   CHECK(2 * std::acos(std::abs(free.rotation[spine].w)) > glm::radians(60.0));
   CHECK(2 * std::acos(std::abs(held.rotation[spine].w)) < glm::radians(53.0));  // at most 30 degrees about each axis
 
-  // The trunk must turn before the hand is planted, although planting turns the arm. The limit of the arm comes last.
+  // The inverse kinematics (2) turns the trunk, which carries the planted hand, so it comes before the plant (0). The
+  // limit (1) comes last, since it limits an arm that the plant turns.
   const Constraint plant = made(ConstraintKind::Plant, "LeftHand"),
                    elbow = made(ConstraintKind::LimitRotation, "LeftArm");
   Constraint reach = made(ConstraintKind::InverseKinematics, "LeftForeArm");

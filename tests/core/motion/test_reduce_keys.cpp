@@ -154,7 +154,8 @@ TEST_CASE("reducing keys: fitting again gives what fitting once gives, without a
   for (int frame = 30; frame < 60; ++frame) allowed.degrees[1][frame] = 0.01;
   CHECK(fitter.fitted(allowed, no_progress()).keys ==
         KeyFitter(armature, poses, 0).fitted(allowed, no_progress()).keys);
-  // Cancels at the fifth time that it is asked: once for each bone it is not, so any question within a bone cancels.
+  // The fifth question whether to cancel is answered with yes. The fitter asks once for each of the four bones, and
+  // more often only while it fits. So a run that fits nothing is not cancelled, and the next one is.
   CancelledLater progress(4);
   CHECK_NOTHROW(fitter.fitted(allowed, progress));
   allowed.mm[7] = 0.01;

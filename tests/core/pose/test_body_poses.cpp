@@ -97,7 +97,8 @@ Body body_of(const RigNames& names, const std::vector<HandTurn>& turns = {}) {
   return {names, rested(body_rig(names), turns)};
 }
 
-// Returns rotations of bones, by kAnatomistsNames, that make a T-pose the rest pose. Angles of arms and palms, degrees.
+// Returns rotations of bones, named as in kAnatomistsNames, that raise the hanging arms by `abduction` and turn the
+// palms by `palms` (degrees). The turned body becomes the rest pose; 90 and 90 degrees give a T-pose.
 std::vector<HandTurn> t_pose(double abduction, double palms) {
   return {{"LeftUpperArm", {0, 1, 0}, -abduction},
           {"RightUpperArm", {0, 1, 0}, abduction},

@@ -204,7 +204,8 @@ TEST_CASE("clinical angles: one angle changes alone, and a shoulder leads its co
       if (joint.joint == Shoulder)
         *expected[{Girdle, joint.side}][2] +=
             (std::max(0.0, raise_of_arm(expected[joint]) - 30) - std::max(0.0, raise_of_arm(motions) - 30)) / 6;
-      // Shoulder angles are relative to the trunk, but a motion of the girdle moves the arm.
+      // Shoulder angles are relative to the trunk. A motion of the girdle moves the arm, so the shoulder's angles may
+      // change.
       const Pose changed = with_clinical_angle(rig, frames, pose, joint, i, asked);
       JointAngles read = clinical_angles(rig, frames, changed);
       if (joint.joint == Girdle) read[{Shoulder, joint.side}] = expected[{Shoulder, joint.side}];

@@ -283,7 +283,7 @@ TEST_CASE("project: where there is no room, and in a folder that is read-only, a
   CHECK(bytes_of_file(path) == before);
   CHECK(std::distance(fs::directory_iterator(folder.path()), {}) == 1);
 
-  // Acts as a user who may not write there. Root may write anywhere.
+  // Becomes a user who may not write to the folder, since root may write anywhere.
   fs::permissions(folder.path(), fs::perms(0555));
   const bool root = ::geteuid() == 0;
   if (root) REQUIRE(::seteuid(65534) == 0);

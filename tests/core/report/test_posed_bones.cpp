@@ -148,7 +148,7 @@ TEST_CASE("posed bones: without names the bone around the middle of a limb tells
   CHECK_FALSE(bones.limbs[0].by_name);
   CHECK(bones.limbs[0].direction_degrees < 1e-3);
 
-  // Here the forearm's bone stays behind.
+  // Here the ulna moves with the upper arm (rig bone 4), so the forearm's 40 degrees are missing.
   PosedFigure left = pose_figure({{"RightForearm", -40}}, [](Label label, const glm::ivec3& v) {
     return label == kRightUlna ? 4 : own_bone(label, v);
   });

@@ -198,7 +198,7 @@ TEST_CASE(
   print_report(table, report);
   CHECK(table.str().find("NOT SOLVED, ended at 75.0 % of the pose") != std::string::npos);
 
-  // Factorizations in double precision are told only where there were some.
+  // The report states the number of factorizations in double precision only if there were some.
   CHECK_FALSE(solve.contains("repeated_in_double"));
   CHECK(table.str().find("double precision") == std::string::npos);
   report.deform->solve->factorizations = 31;

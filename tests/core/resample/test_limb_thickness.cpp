@@ -78,7 +78,8 @@ TEST_CASE("fem: a body of another size is meshed and posed alike" * doctest::tes
   // A scale by a power of two does not change any rounding.
   CHECK(share_that_differs(0.125) == 0);
   CHECK(share_that_differs(8) == 0);
-  // With other factors, a point of the mesher's lattice halfway between two voxels may be assigned to the other one.
+  // With other factors, rounding may assign a point of the mesher's lattice that lies halfway between two voxels to
+  // either voxel.
   CHECK(share_that_differs(0.1) < 0.03);
   CHECK(share_that_differs(10) < 0.03);
 }

@@ -118,14 +118,15 @@ TEST_CASE("connectivity: bridges take neither bone, nor what lies beside air, no
   CHECK(mend_in_place(posed, rest) == 0);
   CHECK(posed.voxels == walled.voxels);
 
-  // Only the outermost layer is not bone, but it lies beside air.
+  // Now only the wall's outermost ring is flesh. A bridge through it would lie beside air, so none is made.
   for (int y = 1; y < 12; ++y)
     for (int x = 1; x < 12; ++x)
       if (x == 1 || x == 11 || y == 1 || y == 11) walled.at({x, y, 11}) = kFlesh;
   posed = walled;
   CHECK(mend_in_place(posed, rest) == 0);
 
-  // Now a hole in the wall is open, but it is filled by a thin thread of another tissue, which a bridge would split.
+  // Now the wall has a hole, but a thin thread of another tissue fills it. A bridge through the hole would split the
+  // thread, so none is made.
   constexpr Label kThread = 4;
   for (int z = 8; z < 15; ++z) walled.at({6, 6, z}) = kThread;
   posed = walled;

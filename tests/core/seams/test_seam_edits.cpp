@@ -139,7 +139,8 @@ TEST_CASE("seam pairs: the seam of an arm grown to the trunk is said to lie betw
   std::int64_t faces = 0, elsewhere = 0;
   for (const SeamPair& pair : pairs) {
     faces += pair.faces;
-    if (pair.second != "trunk") {  // the last faces, which a path around the seam's end reaches
+    // A few faces at the seam's end lie between other bones, since a path around the end connects these.
+    if (pair.second != "trunk") {
       elsewhere += pair.faces;
       continue;
     }

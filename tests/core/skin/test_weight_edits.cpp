@@ -217,7 +217,8 @@ TEST_CASE("weight edits: one side mirrors the other, on an asymmetric body what 
   });
   CHECK(wrong == 0);
 
-  // Makes the source side four voxels shorter. Within 4.5 mm the nearest tissue serves as the match.
+  // Makes the source side four voxels shorter. A voxel without tissue at its mirrored position takes the weights of the
+  // nearest tissue within 4.5 mm; two layers of 10 x 10 voxels are further away.
   SmallBody short_arm = two_sided_body();
   const int side = sign > 0 ? 0 : 1;
   for (int z = 0; z < 14; ++z)

@@ -46,7 +46,7 @@ void write_volume(const TemporaryFolder& folder, const std::vector<std::string>&
       << voxels;
 }
 
-// Checks that each tissue has all that the three targets need, and that each file holds every tissue.
+// Checks that each tissue has all data that openEMS, gprMax and ICRP slices need, and that each file has every tissue.
 void check_leaves(const std::vector<std::string>& names) {
   const TemporaryFolder folder;
   write_volume(folder, names);

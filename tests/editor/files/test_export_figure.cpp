@@ -105,7 +105,7 @@ TEST_CASE("export figure: a slice is written with its whole image, and its legen
     views.scene.grey =
         render::ShownGrey{.image = std::make_shared<const GreyLevels>(grey_levels(grid, values)), .tissues = opacity};
     views.slice_display = display;
-    views.renderer.begin_frame(0);  // no time is left in this frame
+    views.renderer.begin_frame(0);  // the view may spend no time in this frame
     const std::string svg = exported(test, {.size = {60, 50}, .dots_per_inch = 100}, folder / name);
     CHECK(has(svg, " mm</text>"));
     return has(svg, ">Muscle</text>");

@@ -151,7 +151,7 @@ TEST_CASE("label edits: weights that no longer fit are removed with a warning, u
   test.play(menu + "Grow...\"\n wait-idle\n click dialog/Grow\n wait-job\n wait-idle");
   CHECK(test.editor->document().volume != next.volume);
   CHECK(test.editor->document().weights == next.weights);
-  // The weights were made for another bone, and a message says so.
+  // The weights were made for the bone before it grew, and a message says so.
   CHECK(why_weights_are_old(*test.editor) == "Weights are older than the labels");
   run(*test.editor, "edit.undo");
   CHECK(why_weights_are_old(*test.editor) == "");

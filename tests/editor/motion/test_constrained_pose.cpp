@@ -56,8 +56,8 @@ TEST_CASE("constrained pose: a key of one bone keeps what was turned by hand els
   CHECK(shown_clip(test.editor->document())->keys.bones.contains("LeftForeArm"));
   CHECK(!shown_clip(test.editor->document())->keys.bones.contains("LeftThigh"));
   is_held();
-  // A marker makes the pose no longer come from the clip. The pose below the constraint is still known, so the
-  // constraint is not applied twice.
+  // Setting a marker changes the clip, so the pose no longer counts as read from the clip. The editor still knows the
+  // pose without the constraint, so it does not apply the constraint twice.
   run(*test.editor, "pose.clear_rotation");
   const Pose cleared = pose_of(test.document());
   run(*test.editor, "motion.marker");

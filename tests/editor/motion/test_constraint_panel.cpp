@@ -357,7 +357,7 @@ TEST_CASE("constraint panel: a project reopens with the pose below the constrain
   CHECK_FALSE(free_pose_by_hand(*other.editor));
   other.editor->history->reset(read_project(folder / "arm.limber").document, "Open");
   REQUIRE(pose_of(other.document()) == shown);
-  CHECK(unconstrained_pose(*other.editor) != free);  // the project alone does not store the pose below the constraint
+  CHECK(unconstrained_pose(*other.editor) != free);  // a project does not store the pose without constraints
   restore_editor_state(*other.editor, state);
   CHECK(unconstrained_pose(*other.editor) == free);
 }

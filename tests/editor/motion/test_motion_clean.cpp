@@ -108,7 +108,7 @@ TEST_CASE("cleaning clips: feet of a body that root motion keeps in place are pl
     CHECK(shown_clip(test.editor->document())->retarget.travel == travel);
     if (travel == Travel::Locked)
       for (const Pose& pose : test.played()) CHECK(glm::length(pose.root_translation) < 1e-6);
-    // Let go, the body travels, and the feet stand.
+    // With free root motion, the body travels and the feet stand still.
     edit_clip(*test.editor, "Root motion", PoseThen::FromClip,
               [&](Clip& clip) { clip.retarget.travel = Travel::Free; });
     CHECK(test.largest_slide(wanted.plants, test.played()) < 2);

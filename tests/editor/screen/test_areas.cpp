@@ -102,7 +102,7 @@ TEST_CASE("areas: what is pointed at in the sidebar stays where it is when somet
   test.player.step();
   CHECK(place_of(*test.editor, "Display/fold") == before);
   CHECK(place_of(*test.editor, "Outliner/fold").y == above);
-  // The sidebar was scrolled for it, so nothing jumps when the pointer leaves.
+  // The sidebar was scrolled to keep the panel under the pointer in place, so nothing jumps when the pointer leaves.
   test.editor->selection->bone = 1;
   test.editor->selection->bones = {1};
   test.player.step();
@@ -174,7 +174,7 @@ TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale 
   const ViewPlace& body = test.editor->screen->layout.view_places.front();
   REQUIRE(gizmo_rect(*test.editor, ViewProjection(*test.editor, body)));
   CHECK(covered(test) == "");
-  // The gizmo at the lower right, where messages usually are.
+  // Moves the gizmo towards the view's lower right corner, where messages usually are.
   for (const float way : {120.0f, 180.0f, 300.0f}) {
     const ViewProjection view(*test.editor, body);
     const glm::dvec3 centre = gizmo_in(*test.editor, view)->centre;
@@ -216,7 +216,7 @@ TEST_CASE("areas: after a click or a key no tool tip is shown until the pointer 
   CHECK_FALSE(tip_shown());
   test.play("key Ctrl+3\nwait-idle\nwait 2");
   CHECK_FALSE(tip_shown());
-  // A held modifier leaves a tip, which may speak of Ctrl+click.
+  // Holding a modifier key does not hide a tip, since the tip may describe Ctrl+click.
   test.play("move top/Skin\nwait 2");
   test.host->events.push(KeyChanged{Key::Ctrl, true});
   test.play("wait 2");

@@ -107,7 +107,7 @@ TEST_CASE("brush presets: what another program has saved, and what this one does
   CHECK(disabled_reason(*one.editor, *find_operator(one.editor->operators, "skin.preset_use")) ==
         "Save a brush preset first");
   CHECK(brush_presets(*one.editor).empty());
-  // The presets as another running program knows them: it read the file before it was changed.
+  // The presets in another running program, which read the file before the file was changed.
   auto of_other = std::make_shared<BrushPresets>();
   const auto other = [&]() -> Editor& {
     std::swap(brush_of(one).presets, of_other);

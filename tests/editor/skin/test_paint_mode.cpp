@@ -267,7 +267,7 @@ TEST_CASE("painting: the ring and the hints say that Ctrl takes away and Shift s
   test.play("key-up Shift\nwait-idle");
   CHECK(red() == 0);
   CHECK(blue() == words);
-  // What Ctrl does with a brush that subtracts is the opposite, so it takes nothing away.
+  // Ctrl makes a brush that subtracts add weight. The ring has the colour of errors only if weight is taken away.
   test.editor->skin->painting->kind = BrushKind::Subtract;
   test.play("key-down Ctrl\nwait-idle");
   CHECK(red() == 0);
