@@ -38,7 +38,7 @@ class MedianReporter : public benchmark::JSONReporter {
 }  // namespace limber::bench
 
 int main(int argc, char** argv) {
-  // Measures kernels on one core.
+  // Uses one thread, so that times are those of one core.
   const limber::ThreadCount one_thread(1);
   std::vector<std::string> words(argv, argv + argc);
   std::vector<char*> arguments;

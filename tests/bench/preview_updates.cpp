@@ -70,7 +70,8 @@ void measure(const Subject& subject, const char* drag, LivePreview& preview, Ren
     const double begin = cpu_seconds();
     scene.pose = preview.update(motions, blend);
     map.push_back(cpu_seconds() - begin);
-    const double first = picture(scene, small);  // with the upload of the map; the second picture is without it
+    // The first picture includes the upload of the map, the second one does not.
+    const double first = picture(scene, small);
     card.push_back(first - picture(scene, small));
     if (i % 5) continue;
     posed.push_back(picture(scene, large));

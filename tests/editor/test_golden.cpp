@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Compares pictures of the whole window with pictures that were looked at and approved: tests/editor/golden/NAME.png.
 //
-// These are stored at half size with colours in steps of four, which is finer than the comparison: both pictures are
-// blurred by 3 x 3 pixels, then the mean difference and the share of pixels that clearly differ must be below limits.
-// Drivers round differently at edges, so single pixels prove nothing.
+// The stored pictures have half the window's size and colours in steps of four, which is finer than the comparison:
+// both pictures are blurred by 3 x 3 pixels, then the mean difference and the share of pixels that clearly differ must
+// be below limits. Drivers round differently at edges, so single pixels prove nothing.
 //
 // A failure writes NAME.png and NAME-difference.png into the folder that $LIMBER_GOLDEN_FAILURES names (else
 // golden-failures, in the folder in which the test runs). After an intended change, run this and look at each picture

@@ -125,7 +125,8 @@ TEST_CASE("fine light: what is solid has it in every display, and the ghost of X
     const Image draft = rested(view, scene, from_above(scene), size, now);
     studio.renderer.light_at_rest(Light::Fine);
     const Image fine = rested(view, scene, from_above(scene), size, now);
-    // In X-ray every tissue here is a ghost, because there is no bone, and a ghost has no light.
+    // In X-ray every tissue here is transparent, because there is no bone. Transparent tissue gets no fine light, so
+    // the two pictures must be equal.
     CHECK((fine.rgba != draft.rgba) == (display != Display::XRay));
   }
 }

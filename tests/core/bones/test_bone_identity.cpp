@@ -85,7 +85,8 @@ TEST_CASE("bone identity: marrow without a name follows the bone that it lies in
 
 TEST_CASE("bone identity: left and right in one label part by the rig even where a bridge of bone joins them") {
   SmallBody body = hips();
-  for (int x = 9; x < 46; ++x) body.volume.at({x, 8, 20}) = kFemora;  // a crutch of bone from thigh to thigh
+  // A bridge of bone from thigh to thigh must be divided in its middle.
+  for (int x = 9; x < 46; ++x) body.volume.at({x, 8, 20}) = kFemora;
   const auto counts = counts_of(body);
   CHECK(counts.at({kFemora, "LeftThigh"}) == counts.at({kFemora, "RightThigh"}) - (voxels_of(body, kFemora) & 1));
 }
@@ -103,7 +104,7 @@ TEST_CASE("bone identity: what a map says of nothing that is there is refused wi
   CHECK_THROWS_AS(counts_of(body, {{"Pelvis, cortical", "Tail"}}), Error);
   CHECK_THROWS_AS(counts_of(body, {{"Ribs", "Pelvis"}}), Error);
   CHECK_THROWS_AS(counts_of(body, {{"muscle", "Pelvis"}}), Error);
-  // The name of the marrow tells no side, so an entry for one side needs one for the other.
+  // The name of the marrow does not say left or right, so an entry for one side needs an entry for the other.
   CHECK_THROWS_AS(counts_of(body, {{"marrow@left", "LeftThigh"}}), Error);
   CHECK(counts_of(body, {{"marrow@left", "LeftThigh"}, {"marrow@right", "Pelvis"}}).contains({kMarrow, "Pelvis"}));
 }

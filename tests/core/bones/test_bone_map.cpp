@@ -109,7 +109,8 @@ TEST_CASE("bone map: what names no tissue or no bone is left out, and the rest i
   CHECK(fitting.map == BoneMap{{"40@left", "LeftThigh"}, {"Pelvis", "LeftThigh"}, {"thing", "Pelvis"}});
   CHECK(fitting.left_out == std::vector<std::string>{"", "40@right", "99"});
   CHECK_NOTHROW(rows_of(body, fitting.map));
-  // If the name of a label tells no side, its two sided entries are valid together, and invalid alone.
+  // If the name of a label does not say left or right, its two entries for the sides are valid together, and invalid
+  // alone.
   CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"50@right", "RightThigh"}}, body.tissues, body.armature)
             .left_out.empty());
   CHECK(fitting_bone_map({{"50@left", "LeftThigh"}, {"99", "Pelvis"}}, body.tissues, body.armature).map.empty());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// No command writes over a file that it reads, under whatever name, nor writes two outputs to one file. It reports this
-// with exit code 2 before it reads anything.
+// No command writes over a file that it reads, under whatever name, nor writes two outputs to one file. A command that
+// is asked to do so ends with exit code 2 before it reads anything.
 #include <filesystem>
 
 #include <doctest/doctest.h>

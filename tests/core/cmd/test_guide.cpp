@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tests that the commands in the user guide work as the reader is told to type them.
+// Runs the commands that the user guide tells its readers to type. Each must work as it is printed.
 #include <fstream>
 
 #include <doctest/doctest.h>

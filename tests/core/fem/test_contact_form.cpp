@@ -190,7 +190,8 @@ TEST_CASE("contact: what one bone carries is not watched against itself") {
 
 TEST_CASE("contact: of two ways to one place each is watched by itself") {
   TwoBoxes boxes(1);
-  boxes.rest = (1024 * boxes.rest).array().round() / 1024;  // rounded, so that both sums give the same bits
+  // Rounds the positions, so that all sums of positions and steps are exact.
+  boxes.rest = (1024 * boxes.rest).array().round() / 1024;
   ContactForm form(boxes.F, boxes.rest, boxes.free());
   // The upper box can reach its end position `above` in two ways: from `beside` through free space, or from `below`
   // through the lower box.

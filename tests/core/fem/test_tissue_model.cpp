@@ -311,7 +311,7 @@ TEST_CASE("tissue model: where a pose brings bones close together they are not h
                         test::kuhn_mesh_of(regions, 2), settings)
         .fem;
   };
-  // With joint_mm = 0, no part of the bones counts as close at rest.
+  // With joint_mm = 0, no part of a bone counts as near another bone at rest.
   const FemModel apart = held_by({.joint_mm = 0});
   std::vector<int> of_bone[2];
   for (Eigen::Index t = 0; t < apart.mesh.T.rows(); ++t)

@@ -111,7 +111,7 @@ TEST_CASE("strips: a strip inside a longer one of its track fades in and out aga
   CHECK(at(strips, 50) == at(wave, 20));
   CHECK(at(strips, 70) == at(walk, 70));
   CHECK(at(strips, 100) == at(walk, 100));
-  // Without jumps, the largest change of the pose from one frame to the next is small.
+  // The pose does not jump: its largest change from one frame to the next is small.
   double step = 0;
   for (int frame = 20; frame < 90; ++frame) step = std::max(step, far(at(strips, frame), at(strips, frame + 1)));
   CHECK(step < 0.5 * far(at(wave, 40), at(walk, 71)));

@@ -73,7 +73,7 @@ TEST_CASE("pose: a file of clinical angles sets the joints that it names, over i
   CHECK(refusal(R"({"angles": {"left hip": {"bending": 9}}})").find("no motion") != std::string::npos);
   CHECK(refusal(R"({"angles": {"left tail": {"flexion": 9}}})").find("no joint") != std::string::npos);
   CHECK(refusal(R"({"angles": {"hip": {"flexion": 9}}})").find("left, right or both") != std::string::npos);
-  // A limb whose bone names tell no side takes the angles of either side.
+  // Angles for any side apply to a limb whose bone names do not say left or right.
   const Armature arm = make_arm_phantom(10).armature;
   const Pose bent = parse_pose(R"({"angles": {"left elbow": {"flexion": 60}}})", "test", arm);
   CHECK(*clinical_angles(arm, body_frames(arm), bent).at({BodyJoint::Elbow, BodySide::Middle})[0] ==

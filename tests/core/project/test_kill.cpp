@@ -97,7 +97,7 @@ TEST_CASE("kill: killed at any moment, a project opens whole, with all edits but
       REQUIRE(::waitpid(child, &status, 0) == child);
       if (!WIFSIGNALED(status)) {
         CHECK(status == 0);
-        break;  // it ended before the kill
+        break;  // the process had finished before the kill
       }
 
       for (const std::string& wrong : verify_project(path)) FAIL_CHECK(wrong);

@@ -245,7 +245,7 @@ TEST_CASE(
   CHECK(session->status().message.empty());
   CHECK(same_contents(read_project(path).document, edited));
 
-  // A save does not overwrite another project that is now at this path. Only save as does.
+  // A save does not overwrite another project that is now at this path. Only Save as may overwrite it.
   fs::remove(path);
   DocumentWriter writer;
   create_project({}, path, writer);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tests VTK images: files by hand in each form that VTK writes, files that the program writes and reads back, and
-// damaged files.
+// Tests VTK images: files that are written out here in each form that VTK writes, files that the program writes and
+// reads back, and damaged files.
 #include <cstring>
 #include <filesystem>
 #include <fstream>

@@ -168,7 +168,7 @@ TEST_CASE("motion pictures: a camera that follows the body keeps it where it is,
   const double along = difference(picture("along-0000.png"), picture("along-0003.png"));
   CAPTURE(still);
   CAPTURE(along);
-  // With the camera following, only voxel edges differ, since they are sampled at other positions.
+  // If the camera follows the body, two frames differ only at edges of voxels, which are sampled at other positions.
   CHECK(still > 10 * along);
   // The motion's own file may lie in the same folder under the clip's name.
   test.play("click \"File/Export/Motion...\"\n wait-idle\n key Return\n wait-job\n wait-idle");

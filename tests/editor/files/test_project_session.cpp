@@ -275,7 +275,7 @@ TEST_CASE(
   std::filesystem::remove(home / "ball.limber");
   sitting.play("key Ctrl+S\n wait-job\n expect unsaved no");
   CHECK(verify_project(home / "ball.limber").empty());
-  // After a warning about the lost file, a message says that edits are kept again.
+  // After the file was lost and written again, a message with the project's name says that edits are stored again.
   const auto& toasts = sitting.editor().messages->toasts;
   CHECK(std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) { return toast.line == "ball.limber"; }));
 

@@ -140,12 +140,12 @@ TEST_CASE(
   CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->strength = 0.4; }).most ==
         doctest::Approx(0.4).epsilon(1e-3));
   CHECK(painted_by([](PaintEditor& t) { t.editor->skin->painting->radius = 6; }).voxels < 0.4 * plain.voxels);
-  // With a falloff, a brush adds less weight: least with a sharp one.
+  // Falloff reduces the weight that a brush adds towards its rim. A sharp falloff adds least.
   const auto smooth = painted_by([](PaintEditor&t) { run(*t.editor, "skin.falloff_smooth"); }),
              sharp = painted_by([](PaintEditor&t) { run(*t.editor, "skin.falloff_sharp"); });
   CHECK(smooth.weight < 0.8 * plain.weight);
   CHECK(sharp.weight < 0.8 * smooth.weight);
-  // The reach is the surface only, then a depth below it, then through the body.
+  // A brush reaches the surface only, or down to a depth below it, or through the whole body: each reach gets deeper.
   const auto surface = painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_surface"); });
   const auto depth =
       painted_by([](PaintEditor& t) { run(*t.editor, "skin.reach_depth"), t.editor->skin->painting->depth_mm = 8; });

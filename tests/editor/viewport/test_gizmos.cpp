@@ -192,8 +192,8 @@ TEST_CASE(
   CHECK(at(centre + glm::dvec2(108, 0) * 1.0) == GizmoPart{GizmoPart::Kind::ViewRing});
   CHECK(at(centre) == GizmoPart{GizmoPart::Kind::Trackball});
   CHECK(!at(centre + glm::dvec2(130, 0)));
-  // Where two rings cross, the ring nearer to the eye is picked. Two rings cross on the axis of the third: the test
-  // takes the axis that points most towards the eye.
+  // Where two rings cross, the ring nearer to the eye is picked. Two rings cross on the axis of the third ring. The
+  // test takes the crossing on the axis that points most towards the eye.
   const glm::dmat3 axes = test.gizmo().axes;
   const glm::dvec3 to_eye = test.view().direction_to_eye(test.gizmo().centre);
   int nearest = 0;

@@ -169,7 +169,7 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   CHECK(sitting.editor().views->image);
   sitting.play("key Ctrl+Z\n wait-idle");
   CHECK(sitting.editor().document() == bare);
-  // Without labels the 3D view shows the image, although the labels are shown solid.
+  // Without labels, the 3D view shows the image. When redo brings the labels back, the view shows them solid again.
   CHECK(sitting.editor().views->scene.display == render::Display::Image);
   sitting.play("key Ctrl+Shift+Z\n wait-idle");
   CHECK(sitting.editor().document() == labelled);

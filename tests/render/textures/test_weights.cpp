@@ -328,7 +328,7 @@ TEST_CASE(
   auto& body = studio.renderer.resources().body(block.volume);
   const int slots = static_cast<int>(body.volume->layout().block_of_slot.size());
   REQUIRE(slots == 80);
-  // With a time limit of 0, each frame uploads one lot of slots, whatever the number of views.
+  // With a time limit of 0, each frame uploads one lot of WeightTexture::kLot slots, whatever the number of views.
   const auto frame = [&] {
     studio.renderer.begin_frame(0);
     view.draw(scene, camera, kSize, now += 0.2);
