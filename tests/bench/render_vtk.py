@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Limber's raymarcher against vtkGPUVolumeRayCastMapper: the same volume, cameras, sizes and software OpenGL in one run.
+"""Compares Limber's raymarcher with vtkGPUVolumeRayCastMapper: the same volume, cameras, sizes and software OpenGL, in one run.
 
     render_vtk.py RENDER_VIEWS VOLUME.mha
 
-RENDER_VIEWS draws first and tells its cameras and times; VTK then draws the same pictures. Printed, as JSON: per view the
-CPU seconds of both (median of five, all threads), how many times faster, and by how much the silhouettes differ in area;
-then the geometric means. Where there is no display a virtual one is started (Xvfb).
+RENDER_VIEWS draws first and prints its cameras and times; VTK then draws the same pictures. This program prints as JSON for
+each view the CPU seconds of both programs (median of five, all threads), how many times faster Limber is, and by how much the
+silhouettes differ in area; then the geometric means. If there is no display, it starts a virtual one (Xvfb).
 """
 import json
 import math
@@ -23,7 +23,7 @@ def cpu_seconds():
 
 
 def read_mha(path):
-    """Labels (x fastest) and header of an 8-bit MetaImage with local data."""
+    """Returns the labels (x fastest) and the header of an 8-bit MetaImage with local data."""
     import numpy
     with open(path, "rb") as file:
         content = file.read()
@@ -48,7 +48,7 @@ def make_volume(vtk, path, display):
     image.GetPointData().SetScalars(numpy_to_vtk(labels, deep=True))
 
     colour, opacity = vtk.vtkColorTransferFunction(), vtk.vtkPiecewiseFunction()
-    bones = {111, 209, 253, 133, 65, 189, 11}  # what stays solid in X-ray: bone, cartilage, vessels, nerves
+    bones = {111, 209, 253, 133, 65, 189, 11}  # labels that stay solid in X-ray: bone, cartilage, vessels, nerves
     for label in range(256):
         colour.AddRGBPoint(label, 0.5 + label / 512, 0.7 - label / 1024, 0.6)
         solid = display == "solid" or label in bones
@@ -78,7 +78,7 @@ def make_volume(vtk, path, display):
 
 
 def draw(vtk, path, view):
-    """CPU seconds of each picture, and its pixels that are not background."""
+    """Returns the CPU seconds of each picture, and which of its pixels are not background."""
     from vtk.util.numpy_support import vtk_to_numpy
     renderer = vtk.vtkRenderer()
     renderer.AddVolume(make_volume(vtk, path, view["display"]))

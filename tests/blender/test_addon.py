@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Tests the add-on for Blender. Run by Python, it starts Blender, which runs the same file again and so the tests.
+"""Tests the add-on for Blender. Run by Python, this file starts Blender, which runs the same file again, and so the tests.
 
 Joints are compared with `limber fk` and vertices with `limber skin-points`; the numbers of the .glb file are read here
 a second time, without Blender. LIMBER_PROGRAM names the command line's program.
@@ -22,7 +22,7 @@ except ImportError:
 if bpy:
     import numpy as np
     from mathutils import Matrix, Vector
-    NUMPY_BOOL = vars(np).get("bool", "missing")  # before the add-on runs
+    NUMPY_BOOL = vars(np).get("bool", "missing")  # numpy.bool before the add-on runs
 
 PROGRAM = os.environ.get("LIMBER_PROGRAM", "limber")
 ADD_ON = Path(__file__).resolve().parents[2] / "assets/blender/limber_blender.py"
@@ -163,7 +163,7 @@ class Arm(unittest.TestCase):
         bpy.ops.import_anim.limber_pose(filepath=str(self.file))
 
     def expect_error(self, words, operator, **arguments):
-        """The operator must fail with one line that holds these words."""
+        """Checks that the operator fails with an error of one line that contains these words."""
         with self.assertRaises(RuntimeError) as caught:
             operator(**arguments)
         self.assertIn(words, str(caught.exception))

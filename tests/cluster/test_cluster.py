@@ -149,7 +149,7 @@ PartitionName=all Nodes={self.host} Default=YES MaxTime=INFINITE State=UP
         self.start("slurmd", "-D", "-N", self.host)
 
     def end_node(self):
-        """Ends the node as a power failure does, its daemon and all that it runs, until the cluster has noticed."""
+        """Kills the node's daemon and all that it runs, as a power failure does, and waits until the cluster has noticed."""
         self.processes["slurmd"].kill()
         self.processes["slurmd"].wait()
         subprocess.run(["pkill", "-KILL", "slurmstepd"], check=False)
@@ -204,7 +204,7 @@ class Cluster(unittest.TestCase):
         cls.scratch.cleanup()
 
     def check(self, out, seen, logs):
-        """Checks a finished run. `seen` holds what was finished at the time of each kill."""
+        """Checks a finished run. `seen` has the cells and exports that were finished at the time of each kill."""
         self.assertEqual(len(finished(out)), 2 * CELLS)
         self.assertEqual(contents(out), self.expected)
         at_end = finished(out)
@@ -302,7 +302,7 @@ class Cluster(unittest.TestCase):
         self.check(out, [], [])
 
     def test_many_processes(self):
-        """Processes without shares of their own take what no other computes, also when some are killed."""
+        """Processes without --shard compute the cells that no other process computes, also when some processes are killed."""
         out, log = self.folder / "out-processes", open(self.folder / "processes.log", "ab")
         self.addCleanup(log.close)
 

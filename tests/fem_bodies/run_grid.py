@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Poses many bodies by finite elements with contact, and writes one table of what came out.
+"""Poses many bodies by finite elements with contact, and writes one table of the results.
 
     run_grid.py --program build/limber --data DATA [--hard HARD] --out DIR [--cpu 250] [--quality draft] [CASE ...]
 
@@ -110,7 +110,7 @@ def volume_limits(report):
 
 
 def judge(report):
-    """Returns the figures of one report, with the list of what does not hold."""
+    """Returns the figures of one report, with the list of the conditions that it violates."""
     mesh, solve, exposed = report["mesh"], report["solve"], report["exposure"]["percent"]
     rows, fails = volume_limits(report), []
     if solve["reached"] < 1:

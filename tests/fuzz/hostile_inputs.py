@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Feeds the program with damaged and malicious files of every format that it reads, and watches it.
+"""Runs the program on damaged and malicious files of every format that it reads, and reports where it misbehaves.
 
     hostile_inputs.py --program build/limber [--count 1000] [--seed 1] [--first 0] [--malformed FOLDER] [--keep FOLDER]
 
-Small sound samples are made with the program itself, and by hand where it only reads a format. Each input is a sample with one to
-four mutations (bits, bytes, slices cut, doubled or exchanged, numbers made huge, nested JSON), chosen by the seed alone, or, one in
-five, a file of --malformed as it is. What a project holds beside its chunks (the editor's state, its picture) is mutated inside the
-project. The program runs on each in a folder of its own, with 5 s of processor (the editor: 20 s) and HOME, TMPDIR and the working
-folder inside. The editor opens files, key maps and scripts without a display; its preferences and themes, which it reads only where
-it has a window or from its own installation, are the business of fuzz_editor_files.cpp. Counted: crashes (an end by a signal), time-outs, more than 1 GB of memory, exit codes that are none of
-the program's, errors that are no single line, and every file that was made, changed or deleted without being named as an output.
-The exit code is 0 when nothing was counted. With --keep the inputs that were counted are kept there, with the command.
+Small valid samples are made by the program itself, or by this script for formats that the program only reads. Each input is a
+sample with one to four mutations (bits, bytes, slices cut, doubled or exchanged, numbers made huge, nested JSON), which depend on
+the seed only; with --malformed, every fifth input is an unchanged file of FOLDER. The parts of a project beside its chunks
+(the editor's state, its picture) are mutated inside the project. The program runs on each input in a new folder, which contains
+HOME, TMPDIR and the working folder, with 5 s of processor time (the editor: 20 s). The editor opens files, key maps and scripts
+without a display. It reads preferences only with a window, and themes only from its installation; fuzz_editor_files.cpp tests these.
+
+A fault is a crash (an end by a signal), a time-out, more than 1 GB of memory, an exit code that the program does not define, an
+error that is not one line, or a file that is made, changed or deleted although it is not named as an output. The exit code is 0 if
+there is no fault. With --keep, the inputs with faults are copied to that folder, each with its command.
 """
 import argparse
 import base64
@@ -71,7 +73,7 @@ EDITOR_STATE = json.dumps({
 
 
 def gltf_of(glb):
-    """The text form of a .glb, its buffer inside."""
+    """Returns the text form of a .glb file, with its buffer inside."""
     length, = struct.unpack_from("<I", glb, 12)
     description = json.loads(glb[20:20 + length])
     description["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(glb[28 + length:]).decode()
@@ -79,7 +81,7 @@ def gltf_of(glb):
 
 
 class Samples:
-    """Sound files, and for each the commands that read it."""
+    """Valid files, and for each file the commands that read it."""
 
     def __init__(self, program, folder):
         self.folder = folder
@@ -201,7 +203,7 @@ class Samples:
                  ["project", "edited.limber", "verify"], ["project", "edited.limber", "recover", "-o", "{out}/r.limber"])
 
     def leave_journal(self):
-        """An editor that is killed leaves its project's journal behind."""
+        """Kills an editor with unsaved edits, which leaves the journal of its project behind."""
         shutil.copyfile(self.folder / "body.limber", self.folder / "edited.limber")
         self.write("edit.txt", "drop pose.json\nwait-job\nwait 1000\n")
         process = subprocess.Popen([self.program, "editor", "--size", "640x480", "edited.limber", "--play", "edit.txt"], cwd=self.folder,
@@ -222,13 +224,13 @@ class Samples:
 
 
 def mutated(data, name, chance):
-    """The file with one to four mutations."""
+    """Returns the bytes of a file with one to four mutations."""
     for _ in range(chance.randint(1, 4)):
         kind = chance.choice(["bit", "byte", "cut", "double", "remove", "exchange", "number", "length", "nest", "insert"])
         if not data:
             return data
         at = chance.randrange(len(data))
-        # Half of all damage goes to the start, where headers are.
+        # Half of all mutations are near the start, where headers are.
         if chance.random() < 0.5:
             at = chance.randrange(min(len(data), 400))
         length = chance.choice([1, 2, 4, 16, 200])
@@ -265,7 +267,7 @@ def mutated(data, name, chance):
 
 
 def mutate_state(project, state, chance):
-    """A state beside the chunks of a project, mutated inside the project's database."""
+    """Mutates a state, which a project stores beside its chunks, inside the project's database."""
     with sqlite3.connect(project) as database:
         name = state.encode()
         held = database.execute("SELECT value FROM state WHERE name = ?", (name,)).fetchone()
@@ -274,7 +276,7 @@ def mutate_state(project, state, chance):
 
 
 def state_of(folder):
-    """Every file below the folder: what it is and what it holds."""
+    """Returns what each file below the folder is and contains."""
     state = {}
     for base, folders, files in os.walk(folder):
         for name in folders + files:
@@ -303,7 +305,7 @@ def limit(cpu_seconds):
 
 
 def run(program, words, folder):
-    """Exit code (negative: signal), what it printed, peak memory in kB."""
+    """Runs the program. Returns its exit code (negative: a signal), its output and its peak memory in kB."""
     seconds = EDITOR_SECONDS if words[0] == "editor" else CPU_SECONDS
     with open(folder / "printed", "wb") as out, open(folder / "told", "wb") as err:
         process = subprocess.Popen([program, *words], cwd=folder / "work", env=environment_of(folder, folder / "work"), stdin=subprocess.DEVNULL, stdout=out,

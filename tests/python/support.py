@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""What the tests of the Python module have in common. LIMBER_PROGRAM names the command line's program."""
+"""Functions shared by the tests of the Python module. The environment variable LIMBER_PROGRAM names the command line's program."""
 import os
 import subprocess
 import tempfile
@@ -15,7 +15,7 @@ warnings.simplefilter("ignore", limber.LimberWarning)
 
 
 def run_limber(*words):
-    """Runs the command line, which must succeed."""
+    """Runs the command line, which must succeed (0) or report that a quality gate failed (5)."""
     run = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True, check=False)
     if run.returncode not in (0, 5):
         raise AssertionError(f"limber {' '.join(map(str, words))}: {run.stderr}")
@@ -23,7 +23,7 @@ def run_limber(*words):
 
 
 class InFolder(unittest.TestCase):
-    """A test case with a folder of its own, the working folder."""
+    """A test case whose working folder is a new temporary folder."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

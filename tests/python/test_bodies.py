@@ -8,7 +8,7 @@ from support import InFolder, arm, run_limber
 
 
 def without_times(report):
-    """A report without what differs from run to run, and what only the command line knows."""
+    """Returns a report without values that differ from run to run or that only the command line writes."""
     kept = dict(report)
     for key in ("seconds", "inputs", "peak_memory_mb", "memory_mb"):
         kept.pop(key, None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Progress, cancelling, threads, previews, memory."""
+"""Tests calls of the Python module: progress, cancelling, threads, previews and memory."""
 import os
 import signal
 import subprocess

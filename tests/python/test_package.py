@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""The package as a whole: stubs, docstrings, examples."""
+"""Tests the Python package as a whole: type stubs, docstrings and examples."""
 import ast
 import contextlib
 import inspect

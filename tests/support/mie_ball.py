@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Compares assets/examples/peak_sar.py, in the folder that is given, with Mie's exact field in a ball of tissue.
+"""Compares peak_sar.py in the folder EXAMPLES (assets/examples) with Mie's exact field in a ball of tissue.
 
   mie_ball.py EXAMPLES
 
 A plane wave of 1 W/m2, polarized along x and going towards z, meets a homogeneous ball. The field inside it is Mie's
-series [Bohren & Huffman 1983, chapter 4, time goes by exp(-i w t)]. The series is checked first: the tangential field
-goes through the ball's surface, and the absorbed power is extinction less scattering. Then the field is sampled at the
-centres of cells, and what peak_sar.py averages is compared with integrals of the exact field over exact cubes of 10 g.
+series [Bohren & Huffman 1983, chapter 4, with the time factor exp(-i w t)]. The series is checked first: the tangential field
+is continuous at the ball's surface, and the absorbed power is extinction minus scattering. Then the field is sampled at the
+centres of cells, and the averages of peak_sar.py are compared with integrals of the exact field over exact cubes of 10 g.
 """
 import sys
 
@@ -20,7 +20,7 @@ import peak_sar
 LIGHT, EPS_0, IMPEDANCE = 299792458.0, 8.8541878128e-12, 376.730313668
 FREQUENCY = 900e6  # Hz
 RADIUS = 0.06  # m
-EPSILON, KAPPA, DENSITY = 55.0, 0.94, 1040.0  # muscle-like: relative, S/m, kg/m3
+EPSILON, KAPPA, DENSITY = 55.0, 0.94, 1040.0  # like muscle: relative permittivity, conductivity in S/m, density in kg/m3
 GRAMS = 10
 K = 2 * np.pi * FREQUENCY / LIGHT
 M = np.sqrt(EPSILON + 1j * KAPPA / (2 * np.pi * FREQUENCY * EPS_0))  # refractive index
@@ -34,7 +34,7 @@ def check(is_so, text):
 
 
 def spherical_j(z):
-    """j_1 .. j_N and [z j_n]' / z of each, by downward recurrence of the ratios j_n / j_(n-1)."""
+    """Returns j_1 .. j_N and [z j_n]' / z for each order n, by downward recurrence of the ratios j_n / j_(n-1)."""
     z = np.asarray(z, complex)
     ratio = np.zeros((len(ORDERS) + 1, *z.shape), complex)
     after = np.zeros_like(z)
@@ -49,7 +49,7 @@ def spherical_j(z):
 
 
 def spherical_h(x):
-    """h_1 .. h_N of the first kind and [x h_n]' / x of each, x real; y_n by upward recurrence."""
+    """Returns h_1 .. h_N of the first kind and [x h_n]' / x for each order n and real x; y_n by upward recurrence."""
     y = [-np.cos(x) / x, -np.cos(x) / x**2 - np.sin(x) / x]
     for n in ORDERS[1:]:
         y.append((2 * n - 1) / x * y[n - 1] - y[n - 2])
@@ -59,7 +59,7 @@ def spherical_h(x):
 
 
 def coefficients():
-    """a, b of the scattered field, c, d of the field inside."""
+    """Returns the coefficients a, b of the scattered field and c, d of the field inside the ball."""
     x = K * RADIUS
     jx, djx = spherical_j(x)
     jm, djm = spherical_j(M * x)
@@ -73,9 +73,9 @@ A, B, C, D = coefficients()
 
 
 def field(magnetic, electric, z, dz, argument, theta, phi):
-    """E along r, theta, phi for |E_0| = 1: the sum of i^n (2n + 1) / (n (n + 1)) (magnetic M_o1n - i electric N_e1n).
+    """Returns E along r, theta, phi for |E_0| = 1: the sum of i^n (2n + 1) / (n (n + 1)) (magnetic M_o1n - i electric N_e1n).
 
-    z, dz  of each order the radial function z_n(argument) and [argument z_n]' / argument
+    z, dz  for each order n: the radial function z_n(argument), and [argument z_n]' / argument
     """
     mu = np.cos(theta)
     before, pi = np.zeros_like(mu), np.ones_like(mu)
@@ -91,7 +91,7 @@ def field(magnetic, electric, z, dz, argument, theta, phi):
 
 
 def sar_at(x, y, z):
-    """W/kg at points (m) inside the ball, its centre at the origin."""
+    """Returns the SAR in W/kg at points (m) inside the ball, whose centre is the origin."""
     r = np.maximum(np.sqrt(x * x + y * y + z * z), 1e-9)
     argument = M * K * r
     j, dj = spherical_j(argument)
@@ -106,7 +106,7 @@ def gauss(low, high, count):
 
 
 def absorbed_by_series():
-    """W, of the field inside integrated over the ball."""
+    """Returns the absorbed power in W: the field inside, integrated over the ball."""
     r, wr = gauss(0, RADIUS, 40)
     mu, wm = gauss(-1, 1, 40)
     phi = np.arange(4) * np.pi / 4 + 0.1  # four angles integrate cos and sin squared exactly
@@ -137,14 +137,14 @@ def check_series():
 
 
 def cube_average(centre, side):
-    """W/kg over a cube that lies in the ball."""
+    """Returns the mean SAR in W/kg over a cube that lies inside the ball."""
     axes = [gauss(c - side / 2, c + side / 2, 10) for c in centre]
     (x, wx), (y, wy), (z, wz) = axes
     return np.einsum("ijk,i,j,k->", sar_at(*np.meshgrid(x, y, z, indexing="ij")), wx, wy, wz) / side**3
 
 
 def cube_behind(x, y, face, side):
-    """Mass (kg) and power (W) in a cube about the line through x, y whose face lies at z = face, its air left out."""
+    """Returns the mass (kg) and the power (W) of the tissue in a cube around the line through x, y whose face is at z = face."""
     (x, wx), (y, wy) = gauss(x - side / 2, x + side / 2, 16), gauss(y - side / 2, y + side / 2, 16)
     u, wu = gauss(0, 1, 16)
     front = np.maximum(face, -np.sqrt(RADIUS**2 - x[:, None] ** 2 - y[None] ** 2))
@@ -156,7 +156,7 @@ def cube_behind(x, y, face, side):
 
 
 def average_behind(x, y, face):
-    """W/kg over 10 g in the cube whose face lies there, which grows until it holds them."""
+    """Returns the mean SAR in W/kg over the cube with its face at z = face whose side is such that it contains 10 g."""
     low, high = 0.01, 0.05
     for _ in range(60):
         middle = (low + high) / 2
@@ -176,7 +176,7 @@ def cells_of_ball(cell):
 
 
 def compare(cell, most_of_average, most_in_depth, most_at_front, most_of_peak):
-    """Limits are relative; they fall with the cells."""
+    """Compares the averages in cells of size `cell` (m) with the exact ones. The limits are relative; smaller cells have smaller ones."""
     (x, y, z), power, mass = cells_of_ball(cell)
     averages, found = peak_sar.average_sar(power, mass, GRAMS)
     name = f"cells of {1000 * cell:g} mm"

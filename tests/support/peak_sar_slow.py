@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Compares assets/examples/peak_sar.py, in the folder that is given, with a slow program that shares nothing with it.
+"""Compares peak_sar.py in the folder EXAMPLES (assets/examples) with a slow program that shares no code with it.
 
   peak_sar_slow.py EXAMPLES BODIES
 
-The slow program walks over every cell, every direction and every cell of every cube with plain loops; a cube's side comes from
-adding whole layers and then solving for the part of the last one by the polynomial that the layer's faces, edges and corners
-make. BODIES random bodies are compared, and bodies made by hand whose averages are known without either program.
+The slow program visits every cell, every direction and every cell of every cube with plain loops. It finds a cube's side by
+adding whole layers, and then solves for the fraction of the last layer, whose mass is a polynomial of that fraction. Compares
+BODIES random bodies, and bodies written out here whose averages are known without either program.
 """
 import random
 import sys
@@ -29,7 +29,7 @@ class Body:
 
 
 def spans(first_whole, count, before, behind):
-    """Cells along an axis with the part of each that is inside: whole ones, and parts of those at both ends."""
+    """Returns the cells along an axis, each with the fraction that is inside: 1 in between, less for the cells at both ends."""
     parts = [(first_whole + i, 1.0) for i in range(count)]
     place = first_whole - 1
     while before > NEAR:
@@ -45,7 +45,8 @@ def spans(first_whole, count, before, behind):
 
 
 def spans_of_cube(cell, side, face):
-    """For each axis the cells of a cube of so many cells' side about a cell; a face (axis, end) is held where the cell has it."""
+    """Returns for each axis the cells of a cube around a cell, whose side is given in cells. With a face (axis, end), the cube
+    has this face where the cell has it."""
     all_spans = []
     for axis in range(3):
         if face is not None and face[0] == axis:
@@ -63,7 +64,7 @@ def spans_of_cube(cell, side, face):
 
 
 def totals(body, all_spans):
-    """Mass, power and volume of tissue in a cube."""
+    """Returns mass, power and volume of the tissue in a cube."""
     mass = power = volume = 0.0
     for x, part_x in all_spans[0]:
         for y, part_y in all_spans[1]:
@@ -77,7 +78,8 @@ def totals(body, all_spans):
 
 
 def side_holding(body, cell, wanted, face):
-    """Between two sides at which no part begins or ends, mass is a cubic of the side: four values give it, bisection its root."""
+    """Returns the side of the cube that contains the wanted mass. Between two sides at which no cell begins or ends, the mass
+    is a cubic of the side: four values determine the cubic, and bisection finds its root."""
     steps = [0.0, 1.0]
     longest = 2 * max(body.size) + 1
     while steps[-1] < longest:

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """unite_sources.py OUT BATCH LIST: writes sources, each of which includes up to BATCH of the sources that the file LIST
-names, and prints what to compile instead of these. Headers and templates are then compiled once for several sources.
+names, and prints the sources to compile instead. Headers and templates are then compiled once for several sources.
 
-Sources are united if they are in the same folder, and if no name that one of them has for itself (in an anonymous
-namespace, or by #define) appears in another or is declared in a header of another. So names mean the same as in
-sources that are compiled alone."""
+Sources are united if they are in the same folder, and if no private name of one of them (in an anonymous namespace, or
+by #define) appears in another or is declared in a header of another. So each name means the same as in a source that is
+compiled alone."""
 import os
 import re
 import sys
@@ -15,7 +15,7 @@ OUT, BATCH = sys.argv[1], int(sys.argv[2])
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 TYPE = re.compile(r"(?:template <.*> )?(?:struct|class|enum class|enum|union|using)\s+(\w+)")
 VALUE = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*(?:=|\{|;)")
-FURTHER = re.compile(r",\s*[*&]?(\w+)\s*(?:\[[^\]]*\]\s*)*(?==|\{|;|,)")  # of several variables that a line declares
+FURTHER = re.compile(r",\s*[*&]?(\w+)\s*(?:\[[^\]]*\]\s*)*(?==|\{|;|,)")  # the second and later variables that a line declares
 LAST = re.compile(r"(\w+)\s*$")
 NAME = re.compile(r"[A-Za-z_]\w*")
 
@@ -26,14 +26,14 @@ headers = {}
 
 
 def declared(text, everywhere):
-    """Names that are declared in anonymous namespaces, or in all. Their declarations are not indented."""
+    """Returns names that are declared in anonymous namespaces, or in all namespaces, by lines without indentation."""
     names = set(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+)", text, re.M))
     inside = everywhere
     for line in text.split("\n"):
         if line.startswith("namespace") and "=" not in line:
             inside = everywhere or line.startswith("namespace {")
             continue
-        if re.match(r'}\s+""$', line):  # its closing brace, which a comment follows
+        if re.match(r'}\s+""$', line):  # the closing brace of a namespace, which a comment follows
             inside = everywhere
         if not line or line[0] in " }#" or not (inside or line.startswith("static ")):
             continue
@@ -54,7 +54,7 @@ def read(path):
 
 
 def declared_in_headers(text):
-    """Names that the project's headers declare which a text includes, and those which these include."""
+    """Returns names that are declared by the project's headers that a text includes, directly or through other headers."""
     names = set()
     for name in INCLUDE.findall(text):
         path = os.path.join(ROOT, name)
@@ -68,7 +68,7 @@ def declared_in_headers(text):
 
 
 def tests_headers(text, found):
-    """The headers in tests/ that a text includes, and those which these include. Two of them may define one name."""
+    """Returns the headers in tests/ that a text includes, directly or through others. Two of them may define the same name."""
     for name in INCLUDE.findall(text):
         path = os.path.join(ROOT, name)
         if name.startswith("tests/") and name not in found and os.path.exists(path):
@@ -85,7 +85,7 @@ class Source:
         self.path = path
         self.own = declared(text, False)
         self.tests_headers = tests_headers(written, {})
-        # Members and names of a namespace are not looked up as plain names are.
+        # Members (names after a dot or an arrow) do not count, since they cannot mean another source's private name.
         self.said = set(NAME.findall(re.sub(r"(?:\.|->)\s*\w+", " ", text))) | declared_in_headers(written)
 
 

@@ -6,7 +6,7 @@ import sys
 
 import numpy
 
-numpy.bool = bool  # the glTF reader of Blender 3.4 asks for a name that numpy 1.24 has dropped
+numpy.bool = bool  # Blender 3.4's glTF reader uses this name, which numpy 1.24 has removed
 
 import bpy
 
