@@ -39,7 +39,7 @@ Row row_of(const std::string& word) {
   return row;
 }
 
-// Makes the model with the mesh for contact, without solving it.
+// Makes the finite element model with the mesh for contact, and stops before it is solved.
 TissueModel model_with_contact(const test::BentArm& arm, double spacing) {
   struct Enough {};
   TissueModel model;

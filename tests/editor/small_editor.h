@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The real editor without a display, small enough for software OpenGL. It has a body of four tissues on a mirrored and
-// anisotropic grid, and a player that types and clicks.
+// The real editor without a display, in a window that is small enough for software OpenGL. It has a body of four
+// tissues on a mirrored and anisotropic grid, and a player that types and clicks.
 #pragma once
 
 #include <memory>

@@ -475,7 +475,7 @@ TEST_CASE("replay: what does not fit the header goes behind three dots") {
   test.play(
       "click view.four\n drag \"splitter sidebar/grip\" -240 0\n expect \"widget:header/More\"\n click header/More\n "
       "click \"more/Clip plane\"\n expect clip-plane yes");
-  // The menu leaves the buttons beside it free.
+  // The menu must not cover the buttons beside it: it opens below the tool header and within the window.
   test.play("click header/More\n wait 1");
   const editor::Rect entry = test.editor->ui->widgets.find("more/Clip plane")->rect;
   CHECK(entry.low.y > test.editor->screen->layout.tool_header.high.y);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Fuzzes the readers of the JSON files that the editor keeps outside projects: a file is read with all values in their
-// ranges, or refused with Error. The first byte says what the rest is:
-//   P  preferences     K  a key map     T  a theme     R  what is remembered of recent files     A  an arrangement
+// ranges, or refused with Error. The first byte says what the other bytes are:
+//   P  preferences     K  a key map     T  a theme     R  the list of recent files     A  an arrangement of areas
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>

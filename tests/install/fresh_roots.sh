@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# Proves in fresh systems what is promised of Limber's packages. Needs root, debootstrap, a network and, for all steps on
+# Tests Limber's packages in fresh systems, step by step. Needs root, debootstrap, a network and, for all steps on
 # two idle cores, about three quarters of an hour:
 #   fresh_roots.sh FOLDER [STEP...]
 # Each system is a Debian 12 root in FOLDER, made by debootstrap; the commit that is checked out here is cloned into it.
@@ -8,7 +8,7 @@
 #   package   the Debian package is installed, the first posed picture drawn, the editor started from its menu entry
 #   archive   the same with the archive, unpacked
 #   python    `./run python` without a network; its wheel installed, and its tests run, in a root that has no compiler
-# Roots stay for a look, and nothing stays mounted in them. A step that finds its root there already stops: remove it first.
+# Roots are kept, so that they can be inspected, with nothing mounted in them. If a root exists already, its step stops.
 set -euo pipefail
 [ $# -ge 1 ] || { sed -n '3,11s/^# //p' "$0" >&2; exit 2; }
 source=$(cd "$(dirname "$0")/../.." && pwd)
@@ -71,7 +71,7 @@ build() {
   (cd "$folder/two/root/limber/out/package" && sha256sum -c "$folder/sums") || fail "two roots made different bytes"
 }
 
-# pose ROOT LIMBER: from nothing to a posed body.   draw ROOT LIMBER: a picture of it.
+# pose ROOT LIMBER: makes a body and poses it by the program LIMBER.   draw ROOT LIMBER: draws a picture of the posed body.
 pose() {
   in_root "$1" "cd /root
     $2 --version
@@ -86,7 +86,7 @@ draw() {
     fail "see $folder/$1.log"
 }
 
-# start_editor ROOT ENTRY: from its menu entry, with the body of the first picture.
+# start_editor ROOT ENTRY: starts the editor from the menu entry ENTRY, with the body that pose() made.
 start_editor() {
   in_root "$1" "apt-get install -y -q --no-install-recommends xvfb xdotool x11-utils imagemagick libglib2.0-bin" >>"$folder/$1.log" 2>&1
   cp "$source/tests/install/start_from_menu.sh" "$folder/$1/root"

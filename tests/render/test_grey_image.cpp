@@ -267,7 +267,7 @@ TEST_CASE(
   refine(Display::Image);
   CHECK(difference(view.read(), whole).share < 0.05);
 
-  // Two images are drawn by turns, as in a comparison of two results.
+  // Two views draw two images alternately, as in a comparison of two results.
   SliceView a(studio.renderer), b(studio.renderer);
   Scene other = scene;
   other.grey = shown(image);

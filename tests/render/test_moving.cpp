@@ -20,7 +20,8 @@ namespace {
 constexpr glm::ivec2 kSize{800, 450};
 constexpr int kBand = 2;  // pixels this near to a border between labels are not compared
 
-// A body bent at some bones: the scene with the preview map of a moving picture, and the one with the map at rest.
+// A body bent at some bones, in two scenes: `moving` has the preview map that is used while the camera moves, and
+// `resting` the finer map that is used at rest.
 struct BentBody {
   Scene moving, resting;
   Camera camera;

@@ -211,8 +211,8 @@ TEST_CASE("bake joint: the live preview shows the baked shape, skin included, wi
     const auto baked = off(*preview.update(motions, Blend::DualQuaternion, {}, bent));
     CHECK(baked.first < (step == 2 ? 0.4 : 0.7) * plain.first);
     CHECK(baked.second < (step == 2 ? 0.3 : 0.7) * plain.second);
-    // Without its baked joint, the preview is as if there had never been one. With it, the preview does not depend on
-    // the poses that were shown before.
+    // An update without the baked joint gives the same map as if no joint had been baked. An update with the baked
+    // joint does not depend on the poses that were shown before.
     const auto without = preview.update(motions, Blend::DualQuaternion);
     CHECK(off(*without) == plain);
     preview.update(posed_from_rest(arm.body.rig, arm.bent(20)), Blend::DualQuaternion, {},

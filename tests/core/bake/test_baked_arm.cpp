@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A baked elbow of a real arm, posed at angles that were not baked.
+// Poses a baked elbow of a real arm at angles that were not baked, and counts voxels: tissues must keep their volume,
+// and hardly any voxel may be claimed by two tissues.
 #include "core/bake/bake_joint.h"
 
 #include <cstdlib>

@@ -88,7 +88,8 @@ TEST_CASE("bone map: entries of a row change it alone, by the label's value, and
   CHECK(rows[1].bones == std::vector<int>{1});
   CHECK(rows[2].bones == std::vector<int>{0});
   CHECK(rows[2].found_by == FoundBy::Map);
-  // An entry for the whole label replaces that of its side, and an entry for a side replaces that of the whole.
+  // An entry for the whole label replaces the entries for its sides, and an entry for a side replaces the entry for the
+  // whole label.
   const BoneMap whole = with_entry(one, femora, {}, &left);
   CHECK(whole == BoneMap{{"40", "LeftThigh"}});
   rows = rows_of(body, whole);

@@ -64,7 +64,8 @@ TEST_CASE("joint surface: without any bone at the joint it is still a surface") 
 TEST_CASE("joint surface: names tell the shape, and a hip, a shoulder or no role has none") {
   auto shape = [](BodyPart part, int index) { return shape_of_joint(JointRole{part, BodySide::Left, index}); };
   CHECK(shape(BodyPart::Index, 1)->along_hinge < 0);  // negative: the surface is a ball
-  // This surface is a cylinder across the finger.
+  // The little finger's second joint is a cylinder across the finger: the surface curves much less along the hinge than
+  // across it.
   CHECK(shape(BodyPart::Little, 2)->across_hinge < 3 * shape(BodyPart::Little, 2)->along_hinge);
   CHECK(shape(BodyPart::Thumb, 3)->across_hinge < 0);
   CHECK(shape(BodyPart::Shank, 0).has_value());

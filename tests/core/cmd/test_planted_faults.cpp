@@ -77,7 +77,8 @@ void rewrite_rig(Figure& figure, const std::function<glm::dvec3(const glm::dvec3
   for (Bone& bone : figure.armature.bones) bone.head = move(bone.head), bone.tail = move(bone.tail);
 }
 
-// A posed volume and its field, made by the test's own map from `points` sample points in each rest voxel.
+// A posed volume and its displacement field, made without the program: the function `map` moves `points` sample points
+// of each rest voxel.
 struct OwnPose {
   LabelVolume posed;
   ZeroedVector<glm::vec3> displacement;

@@ -44,7 +44,7 @@ TEST_CASE("cell pieces: what touches by faces within a cell is one piece, and ev
     CHECK(voxels == tissue.size());
     // The weights of each voxel over the corners of its cell sum to kFullWeight.
     CHECK(shares == doctest::Approx(1000.0 * kFullWeight * double(tissue.size())).epsilon(1e-4));
-    // The gap lies at x = 8, where a cell begins.
+    // The gap lies at x = 8, where a cell begins, so the pieces in the cells on its two sides do not touch.
     const glm::ivec3 beside(8 / step, 8 / step, 24 / step);
     REQUIRE(by_cell.of(beside).size() == 1);
     REQUIRE(by_cell.of(beside - glm::ivec3(1, 0, 0)).size() == 1);

@@ -88,7 +88,7 @@ double volume_error(const Limb& limb, const std::vector<RigidTransform>& motions
   return posed_volume(limb, lattice) / double(limb.tissue.size()) - 1;
 }
 
-// Counts the voxels that are stretched beyond `limit`, by the singular values of their gradient.
+// Counts the voxels that are stretched beyond `limit`, by the singular values of the deformation gradient.
 int stretched(const Limb& limb, const PosedLattice& lattice, double limit) {
   int count = 0;
   PosedLattice::Corners room;

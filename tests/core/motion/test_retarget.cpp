@@ -58,12 +58,12 @@ double largest_difference(const Motion& motion, const Armature& rig, int step) {
   return largest_difference(motion, rig, step, match_by_names(motion, rig));
 }
 
-// How far feet slide on the ground while the recorded foot stands: `source` is the sum of this over the recorded
-// stances, `posed` that of the posed body's foot in the same frames, mm.
+// How far feet slide on the ground while the recorded foot stands, mm: `source` is the sum for the recorded foot,
+// `posed` the sum for the foot of the posed body in the same frames.
 struct Drift {
   double source = 0, posed = 0;
-  // The number of stances, and of those in which the posed foot slides more than 2 % and 1 mm further than the
-  // recorded.
+  // `stances` counts the times in which the recorded foot stands; `longer` counts those in which the posed foot slides
+  // more than 2 % and 1 mm further than the recorded foot.
   int stances = 0, longer = 0;
 };
 Drift drift_of(const Motion& motion, const std::vector<glm::dvec3>& source, const std::vector<glm::dvec3>& posed) {

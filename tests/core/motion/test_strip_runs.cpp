@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Tests strips that touch and continue each other's clip: they play like one strip.
+// Tests strips that touch, where the second strip continues the clip of the first: they must play like one strip.
 #include <limits>
 #include <random>
 

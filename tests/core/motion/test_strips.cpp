@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Strips: clips that play one after another and over one another.
+// Tests strips, which play clips: strips of one track play one after another, and upper tracks play over lower ones.
 #include "core/motion/strips.h"
 
 #include <algorithm>

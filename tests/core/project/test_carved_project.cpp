@@ -150,7 +150,7 @@ TEST_CASE("carved project: with a tenth of its pages lost, every chunk none of w
   }
   MESSAGE(untouched, " chunks untouched, ", back, " carved, ", in_file, " in recovered projects; ", runs,
           " of 20 runs");
-  CHECK(runs >= 18);  // the other files have no whole chunk left
+  CHECK(runs >= 18);  // the files of the other runs have no undamaged chunk
   CHECK(untouched > 200);
   CHECK(back == untouched);
   CHECK(static_cast<double>(in_file) >= 0.85 * static_cast<double>(untouched));

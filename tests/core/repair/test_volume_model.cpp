@@ -32,7 +32,7 @@ TEST_CASE("volume model: the gradient of what is minimized is that of finite dif
   const Elbow elbow;
   for (const Blend blend : {Blend::DualQuaternion, Blend::Linear, Blend::Mixed}) {
     const VolumeModel model(elbow.body, elbow.field, elbow.motion, blend, no_progress());
-    // A narrow capsule folds and overlaps, so that every term of the total has a gradient.
+    // With a narrow joint capsule, flesh folds and overlaps, so that every term of the total has a gradient.
     const std::vector<double> at =
         CapsuleShape(elbow.body, elbow.field, elbow.motion).shares({.flexor = 30, .extensor = 90});
     std::vector<double> gradient(at.size());

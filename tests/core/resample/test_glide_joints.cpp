@@ -86,7 +86,7 @@ TEST_CASE("glide: bones that a pose drives into each other come apart, and keep 
   const auto asked = posed_from_rest(bars.armature, pose), shifted = posed_from_rest(bars.armature, glided.pose);
   for (int bone = 0; bone < 3; ++bone) {
     CHECK(std::abs(glm::dot(asked[bone].rotation, shifted[bone].rotation)) == doctest::Approx(1).epsilon(1e-12));
-    // All bones below the joint move with it.
+    // The joint's shift moves all bones below the joint, but not bone 0 above it.
     const glm::dvec3 expected = bone == 0 ? glm::dvec3(0) : joint.shift;
     CHECK(glm::distance(shifted[bone].translation - asked[bone].translation, expected) < 1e-9);
   }

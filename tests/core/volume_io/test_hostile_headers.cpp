@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Small files that ask for much memory, and numbers that no image or rig can have, are refused with one line and little
-// memory.
+// Reads small files that ask for much memory, and numbers that no image or rig can have. Each file must be refused with
+// one line of error, without using much memory.
 #include <algorithm>
 #include <cstring>
 #include <limits>

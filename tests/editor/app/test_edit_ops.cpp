@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that select, hide and clip, prepare volumes, and make weights, poses and results. All can be
-// undone.
+// Tests the operators that select, hide and clip, prepare volumes, and make weights, poses and results. Checks that
+// each can be undone.
 #include <fstream>
 
 #include "core/prepare/prepare.h"
@@ -24,14 +24,14 @@ using Effect = std::function<bool(Stage&, const Seen&)>;
 Effect becomes(const char* fact, const char* value = "shown") {
   return [=](Stage& s, const Seen&) { return s.is(fact, value); };
 }
-// The effect is one edit with this label, after which the query `fact` has this value.
+// Returns a check that the last edit has this label, and that the query `fact` now has this value.
 Effect edits(const char* label, const char* fact, const char* value) {
   return [=](Stage& s, const Seen& b) {
     return s.is("edit", label) && s.is(fact, value) &&
            static_cast<int>(s.editor().history->position()) == b.position + 1;
   };
 }
-// The effect is the volume that `expected` makes of the old one.
+// Returns a check that the volume is the one that `expected` makes of the old volume.
 Effect makes(LabelVolume (*expected)(const LabelVolume&)) {
   return [=](Stage& s, const Seen& b) {
     const LabelVolume volume = expected(*b.document.volume);

@@ -103,7 +103,7 @@ TEST_CASE("preferences: a changed key takes the place of the old one, and a clas
   CHECK(clashes(keymap)[0].operators == std::vector<std::string>{"all", "none"});
   CHECK(clashes(small_keymap()).empty());
 
-  rebind(changes, small_keymap(), "select", "none", {chord("Alt+A")});  // back to the default key
+  rebind(changes, small_keymap(), "select", "none", {chord("Alt+A")});  // the default key again, so no change remains
   CHECK(changes.empty());
 }
 

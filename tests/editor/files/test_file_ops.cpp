@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators of projects, imports, exports, recent files and samples, and of dialogs, help and preferences.
+// Tests the operators of projects, imports, exports, recent files and samples, and of dialogs, help and preferences.
 #include <fstream>
 
 #include "core/motion/bvh.h"
@@ -26,18 +26,18 @@ using Effect = std::function<bool(Stage&, const Seen&)>;
 Effect becomes(const char* fact, const char* value = "shown") {
   return [=](Stage& s, const Seen&) { return s.is(fact, value); };
 }
-// The effect is a file of this name in the home folder that `same` finds equal to the document.
+// Returns a check that the home folder has a file of this name, and that `same` finds the file equal to the document.
 template <class Same>
 Effect writes(const char* name, Same same) {
   return [=](Stage& s, const Seen&) {
     return std::filesystem::exists(s.home / name) && s.is("error", "none") && same(s.home / name, s.document());
   };
 }
-// Returns the script that answers the file browser with a name.
+// Returns a script that opens the file browser from a menu, types a file name, and waits for the job.
 std::string answer(const std::string& menu, const std::string& name) {
   return "click \"" + menu + "\"\n type \"" + name + "\"\n key Return\n wait-job";
 }
-// The effect is one edit that gives the document this part.
+// Returns a check that an import of this file was the last edit, and replaced this part of the document.
 template <class Part>
 Effect brings(const char* file, Part Document::*part) {
   return [=](Stage& s, const Seen& b) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Exports the playing motion as pictures. Each shows the body as the 3D view shows that frame at rest.
+// Exports a motion as pictures. Each picture must show the body as the 3D view shows it when it has stopped at that
+// frame.
 #include <doctest/doctest.h>
 
 #include "core/motion/recorded_clip.h"

@@ -182,7 +182,7 @@ TEST_CASE("constrained pose: a motion that does not move the rig leaves the pose
   run(*test.editor, "constraint.add_plant");
   REQUIRE(constraints_of(test.document()).list.size() == 1);
   CHECK(shown_clip(test.editor->document())->keys.bones.at("Trunk").at(0) == pose.rotation[kTrunk]);
-  // When the pose becomes the rest pose, the hand is planted where it is.
+  // When the pose becomes the new rest pose, the hand stays planted where it is.
   const glm::dvec3 before = tail_of(test.document(), kHand);
   run(*test.editor, "pose.apply_as_rest");
   const Bone& thigh = test.document().armature->bones[kThigh];

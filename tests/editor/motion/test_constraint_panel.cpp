@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves each operator of constraints, and tests what the panel does to the shown clip.
+// Tests each operator of constraints, and tests what the panel does to the shown clip.
 #include "editor/context/menu_state.h"
 #include "editor/context/operator.h"
 #include "editor/motion/constraint_edits.h"

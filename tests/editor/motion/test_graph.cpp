@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves each operator of the graph editor, and tests what dragging keys and handles does to a clip.
+// Tests each operator of the graph editor, and tests what dragging keys and handles does to a clip.
 #include "editor/context/menu_state.h"
 #include "editor/context/operator.h"
 #include "editor/context/screen.h"
@@ -68,8 +68,8 @@ std::function<bool(Stage&, const Seen&)> goes_on(Interpolation interpolation) {
 std::function<bool(Stage&, const Seen&)> handles_are(HandleKind handles) {
   return [=](Stage& s, const Seen&) { return shape(s.editor(), 30).handles == handles; };
 }
-// The effect is that the angle has covered these shares of the first span at a quarter and at three quarters of its
-// time.
+// Returns a check of how the angle moves from the first key to the second: the share of the way that is done after a
+// quarter of the time (`early`) and after three quarters (`late`).
 std::function<bool(Stage&, const Seen&)> eases(double early, double late) {
   return [=](Stage& s, const Seen&) {
     const auto share = [&](int frame) {

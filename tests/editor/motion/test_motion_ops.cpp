@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves each operator of the timeline and of clips.
+// Tests each operator of the timeline and of clips.
 #include "editor/context/menu_state.h"
 #include "editor/context/operator.h"
 #include "editor/context/screen.h"

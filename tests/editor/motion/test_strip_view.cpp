@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves each operator of the strips' view, and tests what dragging strips and their ends does to a clip.
+// Tests each operator of the strips' view, and tests what dragging strips and their ends does to a clip.
 #include "editor/context/dialogs.h"
 #include "editor/context/operator.h"
 #include "editor/motion/strip_view.h"

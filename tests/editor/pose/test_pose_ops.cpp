@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that select and pose bones and compare results.
+// Tests the operators that select and pose bones and compare results.
 #include "editor/context/comparison.h"
 #include "editor/context/menu_state.h"
 #include "editor/context/pose_editing.h"

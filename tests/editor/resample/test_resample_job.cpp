@@ -34,7 +34,8 @@ Path script(const TemporaryFolder& folder, const std::string& text) {
   return path;
 }
 
-// Returns what a job makes of the document. Joints first glide by less than a voxel.
+// Returns the posed body that a job must make of the document. Like the job, first shifts bones that overlap at a joint
+// by less than a voxel.
 Posed resampled(const Document& document, const Method& method, const ResampleSettings& settings = {}) {
   const glm::dvec3 spacing = document.volume->grid.spacing;
   const GlidedPose glided = glide_joints(
@@ -216,7 +217,8 @@ TEST_CASE("resample: a result becomes stale when what it was made from changes, 
   const auto result = test.editor->document().results.at(0);
   CHECK(stale_reason(test.editor->document(), *result).empty());
   run(*test.editor, "pose.clear");
-  CHECK(stale_reason(test.editor->document(), *result).empty());  // a result keeps its own pose
+  // a result has its own pose, so clearing the pose does not make it stale
+  CHECK(stale_reason(test.editor->document(), *result).empty());
   run(*test.editor, "edit.undo");
   run(*test.editor, "skin.geodesic");
   test.play("wait-job");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that place and fit skeletons.
+// Tests the operators that place and fit skeletons.
 #include <algorithm>
 
 #include "core/motion/constraint.h"

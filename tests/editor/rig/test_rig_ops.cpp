@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that edit the rig at rest.
+// Tests the operators that edit the rig at rest.
 #include "editor/context/menu_state.h"
 #include "editor/context/transform_settings.h"
 #include "editor/rig/rig_edits.h"
@@ -31,7 +31,7 @@ std::function<void(Stage&)> anew(std::set<int> bones, int active) {
   };
 }
 
-// The effect is one edit with this label, and a rig that satisfies `made`.
+// Returns a check that one edit with this label was made, and that the rig satisfies `made`.
 Effect edited(const std::string& label, std::function<bool(const Armature&)> made) {
   return [=](Stage& s, const Seen& b) {
     return s.is("edit", label) && static_cast<int>(s.editor().history->position()) == b.position + 1 &&

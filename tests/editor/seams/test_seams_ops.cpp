@@ -107,7 +107,7 @@ TEST_CASE("seams: a stroke of the brush cuts along its way and is one step to un
   CHECK(test.last_edit() == "Erase seam");
   CHECK(test.faces() < cut);
   CHECK(test.faces() > found);
-  // Escape drops the running stroke.
+  // Escape cancels the stroke that is being drawn.
   const int steps = test.steps();
   test.play("move " + test.at({-30, -40, 150}));
   test.host->events.push(ButtonChanged{MouseButton::Left, true});

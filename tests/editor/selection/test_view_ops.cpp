@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators of workspaces, layouts, displays, overlays, cameras and slices.
+// Tests the operators of workspaces, layouts, displays, overlays, cameras and slices.
 #include "editor/context/outliner_state.h"
 #include "editor/context/screen.h"
 #include "tests/editor/operator_proofs.h"
@@ -19,7 +19,7 @@ std::function<bool(Stage&, const Seen&)> becomes(const char* fact, const char* v
 std::function<bool(Stage&, const Seen&)> goes(bool Views::*shown) {
   return [=](Stage& s, const Seen&) { return !(views(s).*shown); };
 }
-// The effect is a camera that looks from this side of the body, with its picture upright.
+// Returns a check that the camera looks from this side of the body and has stopped moving.
 std::function<bool(Stage&, const Seen&)> looks_from(const char* name, const glm::dvec3& side) {
   return [=](Stage& s, const Seen&) {
     const glm::dvec3 from = glm::normalize(render::eye_of(camera(s)) - camera(s).centre);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that choose and set brushes, and paints with them.
+// Tests the operators that select and set brushes, and painting with these brushes.
 #include "editor/context/menu_state.h"
 #include "editor/skin/brush_presets.h"
 #include "editor/skin/brush_settings.h"

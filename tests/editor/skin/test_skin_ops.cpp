@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that show skin weights, select their bones, and lock them.
+// Tests the operators that show skin weights, select their bones, and lock them.
 #include "core/skin/skin_weights.h"
 #include "editor/context/menu_state.h"
 #include "editor/context/views.h"

@@ -218,7 +218,7 @@ TEST_CASE(
   CHECK(test.steps() == steps);
   button(false);
   REQUIRE(test.steps() == steps + 1);
-  // A pixel is half a millimetre, which limits how exactly the ends are placed.
+  // A pixel is half a millimetre, which limits how exactly the ends are placed. So weights may be off by 0.03.
   const double allowed = 0.03;
   const auto away = [&](const auto& expected) {
     double most = 0;

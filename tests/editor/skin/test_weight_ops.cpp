@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the operators that edit weights in the whole body or a part of it.
+// Tests the operators that edit weights in the whole body or a part of it.
 #include "core/project/project_io.h"
 #include "editor/skin/painted_region.h"
 #include "editor/skin/painting.h"

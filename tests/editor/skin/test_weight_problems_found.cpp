@@ -119,7 +119,7 @@ TEST_CASE(
   CHECK(test.editor->document().weights == before);
   CHECK(problems_stale(*test.editor));
 
-  // A message names the locked bone.
+  // If a locked bone blocks the repair, a message names the bone.
   toggle_lock(*test.editor, 0);
   test.play("click \"sidebar/sections/Problems/skin.find_problems\"\nwait-job\nwait-idle");
   test.editor->messages->toasts.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Proves the tools that transform bones, and the operators that blend a pose with other poses.
+// Tests the tools that transform bones, and the operators that blend a pose with other poses.
 #include "editor/context/transform_settings.h"
 #include "editor/pose/pose_edits.h"
 #include "tests/editor/operator_proofs.h"
