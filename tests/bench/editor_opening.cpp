@@ -5,12 +5,11 @@
 //   window_cpu_seconds         CPU seconds (user and system, all threads) before the first frame: libraries, fonts,
 //                              shaders
 //   first_picture_cpu_seconds  from the first frame, which shows the empty window, to the first that shows the volume
-// //   first_picture_seconds      first_picture_cpu_seconds / 2: the time on two cores that are otherwise idle
-// //   longest_frame_cpu_seconds  CPU seconds of the interface's own thread in its longest frame before the volume
-// shows
+//   first_picture_seconds      first_picture_cpu_seconds / 2: the time on two cores that are otherwise idle
+//   longest_frame_cpu_seconds  the longest frame until then: CPU seconds of the interface's own thread
 //   complete_cpu_seconds       from the first frame until the picture is at full resolution
-// //   longest_frame_to_complete_cpu_seconds  the same for all frames until the picture is at full resolution
-//   frames_with_progress       how many frames in between showed the job's progress
+//   longest_frame_to_complete_cpu_seconds  the longest frame of that thread until the picture is at full resolution
+//   frames_with_progress       number of frames that showed the job's progress before the volume
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,7 +43,7 @@ double seconds(clockid_t clock) {
   return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
-// Returns true if the last frame's picture holds the volume.
+// Returns true if the last frame shows the volume.
 bool shows_volume(const Context& editor) { return editor.document().volume && editor.views->body.picture->scale() > 0; }
 
 constexpr int kRuns = 5;

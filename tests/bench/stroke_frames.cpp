@@ -145,8 +145,8 @@ class ArmPainted {
     return best;
   }
 
-  // Returns the point that lies `way` pixels along the path. From the path's end the way leads back to its start, and
-  // so on.
+  // Returns the point that is reached after `way` pixels along the path. At its end, the path is followed back to its
+  // start, and so on.
   static glm::vec2 at(const std::vector<glm::vec2>& path, double way) {
     double length = 0;
     for (std::size_t i = 1; i < path.size(); ++i) length += glm::distance(path[i - 1], path[i]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Fuzzes the readers of projects and journals: any bytes are read, or refused with Error. The first byte says what the
-// rest is:
+// other bytes are:
 //   P  a project file       J  a journal       C  chunks with correct hashes, so that their contents are parsed
 #include <cstdint>
 #include <cstdlib>

@@ -181,7 +181,7 @@ TEST_CASE("rooms: a volume, a click and a dab pass through rooms in their order,
       // A click from the window to the document: the event names an operator, whose edit is committed.
       {"editor/app/editor", "editor/app/event_dispatch", "editor/context/operator"},
       {"editor/pose/pose_ops", "editor/context/document_edits", "core/project/history", "core/project/document"},
-      // A dab from the pointer to the stroke, and what it changed from there to the texture of weights.
+      // A brush dab from the pointer to the stroke, and the changed weights from there to the texture of weights.
       {"editor/app/editor", "editor/skin/paint_mode", "editor/skin/painting", "core/paint/stroke",
        "core/paint/brush_rule"},
       {"editor/skin/paint_mode", "editor/context/views", "render/view", "render/passes/pass_resources",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pictures with fine light, which rays compute while the view is at rest.
+// Tests pictures with fine light, which rays compute while the view is at rest.
 #include "core/volume_io/volume_io.h"
 #include "tests/render/studio.h"
 #include "tests/support/shared_data.h"

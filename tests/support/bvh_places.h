@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the joints of a BVH file are, computed from its text alone: no reader, skeleton or rotation of the program is
-// used, so what the program writes can be checked.
+// Computes where the joints of a BVH file are, from the file's text alone: no reader, skeleton or rotation of the
+// program is used, so what the program writes can be checked.
 #pragma once
 
 #include <array>

@@ -26,7 +26,8 @@ glm::dvec3 shift_of(const glm::dvec3& p, const Build& build, const StandingLandm
   return shift + build.larger_head * ramp(at.neck - 40, at.neck + 60, p.z) * (p - at.head);
 }
 
-//   guess  where the search begins
+// Returns the position of the standing body that shift_of() takes to `after`, by repeated substitution.
+//   guess  position from which the search begins
 glm::dvec3 place_before(const glm::dvec3& after, const glm::dvec3& guess, const Build& build,
                         const StandingLandmarks& at) {
   // The search ends when the position changes by less than this, mm.

@@ -18,7 +18,7 @@ using namespace limber;
 namespace {
 
 // Returns the rig with another rest pose: one bone and its descendants are turned about `axis`. Their limits keep their
-// angles, and the axes of the limits turn along.
+// angles, and the axes of the limits turn with the bones.
 Armature resting_turned(Armature rig, const std::string& name, const glm::dvec3& axis, double degrees) {
   const int top = *rig.find(name);
   const glm::dquat turn = glm::angleAxis(glm::radians(degrees), axis);

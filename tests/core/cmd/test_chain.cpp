@@ -126,7 +126,8 @@ TEST_CASE(
     CHECK(bytes_of(arm.folder / ("posed_" + number + ".nrrd")) == bytes_of(arm.folder / "one.nrrd"));
     const auto report = nlohmann::json::parse(bytes_of(arm.folder / (number + ".json")));
     CHECK(report["settings"]["frame"] == std::stoi(frame));
-    // A report states the times of its own frame. Work that is done once for all frames counts in the first.
+    // A report states the times of its own frame. The time of work that is done once for all frames is stated in the
+    // first frame's report.
     double stages = 0;
     for (const auto& [stage, seconds] : report["seconds"].items())
       if (stage != "total") stages += seconds.get<double>();

@@ -171,7 +171,7 @@ TEST_CASE(
   CHECK(count(again.err, ": already computed") == 6);
   CHECK(cells_of(killed) == cells);
 
-  // A cell's job file makes the cell's volume again.
+  // Running a cell's job file makes the same volume again.
   const Path one = killed / cells["cells"][4]["folder"].get<std::string>();
   const std::string before = read_file(one / "posed.nrrd");
   REQUIRE(run_limber({"job", one / "job.json"}).exit_code == 0);

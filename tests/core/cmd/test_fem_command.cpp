@@ -228,7 +228,7 @@ TEST_CASE("fem command: Ctrl-C ends a solve within a tenth of a second and leave
     ::waitpid(child, &status, 0);
     const double took = std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count();
     INFO("after ", wait_ms, " ms");
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;  // it had finished before the signal
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) continue;  // the program had finished before the signal
     CHECK(took < 0.1);
     CHECK(WIFEXITED(status));
     CHECK(WEXITSTATUS(status) == 3);

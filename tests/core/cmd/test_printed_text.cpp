@@ -56,9 +56,9 @@ TEST_CASE("printed text: control characters and broken UTF-8 are made visible, l
   CHECK(cmd::printable("Schädel 頭 \xf0\x9f\xa6\xb4\n\tA") == "Schädel 頭 \xf0\x9f\xa6\xb4\n\tA");
   CHECK(cmd::printable("a\x1b[31mb\x7f") == "a?[31mb?");
   CHECK(cmd::printable("a\xc2\x9b"
-                       "31m") == "a?31m");  // CSI as a C1 character
+                       "31m") == "a?31m");  // the control character CSI of the C1 set
   CHECK(cmd::printable("a\x9b"
-                       "31m\xe9") == "a?31m?");  // CSI as a single byte, and a Latin-1 letter
+                       "31m\xe9") == "a?31m?");  // the single byte CSI, and a letter in Latin-1
   CHECK(cmd::printable("\xed\xa0\x80\xc0\x80\xf4\x90\x80\x80\xe2\x82").find_first_not_of('?') == std::string::npos);
   CHECK(cmd::one_line("a\nb\tc\rd\x1b") == "a b c d?");
 }

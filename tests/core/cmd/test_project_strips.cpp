@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the command line exports of a project with strips is what the editor plays.
+// Tests that the command line exports, from a project with strips, the motion that the editor plays.
 #include <doctest/doctest.h>
 #include <nlohmann/json.hpp>
 

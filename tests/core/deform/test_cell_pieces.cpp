@@ -65,6 +65,6 @@ TEST_CASE("cell pieces: bars that pass through one cell side by side are two pie
   const SkinWeights weights({"A"}, tissue);
   const auto pieces = cell_pieces(tissue, weights, 4, glm::dvec3(1));
   const PiecesByCell by_cell(pieces, glm::ivec3(-1), glm::ivec3(8, 6, 12));
-  CHECK(by_cell.of({2, 2, 6}).size() == 2);  // one at x = 8 and 9, and one at x = 11
+  CHECK(by_cell.of({2, 2, 6}).size() == 2);  // a piece at x = 8 and 9, and a piece at x = 11
   CHECK(by_cell.of({2, 2, 0}).size() == 1);
 }

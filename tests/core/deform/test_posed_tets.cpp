@@ -243,7 +243,7 @@ TEST_CASE(
     CHECK(map.lost.empty());
     CHECK(std::none_of(map.flags.begin(), map.flags.end(),
                        [](std::uint8_t flags) { return flags & InverseMap::kInverted; }));
-    CHECK(covered(map) > 0.93 * double(tissue));  // all but one layer of each part
+    CHECK(covered(map) > 0.93 * double(tissue));  // all voxels but about one layer of each part
   }
 }
 
@@ -282,7 +282,7 @@ TEST_CASE("posed tets: where a mesh carries only a part, mesh and lattice meet w
       if (alone.cell[i] != InverseMap::kNoCell && joined.cell[i] != InverseMap::kNoCell)
         furthest = std::max(furthest, double(glm::length(alone.rest[i] - joined.rest[i])));
     }
-    CHECK(differ <= 2);  // voxel centres that lie on the border up to rounding
+    CHECK(differ <= 2);  // at voxel centres on the border, where rounding decides
     CHECK(furthest < 1e-3);
   }
 }

@@ -173,7 +173,7 @@ TEST_CASE("gltf: the surface moves in every clip as the linear blend moves the s
   CHECK(moved > 0.1 * extent);
 }
 
-// Blender reads and skins the file independently. Its axes are those of the world.
+// Blender reads and skins the file independently. Blender's axes, in metres, are the body's world axes.
 TEST_CASE("gltf: Blender opens the file, and its vertices go where ours go") {
   NEEDS_PROGRAM("blender");
   const Arm& body = arm();

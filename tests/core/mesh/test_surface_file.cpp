@@ -124,7 +124,7 @@ TEST_CASE("surface file: what the exporter writes is read back, triangle by tria
   }
 }
 
-// Blender writes the files independently. Its axes are those of the world.
+// Blender writes the files independently. Blender's axes are the body's world axes.
 TEST_CASE("surface file: what Blender writes is read, in every format, as the triangles that it has") {
   NEEDS_PROGRAM("blender");
   const TemporaryFolder folder;

@@ -83,7 +83,7 @@ TEST_CASE("euler angles: every rotation in every order comes back, near the angl
       const glm::dquat back = about(order[0], angles[0]) * about(order[1], angles[1]) * about(order[2], angles[2]);
       CHECK(std::abs(glm::dot(back, rotation)) > 1 - 1e-12);
       for (int a = 0; a < 3; ++a) CHECK(std::abs(angles[a] - near[a]) <= 2 * std::numbers::pi);
-      // If the hint for euler_angles() is the angles from which a rotation was made, it returns these angles.
+      // If euler_angles() gets as its hint the angles from which a rotation was made, it returns these angles.
       const glm::dvec3 own(0.3, middle > 1.5 || middle < -1.5 ? 0.2 : middle, -2.0);
       const glm::dquat made = about(order[0], own[0]) * about(order[1], own[1]) * about(order[2], own[2]);
       CHECK(glm::distance(euler_angles(made, order, own), own) < 1e-9);

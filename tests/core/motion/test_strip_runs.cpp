@@ -115,7 +115,7 @@ TEST_CASE("strips: a strip inside a longer one of its track fades in and out aga
   double step = 0;
   for (int frame = 20; frame < 90; ++frame) step = std::max(step, far(at(strips, frame), at(strips, frame + 1)));
   CHECK(step < 0.5 * far(at(wave, 40), at(walk, 71)));
-  // The strip's fades of 4 and 6 frames are used.
+  // If the strip has fades of its own, 4 and 6 frames long, these are used.
   strips.tracks[0].strips[1].blend_in = 4;
   strips.tracks[0].strips[1].blend_out = 6;
   CHECK(at(strips, 34) == at(wave, 4));

@@ -216,7 +216,7 @@ TEST_CASE("strips: each cycle begins where the one before ended, and its seam is
   Strips strips = one_strip(clip, 0);
   only(strips).repeat = 3.5;
   CHECK(end_of(only(strips), 30) == 70);
-  // The cycles lead the body along its circle: in each frame it has the pose that the formula gives.
+  // The cycles lead the body along its circle: in each frame the body has the pose that the formula gives.
   for (int frame = 0; frame <= 70; ++frame) CHECK(far(at(strips, frame), pose_at(frame)) < 0.02);
   const double step = far(at(strips, 18), at(strips, 19));
   for (const int seam : {20, 40, 60}) CHECK(far(at(strips, seam - 1), at(strips, seam)) < 1.01 * step);

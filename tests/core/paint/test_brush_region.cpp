@@ -72,7 +72,7 @@ void for_each_voxel(const Grid& grid, const Body& body) {
 
 // Returns the shortest distances from the voxel `start` over steps to the 26 neighbours, mm, up to `radius`. A diagonal
 // step counts only if single steps through faces of tissue lead to the same voxel.
-// //   from  distance that is counted for the start itself, mm
+//   from  distance that is counted for the start itself, mm
 Distances shortest_ways(const LabelVolume& volume, const glm::ivec3& start, double from, double radius) {
   const auto passable = [&](const glm::ivec3& v, const glm::ivec3& step) {
     std::array<int, 3> axes{0, 1, 2};

@@ -49,7 +49,7 @@ std::vector<std::vector<std::string>> rows(const Path& path, const char* sql) {
 // of the rows.
 std::map<std::string, std::set<int>> pages_of_chunks(const Path& path) {
   const auto hashes = rows(path, "SELECT hash FROM chunk ORDER BY rowid");
-  std::map<std::string, std::pair<int, int>> leaves;  // path -> page, cells
+  std::map<std::string, std::pair<int, int>> leaves;  // path -> page number, and number of cells
   std::map<std::string, std::map<int, std::set<int>>> overflow;
   for (const auto& row :
        rows(path, "SELECT path, pageno, ncell, pagetype FROM dbstat WHERE name = 'chunk' ORDER BY path")) {
@@ -107,7 +107,7 @@ Document rich_document(int chunks, unsigned run) {
     }
     voxel = label;
   }
-  document.weights = nullptr;  // they belong to another volume
+  document.weights = nullptr;  // the weights belong to another volume
   document.seams = nullptr;
   document.volume = volume;
   const Document small = small_document();

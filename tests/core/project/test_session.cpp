@@ -132,7 +132,7 @@ TEST_CASE("session: save as gives it a file, and later saves write there") {
   session->keep(document, "Open");
   session->save_as({.document = document, .editor = "{}"}, folder / "a.limber");
   CHECK(session->path() == fs::canonical(folder / "a.limber"));
-  CHECK(std::distance(fs::directory_iterator(folder / "state"), {}) == 1);  // the link to the journal
+  CHECK(std::distance(fs::directory_iterator(folder / "state"), {}) == 1);  // the only file is the link to the journal
   session->keep(next, "Pose");
   REQUIRE(session->flush(kLong));
   CHECK(session->save({.document = next}).empty());

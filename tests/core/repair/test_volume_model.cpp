@@ -39,7 +39,7 @@ TEST_CASE("volume model: the gradient of what is minimized is that of finite dif
     const VolumeModel::Value value = model.evaluate(at, gradient);
     CHECK(value.folded > 0);
     CHECK(value.overlap > 0);
-    // Tests directions that change all nodes by their position, and the direction of the gradient.
+    // Tests two directions that change the values of all nodes by their positions, and the direction of the gradient.
     for (int direction = 0; direction < 3; ++direction) {
       std::vector<double> way(at.size());
       for (std::size_t n = 0; n < way.size(); ++n) {

@@ -61,7 +61,7 @@ struct Arm {
     return std::move(file.volume);
   }
 
-  // Counts the voxels of `posed` whose label differs from the one at the rest point that the dense map gives.
+  // Counts the voxels of `posed` whose label differs from the label at the rest point that the dense map gives.
   std::int64_t differing(const LabelVolume& posed, const Pose& pose, Blend blend, bool nearest) const {
     LabelSet bone(65536, 0), soft(65536, 1);
     std::vector<int> priority(65536, 0);

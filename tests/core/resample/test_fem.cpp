@@ -272,7 +272,7 @@ TEST_CASE("fem: what a later frame of a sequence presses waits for it") {
   is_bone[test::kBone] = 1;
   FemSequence sequence(tube.volume, tissue, tube.tissues, is_bone, tube.weights, tube.rig,
                        {tube.pose(55), tube.pose(110), tube.pose(165)}, {.contact = true, .spacing_mm = 6});
-  // For each pose: node that waits -> position on the path until which it waits.
+  // For each pose: node that moves with a bone at first -> position on the path until which it does so.
   std::vector<std::map<int, double>> waiting;
   for (int leg = 0; leg < 3; ++leg) {
     const auto shape = sequence.next();

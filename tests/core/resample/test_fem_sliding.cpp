@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Flesh that slides over bone, on limbs built in code.
+// Tests flesh that slides over bone, on limbs built in code.
 #include <algorithm>
 
 #include <doctest/doctest.h>

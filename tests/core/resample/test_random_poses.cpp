@@ -131,7 +131,7 @@ TEST_CASE("random poses: finite elements never crash, hang or invert, and say wh
       posed = resample(random.body->volume, random.body->tissues, random.body->rig, random.body->weights, random.pose,
                        random.fem);
     } catch (const Error& error) {
-      // The only refusal: tets larger than all that moves.
+      // A pose is refused for one reason only: every moving bone is smaller than the tets.
       CHECK(std::string(error.what()).find("every moving bone is smaller") != std::string::npos);
       ++refused;
       continue;

@@ -218,7 +218,7 @@ TEST_CASE("seams: skin that only one of two limbs has left goes with the one on 
     const TissueVoxels tissue(body.volume);
     const BoneParts parts = split_bones(body.volume, tissue, body.tissues, body.rig);
     const Seams seams = find_seams(body.volume, tissue, body.tissues, body.rig, parts);
-    std::int64_t found = 0, between = 0;  // without the crease, where the arm's skin turns inwards
+    std::int64_t found = 0, between = 0;  // counts without the crease, where the arm's skin turns inwards
     seams.for_each([&](const glm::ivec3& v, int axis) {
       if (v.y < 8 || v.y >= 20) return;
       ++found;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes with every name of the common label tables are converted for simulations, and no name remains unmatched.
+// Converts volumes with every name of the common label tables for simulations. No name may remain unmatched.
 #include <algorithm>
 #include <fstream>
 #include <sstream>

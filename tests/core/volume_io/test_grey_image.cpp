@@ -61,7 +61,7 @@ TEST_CASE("grey image: a slice shows the voxel at each place of the world, nothi
         REQUIRE(picture.size() == 1);
         CHECK(picture[0] == 100 * z + 10 * y + x);
       }
-  // To the right in the picture is backwards along the rows.
+  // The right of the picture is the patient's left, so pixels run backwards along the rows.
   GreyFrame frame = axial(volume, {1, 2, 1});
   frame.size = {9, 1};
   frame.millimetres_per_pixel = 2;
@@ -83,7 +83,8 @@ TEST_CASE("grey image: a projection shows the largest value on each line of sigh
     const auto picture = grey_projection(volume, axial(volume, voxel));
     CHECK(picture[0] == value);
   }
-  // Views from the front, with the middle of the picture anywhere along the line of sight.
+  // Views from the front. The middle of the picture lies far behind the image, which does not matter: only its position
+  // across the line of sight counts.
   GreyFrame front{.middle = world_from_voxel(volume.grid) * glm::dvec3(2, 40, 1), .down = {0, 0, -1}};
   CHECK(grey_projection(volume, front)[0] == 5000);
   front.middle.z += 3;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes are parsed in a process without rights. The results are the same bytes, and a bad parser can do no harm.
+// Tests that volumes are parsed in a process without rights: the results are the same bytes as without that process,
+// and a malicious parser can do no harm.
 #include "core/volume_io/volume_reader.h"
 
 #include <algorithm>

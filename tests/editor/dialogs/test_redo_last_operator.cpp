@@ -170,7 +170,7 @@ TEST_CASE("adjust: the box in the view unfolds and its numbers act, and forms ha
   CHECK(test.rig().bones[1].tail == glm::dvec3(3, 0, -36));
   CHECK(test.position() == 1);
   test.play("move \"3D view/view\"\nkey F9\nwait-idle\nkey Escape");
-  // Opening the form to adjust the last operator does not count as an operator.
+  // Opening the form that adjusts the last operation does not replace the last operator.
   CHECK(test.editor->operators->last == "rig.move");
   test.play("key Ctrl+F2\nclick Bones/All\nclick Suffix/text\ntype \".L\"\nwait-idle\nkey Return\nwait-idle");
   REQUIRE(test.rig().bones[1].name == "Fore.L");

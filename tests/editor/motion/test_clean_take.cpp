@@ -165,7 +165,8 @@ TEST_CASE(
   CHECK(largest_slide(reduced, stances) < 2);
   CHECK(off_place(reduced) < 1.5);
 
-  // Keys of the head move nothing else. Keys of a thigh move its foot, and planting it again moves it back.
+  // Changing keys of the head moves nothing but the head. Changing keys of a thigh moves its foot, and planting the
+  // foot again moves it back.
   test.lift_keys("Head", "12");
   const BvhPlaces nodding = test.exported("nodding.bvh");
   CHECK(distance_of(nodding.of("Head end")[300].place, reduced.of("Head end")[300].place) > 10);

@@ -342,7 +342,7 @@ TEST_CASE("strip view: the shown clip plays the strips, and an edit of a strip's
   StripEditor test;
   Editor& editor = *test.editor;
   go_to_frame(editor, 40);
-  // the upper strip replaces the whole pose of the lower one
+  // The upper strip replaces the whole pose of the lower one.
   CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(0).epsilon(0.01));
   run(editor, "strips.solo_track");
   CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(40).epsilon(0.01));
@@ -423,7 +423,7 @@ TEST_CASE("strip view: deleting a clip says which strips go with it, and the pos
   CHECK(!has_strip(editor, "keys"));
   CHECK(editor.document().frame == 30);
   CHECK(bend_of(pose_of(editor.document())) == doctest::Approx(30).epsilon(0.01));
-  // A clip that no strip plays goes at once.
+  // A clip that no strip plays is deleted without a question.
   run(editor, "motion.delete_clip");
   CHECK(editor.document().clips.size() == 1);
 }

@@ -217,7 +217,7 @@ TEST_CASE("resample: a result becomes stale when what it was made from changes, 
   const auto result = test.editor->document().results.at(0);
   CHECK(stale_reason(test.editor->document(), *result).empty());
   run(*test.editor, "pose.clear");
-  // a result has its own pose, so clearing the pose does not make it stale
+  // A result has its own pose, so clearing the pose does not make the result stale.
   CHECK(stale_reason(test.editor->document(), *result).empty());
   run(*test.editor, "edit.undo");
   run(*test.editor, "skin.geodesic");

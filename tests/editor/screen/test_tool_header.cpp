@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tool header of a window that gets narrower.
+// Tests the tool header of a window that gets narrower.
 #include <doctest/doctest.h>
 
 #include "editor/context/operator.h"

@@ -202,7 +202,8 @@ TEST_CASE("label brush: it paints over what it may, in one slice, and in a range
   run(*test.editor, "labels.in_range");
   LabelBrush& brush = *test.editor->skin->painting->labels;
   const GreyLevels& image = *test.editor->views->image->image;
-  // The image is no CT, so the range does not start with that of bone.
+  // The image is no CT, so the brush starts with the image's whole range of values instead of the range of bone in a
+  // CT.
   CHECK_FALSE(looks_like_ct(image));
   CHECK(brush.low == image.least);
   CHECK(brush.high == image.most());

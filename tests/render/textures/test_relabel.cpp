@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Volumes whose labels change while they are on the graphics card: only blocks near the change are uploaded, and
-// pictures equal those of the changed volume uploaded anew.
+// Tests volumes whose labels change while they are on the graphics card. Only blocks near the change may be uploaded,
+// and pictures must equal those of the changed volume uploaded as a new volume.
 #include "render/passes/pass_resources.h"
 #include "tests/render/studio.h"
 

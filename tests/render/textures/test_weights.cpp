@@ -524,7 +524,7 @@ TEST_CASE("weights: a posed body shows the weights of the voxels that its map le
     return bytes(bone == forearm ? kActiveBone : (*scene.weights->swatches)[static_cast<std::size_t>(bone)]);
   };
 
-  // Compares a slice across the bent elbow.
+  // In a slice across the bent elbow, compares each pixel with the colour of the bone that has most weight there.
   Studio studio;
   SliceView view(studio.renderer);
   const Bone& bone = phantom.armature.bones[static_cast<std::size_t>(forearm)];
@@ -550,7 +550,7 @@ TEST_CASE("weights: a posed body shows the weights of the voxels that its map le
   CHECK(seen > 500);
   CHECK(right > 0.98 * seen);
 
-  // Compares the hues of forearm and upper arm in the 3D view.
+  // In the 3D view, compares the hue of each pixel with that of the bone that has most weight there.
   const Camera camera = camera_of(volume->grid, Projection::Perspective, StandardView::Left);
   View3D body(studio.renderer);
   const Image lit = draw(body, scene, camera, kSize * 2);
