@@ -20,7 +20,7 @@ using namespace limber::test;
 
 namespace {
 
-// Tries to clear the screen, to rename the window by a C1 code, and to hide text by a carriage return.
+// Text that would clear the screen, rename the window by a C1 code, and hide text by a carriage return.
 const std::string kHostile =
     "Fore\x1b[2J\xc2\x9d"
     "0;x\x07\x7f\rarm";

@@ -87,8 +87,8 @@ TEST_CASE("rigid object: a plate presses a column by what its stiffness takes, a
     const Pressed pressed = press(to, exact());
     REQUIRE(pressed.solved.converged);
     const double shorter = top(pressed.model, pressed.model.mesh.V) - top(pressed.model, pressed.solved.V);
-    // A column whose foot cannot widen is a little stiffer than one on a smooth floor, and gets stiffer when it is
-    // shorter and wider.
+    // The expected force is that on a column on a smooth floor, by Hooke's law. A column whose foot cannot widen is a
+    // little stiffer, and gets stiffer when it is shorter and wider.
     const double young = 2 * kShear * (1 + kPoisson), strain = shorter / (kHeight - kFoot),
                  expected = 1e-3 * young * kWidth * kWidth * strain;
     const double force = 1e-3 * pressed.solved.force_on_objects.col(2).sum();

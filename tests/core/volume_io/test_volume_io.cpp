@@ -475,7 +475,8 @@ TEST_CASE("volume io: a DICOM series and the labels made from it lie at the same
   const Grid labels = read_volume(test::shared_path("data/torso/ts_seg_of_dicom.nii.gz")).volume.grid;
   CHECK(series.grid.size == labels.size);
   CHECK(glm::length(series.grid.spacing - labels.spacing) < 1e-5);
-  // The rows of the labels run in the opposite direction, so the corners swap.
+  // The rows of the labels run in the opposite order, so the last row of the labels lies where the first row of the
+  // series lies.
   const glm::dvec3 corner = world_from_voxel(labels) * glm::dvec3(0, labels.size.y - 1, 0);
   CHECK(glm::length(corner - series.grid.origin) < 1e-3);
   CHECK(*std::min_element(series.voxels.begin(), series.voxels.end()) == -1024);

@@ -154,7 +154,7 @@ TEST_CASE(
     "result comes beside all that") {
   SolveEditor test;
   const Path go = test.folder / "go", project = test.folder / "limb.limber";
-  // The program runs without --parent, since it is the script's child.
+  // The script starts the program without --parent, because the program is the script's child and not the editor's.
   test.set_worker(std::string(LIMBER_PROGRAM) + " job \"$2\" --progress json\nend=$?\nwhile [ ! -e " + go.string() +
                   " ]; do sleep 0.02; done\nexit $end\n");
   save_project_as(*test.editor, project);

@@ -127,8 +127,8 @@ TEST_CASE(
     "weights: a slice shows each voxel's weight in the ramp's colour, and exact 0 and 1 on the whole numbers alone") {
   Studio studio;
   SliceView view(studio.renderer);
-  // Weights rise along x in steps of four voxels, so the middle of a step is not interpolated. Values next to 0 and to
-  // the full weight are included, because they are not rounded to these.
+  // Weights rise along x in steps of four voxels, so the middle of a step is not interpolated. The smallest and the
+  // largest weight between 0 and the full weight are included: they must not get the colours of exact 0 and 1.
   constexpr std::array<int, 6> kSteps = {0, 1, 20000, 45000, kFullWeight - 1, kFullWeight};
   const Block block({28, 20, 20}, [&](const glm::ivec3& v) {
     return kSteps[static_cast<std::size_t>(std::clamp((v.x - 2) / 4, 0, 5))];
