@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Compares Limber's raymarcher with vtkGPUVolumeRayCastMapper: the same volume, cameras, sizes and software OpenGL, in one run.
+"""Compares Limber's raymarcher with vtkGPUVolumeRayCastMapper: the same volume, cameras, sizes and software OpenGL,
+in one run.
 
     render_vtk.py RENDER_VIEWS VOLUME.mha
 
-RENDER_VIEWS draws first and prints its cameras and times; VTK then draws the same pictures. This program prints as JSON for
-each view the CPU seconds of both programs (median of five, all threads), how many times faster Limber is, and by how much the
-silhouettes differ in area; then the geometric means. If there is no display, it starts a virtual one (Xvfb).
+RENDER_VIEWS draws first and prints its cameras and times; VTK then draws the same pictures. This program prints as JSON
+for each view the CPU seconds of both programs (median of five, all threads), how many times faster Limber is, and by
+how much the silhouettes differ in area; then the geometric means. If there is no display, it starts a virtual one
+(Xvfb).
 """
 import json
 import math

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Tests the add-on for Blender. Run by Python, this file starts Blender, which runs the same file again, and so the tests.
+"""Tests the add-on for Blender. Run by Python, this file starts Blender, which runs the same file again, and so the
+tests.
 
 Joints are compared with `limber fk` and vertices with `limber skin-points`; the numbers of the .glb file are read here
 a second time, without Blender. LIMBER_PROGRAM names the command line's program.

@@ -149,7 +149,8 @@ PartitionName=all Nodes={self.host} Default=YES MaxTime=INFINITE State=UP
         self.start("slurmd", "-D", "-N", self.host)
 
     def end_node(self):
-        """Kills the node's daemon and all that it runs, as a power failure does, and waits until the cluster has noticed."""
+        """Kills the node's daemon and all that it runs, as a power failure does, and waits until the cluster has
+        noticed."""
         self.processes["slurmd"].kill()
         self.processes["slurmd"].wait()
         subprocess.run(["pkill", "-KILL", "slurmstepd"], check=False)
@@ -302,7 +303,8 @@ class Cluster(unittest.TestCase):
         self.check(out, [], [])
 
     def test_many_processes(self):
-        """Processes without --shard compute the cells that no other process computes, also when some processes are killed."""
+        """Processes without --shard compute the cells that no other process computes, also when some processes are
+        killed."""
         out, log = self.folder / "out-processes", open(self.folder / "processes.log", "ab")
         self.addCleanup(log.close)
 

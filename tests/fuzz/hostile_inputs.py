@@ -4,16 +4,18 @@
 
     hostile_inputs.py --program build/limber [--count 1000] [--seed 1] [--first 0] [--malformed FOLDER] [--keep FOLDER]
 
-Small valid samples are made by the program itself, or by this script for formats that the program only reads. Each input is a
-sample with one to four mutations (bits, bytes, slices cut, doubled or exchanged, numbers made huge, nested JSON), which depend on
-the seed only; with --malformed, every fifth input is an unchanged file of FOLDER. The parts of a project beside its chunks
-(the editor's state, its picture) are mutated inside the project. The program runs on each input in a new folder, which contains
-HOME, TMPDIR and the working folder, with 5 s of processor time (the editor: 20 s). The editor opens files, key maps and scripts
-without a display. It reads preferences only with a window, and themes only from its installation; fuzz_editor_files.cpp tests these.
+Small valid samples are made by the program itself, or by this script for formats that the program only reads. Each
+input is a sample with one to four mutations (bits, bytes, slices cut, doubled or exchanged, numbers made huge, nested
+JSON), which depend on the seed only; with --malformed, every fifth input is an unchanged file of FOLDER. The parts of a
+project beside its chunks (the editor's state, its picture) are mutated inside the project. The program runs on each
+input in a new folder, which contains HOME, TMPDIR and the working folder, with 5 s of processor time (the editor:
+20 s). The editor opens files, key maps and scripts without a display. It reads preferences only with a window, and
+themes only from its installation; fuzz_editor_files.cpp tests these.
 
-A fault is a crash (an end by a signal), a time-out, more than 1 GB of memory, an exit code that the program does not define, an
-error that is not one line, or a file that is made, changed or deleted although it is not named as an output. The exit code is 0 if
-there is no fault. With --keep, the inputs with faults are copied to that folder, each with its command.
+A fault is a crash (an end by a signal), a time-out, more than 1 GB of memory, an exit code that the program does not
+define, an error that is not one line, or a file that is made, changed or deleted although it is not named as an output.
+The exit code is 0 if there is no fault. With --keep, the inputs with faults are copied to that folder, each with its
+command.
 """
 import argparse
 import base64

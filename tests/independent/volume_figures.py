@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Computes figures of two label volumes by numpy and scipy: volume_figures.py BEFORE.nrrd AFTER.nrrd [FIELD.nrrd]
 
-Prints a line for each figure: NAME LABEL BEFORE AFTER, or NAME LABEL VALUE. With a displacement field, also prints how far
-each label of AFTER is from the best rigid motion of its voxels (found by singular values).
+Prints a line for each figure: NAME LABEL BEFORE AFTER, or NAME LABEL VALUE. With a displacement field, also prints how
+far each label of AFTER is from the best rigid motion of its voxels (found by singular values).
 """
 import gzip
 import sys

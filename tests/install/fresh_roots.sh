@@ -71,7 +71,8 @@ build() {
   (cd "$folder/two/root/limber/out/package" && sha256sum -c "$folder/sums") || fail "two roots made different bytes"
 }
 
-# pose ROOT LIMBER: makes a body and poses it by the program LIMBER.   draw ROOT LIMBER: draws a picture of the posed body.
+# pose ROOT LIMBER: makes a body and poses it by the program LIMBER.
+# draw ROOT LIMBER: draws a picture of the posed body.
 pose() {
   in_root "$1" "cd /root
     $2 --version

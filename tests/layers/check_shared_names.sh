@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# check_shared_names.sh NM LIBRARY...: checks that no name is shared by more than 8 functions, since such a name says nothing.
-# Counts free functions that other sources can call, but no members (of types, whose names begin with a capital) or operators.
+# check_shared_names.sh NM LIBRARY...: checks that no name is shared by more than 8 functions, since such a name says
+# nothing. Counts free functions that other sources can call, but no members (of types, whose names begin with a
+# capital) or operators.
 set -euo pipefail
 nm=$1
 shift

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Functions shared by the tests of the Python module. The environment variable LIMBER_PROGRAM names the command line's program."""
+"""Functions shared by the tests of the Python module. The environment variable LIMBER_PROGRAM names the command line's
+program."""
 import os
 import subprocess
 import tempfile

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Computes the energy of flesh, its forces and a Newton step by GetFEM, from the text of the formula. MUMPS solves for the step.
+"""Computes the energy of flesh, its forces and a Newton step by GetFEM, from the text of the formula. MUMPS solves for
+the step.
 
   getfem_flesh.py FOLDER [newton]
 
-FOLDER contains the files that tests/support/getfem.h writes: tets at rest and moved, their materials and patches, and springs.
-Writes the forces without those of the springs to forces.f64 and, with `newton`, the step with the springs to step.f64. Prints
-lines of a name and a number; seconds are CPU seconds of one thread.
+FOLDER contains the files that tests/support/getfem.h writes: tets at rest and moved, their materials and patches, and
+springs. Writes the forces without those of the springs to forces.f64 and, with `newton`, the step with the springs to
+step.f64. Prints lines of a name and a number; seconds are CPU seconds of one thread.
 """
 import sys
 import time
@@ -51,7 +52,8 @@ class Flesh:
         self.gather_patches(patch[tet_of], patch_k)
 
     def gather_patches(self, patch, bulk):
-        """Makes a field that is constant over each patch: reduces a field of tets to one unknown for each patch with a bulk modulus."""
+        """Makes a field that is constant over each patch: reduces a field of tets to one unknown for each patch with a
+        bulk modulus."""
         tissue = self.filled * self.integral(1, 'Test_q', ('q', 1, self.of_tet, np.zeros(len(patch))))
         stiff = np.bincount(patch, tissue * bulk)
         number = np.where(stiff > 0, np.cumsum(stiff > 0) - 1, -1)[patch]

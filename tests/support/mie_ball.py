@@ -5,9 +5,10 @@
   mie_ball.py EXAMPLES
 
 A plane wave of 1 W/m2, polarized along x and going towards z, meets a homogeneous ball. The field inside it is Mie's
-series [Bohren & Huffman 1983, chapter 4, with the time factor exp(-i w t)]. The series is checked first: the tangential field
-is continuous at the ball's surface, and the absorbed power is extinction minus scattering. Then the field is sampled at the
-centres of cells, and the averages of peak_sar.py are compared with integrals of the exact field over exact cubes of 10 g.
+series [Bohren & Huffman 1983, chapter 4, with the time factor exp(-i w t)]. The series is checked first: the tangential
+field is continuous at the ball's surface, and the absorbed power is extinction minus scattering. Then the field is
+sampled at the centres of cells, and the averages of peak_sar.py are compared with integrals of the exact field over
+exact cubes of 10 g.
 """
 import sys
 
@@ -20,7 +21,8 @@ import peak_sar
 LIGHT, EPS_0, IMPEDANCE = 299792458.0, 8.8541878128e-12, 376.730313668
 FREQUENCY = 900e6  # Hz
 RADIUS = 0.06  # m
-EPSILON, KAPPA, DENSITY = 55.0, 0.94, 1040.0  # like muscle: relative permittivity, conductivity in S/m, density in kg/m3
+# Values of muscle: relative permittivity, conductivity in S/m, density in kg/m3.
+EPSILON, KAPPA, DENSITY = 55.0, 0.94, 1040.0
 GRAMS = 10
 K = 2 * np.pi * FREQUENCY / LIGHT
 M = np.sqrt(EPSILON + 1j * KAPPA / (2 * np.pi * FREQUENCY * EPS_0))  # refractive index
@@ -73,7 +75,8 @@ A, B, C, D = coefficients()
 
 
 def field(magnetic, electric, z, dz, argument, theta, phi):
-    """Returns E along r, theta, phi for |E_0| = 1: the sum of i^n (2n + 1) / (n (n + 1)) (magnetic M_o1n - i electric N_e1n).
+    """Returns E along r, theta, phi for |E_0| = 1: the sum of i^n (2n + 1) / (n (n + 1)) (magnetic M_o1n -
+    i electric N_e1n).
 
     z, dz  for each order n: the radial function z_n(argument), and [argument z_n]' / argument
     """
@@ -144,7 +147,8 @@ def cube_average(centre, side):
 
 
 def cube_behind(x, y, face, side):
-    """Returns the mass (kg) and the power (W) of the tissue in a cube around the line through x, y whose face is at z = face."""
+    """Returns the mass (kg) and the power (W) of the tissue in a cube around the line through x, y whose face is at
+    z = face."""
     (x, wx), (y, wy) = gauss(x - side / 2, x + side / 2, 16), gauss(y - side / 2, y + side / 2, 16)
     u, wu = gauss(0, 1, 16)
     front = np.maximum(face, -np.sqrt(RADIUS**2 - x[:, None] ** 2 - y[None] ** 2))
@@ -176,7 +180,8 @@ def cells_of_ball(cell):
 
 
 def compare(cell, most_of_average, most_in_depth, most_at_front, most_of_peak):
-    """Compares the averages in cells of size `cell` (m) with the exact ones. The limits are relative; smaller cells have smaller ones."""
+    """Compares the averages in cells of size `cell` (m) with the exact ones. The limits are relative; smaller cells
+    have smaller ones."""
     (x, y, z), power, mass = cells_of_ball(cell)
     averages, found = peak_sar.average_sar(power, mass, GRAMS)
     name = f"cells of {1000 * cell:g} mm"

@@ -4,9 +4,9 @@
 
   peak_sar_slow.py EXAMPLES BODIES
 
-The slow program visits every cell, every direction and every cell of every cube with plain loops. It finds a cube's side by
-adding whole layers, and then solves for the fraction of the last layer, whose mass is a polynomial of that fraction. Compares
-BODIES random bodies, and bodies written out here whose averages are known without either program.
+The slow program visits every cell, every direction and every cell of every cube with plain loops. It finds a cube's
+side by adding whole layers, and then solves for the fraction of the last layer, whose mass is a polynomial of that
+fraction. Compares BODIES random bodies, and bodies written out here whose averages are known without either program.
 """
 import random
 import sys
@@ -29,7 +29,8 @@ class Body:
 
 
 def spans(first_whole, count, before, behind):
-    """Returns the cells along an axis, each with the fraction that is inside: 1 in between, less for the cells at both ends."""
+    """Returns the cells along an axis, each with the fraction that is inside: 1 in between, less for the cells at both
+    ends."""
     parts = [(first_whole + i, 1.0) for i in range(count)]
     place = first_whole - 1
     while before > NEAR:
@@ -45,8 +46,8 @@ def spans(first_whole, count, before, behind):
 
 
 def spans_of_cube(cell, side, face):
-    """Returns for each axis the cells of a cube around a cell, whose side is given in cells. With a face (axis, end), the cube
-    has this face where the cell has it."""
+    """Returns for each axis the cells of a cube around a cell, whose side is given in cells. With a face (axis, end),
+    the cube has this face where the cell has it."""
     all_spans = []
     for axis in range(3):
         if face is not None and face[0] == axis:
@@ -78,8 +79,8 @@ def totals(body, all_spans):
 
 
 def side_holding(body, cell, wanted, face):
-    """Returns the side of the cube that contains the wanted mass. Between two sides at which no cell begins or ends, the mass
-    is a cubic of the side: four values determine the cubic, and bisection finds its root."""
+    """Returns the side of the cube that contains the wanted mass. Between two sides at which no cell begins or ends,
+    the mass is a cubic of the side: four values determine the cubic, and bisection finds its root."""
     steps = [0.0, 1.0]
     longest = 2 * max(body.size) + 1
     while steps[-1] < longest:

@@ -3,10 +3,10 @@
 
   read_exports.py KIND FILE VOLUME.nii.gz [TISSUES.csv]
 
-KIND is volume (nibabel), disc or gprmax (h5py), icrp (numpy), openems (FILE is openEMS's dump of its materials; VTK), surface
-(VTK: manifold, watertight), surfaces (a glTF file with all surfaces; VTK) or tets (numpy). VOLUME is the same body as NIfTI, read
-by nibabel. TISSUES.csv is written by `limber tissues`. Exits with 0 and a line of figures if everything agrees, else with 1 and
-the difference; with 77 if a reader is not installed.
+KIND is volume (nibabel), disc or gprmax (h5py), icrp (numpy), openems (FILE is openEMS's dump of its materials; VTK),
+surface (VTK: manifold, watertight), surfaces (a glTF file with all surfaces; VTK) or tets (numpy). VOLUME is the same
+body as NIfTI, read by nibabel. TISSUES.csv is written by `limber tissues`. Exits with 0 and a line of figures if
+everything agrees, else with 1 and the difference; with 77 if a reader is not installed.
 """
 import csv
 import json

@@ -15,7 +15,8 @@ OUT, BATCH = sys.argv[1], int(sys.argv[2])
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
 TYPE = re.compile(r"(?:template <.*> )?(?:struct|class|enum class|enum|union|using)\s+(\w+)")
 VALUE = re.compile(r"(\w+)\s*(?:\[[^\]]*\]\s*)*(?:=|\{|;)")
-FURTHER = re.compile(r",\s*[*&]?(\w+)\s*(?:\[[^\]]*\]\s*)*(?==|\{|;|,)")  # the second and later variables that a line declares
+# The second and later variables that a line declares.
+FURTHER = re.compile(r",\s*[*&]?(\w+)\s*(?:\[[^\]]*\]\s*)*(?==|\{|;|,)")
 LAST = re.compile(r"(\w+)\s*$")
 NAME = re.compile(r"[A-Za-z_]\w*")
 
@@ -54,7 +55,8 @@ def read(path):
 
 
 def declared_in_headers(text):
-    """Returns names that are declared by the project's headers that a text includes, directly or through other headers."""
+    """Returns names that are declared by the project's headers that a text includes, directly or through other
+    headers."""
     names = set()
     for name in INCLUDE.findall(text):
         path = os.path.join(ROOT, name)
@@ -68,7 +70,8 @@ def declared_in_headers(text):
 
 
 def tests_headers(text, found):
-    """Returns the headers in tests/ that a text includes, directly or through others. Two of them may define the same name."""
+    """Returns the headers in tests/ that a text includes, directly or through others. Two of them may define the same
+    name."""
     for name in INCLUDE.findall(text):
         path = os.path.join(ROOT, name)
         if name.startswith("tests/") and name not in found and os.path.exists(path):
