@@ -79,7 +79,7 @@ std::vector<Operator> edit_operators() {
       {"edit.redo", "Redo", icon::kRedo, "Edit", "Redo the edit that was undone last.",
        [](Context& c) { step(c, &History::redo); }, nothing_to_redo},
       {"edit.adjust_last", "Adjust last operation", "", "Edit",
-       "Repeat the last operation with other settings. The new result replaces its step in the history.",
+       "Open the settings of the last operation. A changed setting undoes the operation and runs it again.",
        [](Context& c) { c.last_operation->wanted_at_pointer = true; }, why_not_redo},
       {"edit.rename", "Rename", icon::kRename, "Edit", "Rename the selected tissue or bone, or the shown result.",
        rename, nothing_to_rename},

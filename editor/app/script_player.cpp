@@ -175,7 +175,7 @@ void Player::wait_for_jobs() {
       frame();  // the script's clock does not advance, so the result does not depend on the job's duration
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       if (std::chrono::steady_clock::now() - start > std::chrono::duration<double>(kLongestJob))
-        throw Error("the job did not end in time", "wait-job", "find out why it takes so long, or wait longer");
+        throw Error("the job did not end in time", "wait-job", "find out why the job takes so long, or wait longer");
     }
     settle();  // a finished job may start another job
   } while (editor_.busy());
@@ -183,14 +183,14 @@ void Player::wait_for_jobs() {
 
 void Player::wait_until_idle() {
   if (editor_.timeline->play.on)
-    throw Error("the editor is never idle while a clip plays", "wait-idle", "stop it first, or use 'wait'");
+    throw Error("the editor is never idle while a clip plays", "wait-idle", "stop the clip first, or use 'wait'");
   wait_for_jobs();
   for (int i = 0; i < kLongestSettling; ++i) {
     if (editor_.at_rest()) return;
     if (editor_.rest() > 0) wait_for_jobs();
     else step();
   }
-  throw Error("the editor does not become idle", "wait-idle", "find out what it keeps drawing");
+  throw Error("the editor does not become idle", "wait-idle", "find out what the editor keeps drawing");
 }
 
 void Player::expect(const std::vector<std::string>& words) {
@@ -305,7 +305,7 @@ void Player::play_line(const ScriptLine& line, const Path& folder) {
     write_file_atomically(file_of(words[1]), editor_.timeline->frame_log->text());
     editor_.timeline->frame_log->clear();
   } else {
-    throw Error("the command is unknown", command, "see the list in the script's documentation");
+    throw Error("the command is unknown", command, "use a command listed at the top of editor/app/script_player.h");
   }
 }
 

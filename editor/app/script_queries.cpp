@@ -194,7 +194,7 @@ std::string fact(const Context& context, const std::string& name) {
   if (name.starts_with("widget:")) return context.ui->widgets.find(name.substr(7)) ? "shown" : "absent";
   for (const auto& [known, value] : facts())
     if (known == name) return value(context);
-  throw Error("the fact is unknown", name, "write one of those that the script's documentation lists");
+  throw Error("the fact is unknown", name, "use a fact listed at the top of editor/app/script_player.h");
 }
 
 std::string document_hash(const Document& document) {

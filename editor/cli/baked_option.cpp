@@ -13,7 +13,7 @@ namespace limber::editor {
 
 void check_baked_files(const std::vector<std::string>& files, const std::string& method) {
   if (!files.empty() && find_blend(method) != Blend::DualQuaternion)
-    throw Error("baked joints correct dual quaternions only", "--method " + method, "use --method dqs");
+    throw Error("--baked works only with dual quaternions", "--method " + method, "use --method dqs");
   for (const std::string& file : files) read_baked_joint(file);
 }
 

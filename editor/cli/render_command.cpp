@@ -131,7 +131,7 @@ Document read_files(const Options& options, Progress& progress) {
   Body body;
   if (options.body.rig.empty()) {
     if (cmd::wants_pose(options.pose) || !options.weights.empty())
-      throw Error("a pose needs a skeleton", "--rig", "name the rig");
+      throw Error("a pose needs a rig", "--rig", "name the file of the rig");
     body.file = read_volume(options.body.volume, progress);
     cmd::warn(body.file.warnings);
     std::optional<TissueTable> user;
@@ -160,7 +160,7 @@ Document read_document(const Options& options, Progress& progress) {
   if (!document.volume || !document.tissues)
     throw Error("there is nothing to draw: the project has no volume", options.body.volume, "import one in the editor");
   if (!document.armature && cmd::wants_pose(options.pose))
-    throw Error("a pose needs a skeleton", options.body.volume, "add one to the project");
+    throw Error("a pose needs a rig", options.body.volume, "add a rig to the project");
   return std::move(document);
 }
 
@@ -486,8 +486,8 @@ void add_render(CLI::App& app) {
                    "turntable: draws N pictures while the camera goes once around: NAME-0000.png and so on, or a video "
                    "(-o NAME.mp4 or .webm; needs ffmpeg)")
       ->check(CLI::Range(1, 9999));
-  command->add_flag("--transparent", options->transparent, "make the background transparent");
-  command->add_flag("--light", options->light, "use the light theme's background (default: the dark theme's)");
+  command->add_flag("--transparent", options->transparent, "makes the background transparent");
+  command->add_flag("--light", options->light, "uses the light theme's background (default: the dark theme's)");
   command->add_flag("--grid", options->grid, "draws the ground grid");
   add_figure_options(*command, options->figure);
   for (const char* other : {"--size", "--turntable", "--transparent", "--light", "--grid"})

@@ -35,7 +35,7 @@ std::string why_not_redo(const Context& context) {
   if (context.interaction->modal) return "Finish or cancel the active tool first";
   if (!last.label.empty() && last.revision == context.history->revision()) return "";
   if (context.history->position() == 0) return "Nothing has been done yet";
-  return context.history->steps()[context.history->position()].label + " has nothing to adjust";
+  return context.history->steps()[context.history->position()].label + " has no settings to adjust";
 }
 
 void redo_last_operator(Context& context, const std::vector<FormField>& fields) {

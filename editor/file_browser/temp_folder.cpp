@@ -14,7 +14,7 @@ ScratchFolder::ScratchFolder(const std::string& inside) {
   path_ = make_unique_folder(base / "limber-", failure);
   if (failure)
     throw Error("the scratch folder cannot be created", base.string(),
-                failure.message() + ": select another one in the preferences");
+                failure.message() + ": select another folder in the preferences");
   unfinished_ = std::make_unique<Unfinished>(path_);
 }
 

@@ -151,7 +151,8 @@ void take_image(Context& context, const std::shared_ptr<const GreyLevels>& image
                 const Path& path, std::int64_t agreed) {
   if (const auto& tissues = context.document().tissues; tissues && !tissues->tissues.empty()) {
     show_image(context, image, path);
-    context.messages->ok(path.filename().string(), "The image is shown with the body. Sidebar > Image sets how.");
+    context.messages->ok(path.filename().string(),
+                         "The image is shown with the body. Its settings are in Sidebar > Image.");
     return;
   }
   opened->then = [image, path](Context& c) {

@@ -109,7 +109,8 @@ const std::vector<TourStep>& tour_steps() {
        "Click Compute. It spreads weights from the bones through the tissue around them while you go on working.",
        "Steps/Skin/Compute", "skin.heat", weighted},
       {"See the weights",
-       "In the Skin workspace, colours show how strongly tissue follows the selected bone. Its brushes change that.",
+       "In the Skin workspace, colours show how strongly tissue follows the selected bone. The brushes change the "
+       "weights.",
        "top/Skin", "workspace.skin", in_skin},
       {"Pose the body", "In the Pose workspace, the body follows its bones, and motions move them.", "top/Pose",
        "workspace.pose", in_pose},

@@ -20,7 +20,7 @@ Binding binding_of(const nlohmann::json& json, const std::string& context, const
   const std::string place = path.string() + ", context " + context;
   if (!json.is_object() || !json.contains("key") || !json["key"].is_string() || !json.contains("operator") ||
       !json["operator"].is_string())
-    throw Error("a binding needs \"key\" and \"operator\"", place, "add what is missing");
+    throw Error("a binding needs \"key\" and \"operator\"", place, "add the missing part");
   const std::string key = json["key"];
   const auto chord = chord_from_text(key);
   if (!chord)
@@ -63,13 +63,14 @@ Keymap read_keymap(const Path& path, TwoMeanings two_meanings) {
   Keymap keymap;
   for (const auto& [context, bindings] : json["contexts"].items()) {
     if (!bindings.is_array())
-      throw Error("a context must be a list of bindings", path.string() + ", context " + context, "correct it");
+      throw Error("a context must be a list of bindings", path.string() + ", context " + context,
+                  "write a list of bindings");
     auto& list = keymap.contexts[context];
     for (const auto& entry : bindings) {
       const Binding binding = binding_of(entry, context, path);
       if (two_meanings == TwoMeanings::Refuse && keymap.find(binding.chord, {context}))
         throw Error("the key " + to_text(binding.chord) + " runs two commands", path.string() + ", context " + context,
-                    "remove one of them");
+                    "remove one of the two bindings");
       list.push_back(binding);
     }
   }

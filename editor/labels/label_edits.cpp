@@ -77,9 +77,9 @@ void start_label_edit(Context& context, LabelEdit edit) {
                             return [before, after, tissues, wanted = edit.tissues,
                                     same = keeps_tissue_voxels(found.change), outcome](const Document& now) {
                               if (now.volume != before)
-                                throw Error("the labels were changed meanwhile", "the edit", "start it again");
+                                throw Error("the labels were changed meanwhile", "the edit", "repeat the edit");
                               if (wanted && now.tissues != tissues)
-                                throw Error("the list of tissues was changed meanwhile", "the edit", "start it again");
+                                throw Error("the list of tissues was changed meanwhile", "the edit", "repeat the edit");
                               return with_labels(now, after, same, wanted, outcome->removed);
                             };
                           });

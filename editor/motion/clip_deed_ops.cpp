@@ -99,7 +99,9 @@ const Clip& require_clip(const Document& document) {
 double factor_of(const Clip& clip, const std::vector<FormField>& fields) {
   if (fields[0].chosen == 0) return fields[1].value;
   const int steps = clip.range_end - clip.range_start, wanted = static_cast<int>(std::lround(fields[2].value)) - 1;
-  if (steps < 1) throw Error("the clip plays a single frame", "its length", "set the speed, or a longer range");
+  if (steps < 1)
+    throw Error("the clip plays a single frame", "the length of the clip",
+                "set the speed instead, or set a longer range");
   return double(steps) / wanted;
 }
 

@@ -114,7 +114,7 @@ JoinResult join(const std::shared_ptr<const Clip>& source, const std::shared_ptr
   markers.insert(std::upper_bound(markers.begin(), markers.end(), seam,
                                   [](int frame, const Marker& marker) { return frame < marker.frame; }),
                  {seam, next.name});
-  result.line = grouped(std::ssize(made.poses)) + " frames: " + next.name + " begins at " + std::to_string(seam);
+  result.line = grouped(std::ssize(made.poses)) + " frames: " + next.name + " begins at frame " + std::to_string(seam);
   if (!wish.settings.keeps_feet) return result;
   double slides = 0;
   for (const Plant& plant : made.plants) slides = std::max(slides, error_of(plant, *rig, limbs, made.poses).slide);
@@ -175,7 +175,7 @@ std::string join_outcome(const Context& context, const NextTake& next, const std
 
 void ask_join(Context& context, const std::shared_ptr<const NextTake>& next) {
   if (const std::string why = needs_clip_and_rig(context); !why.empty())
-    throw Error("the clip was deleted meanwhile", next->name, "import or make one first");
+    throw Error("the clip was deleted meanwhile", next->name, "import or make a clip first");
   const auto [low, high] = playing_range(context.document());
   const double rate = shown_clip(context.document())->rate;
   const double most = double(std::min(std::int64_t{high} - low + 1, frames_at_rate(*next->motion, rate)));

@@ -35,7 +35,8 @@ void change_list(Clip& clip, const std::function<void(Constraints&)>& change) {
 Constraint& named(Constraints& constraints, const std::string& name) {
   const auto found = std::find_if(constraints.list.begin(), constraints.list.end(),
                                   [&](const Constraint& constraint) { return constraint.name == name; });
-  if (found == constraints.list.end()) throw Error("the constraint was removed meanwhile", name, "add it again");
+  if (found == constraints.list.end())
+    throw Error("the constraint was removed meanwhile", name, "add the constraint again");
   return *found;
 }
 
@@ -186,7 +187,7 @@ void add_constraint(Context& context, ConstraintKind kind) {
   const Armature& armature = *context.document().armature;
   const ConstraintRule& rule = constraint_rule(kind);
   if (constraints_of(context.document()).list.size() >= kMostConstraints)
-    throw Error("the clip has too many constraints", rule.name, "remove one first");
+    throw Error("the clip has too many constraints", rule.name, "remove a constraint first");
   Constraint added{.kind = kind, .bone = armature.bones[*context.selection->bone].name};
   if (const auto other = other_bone(context.selection); other && rule.target != ConstraintTarget::None)
     added.target = armature.bones[*other].name;
@@ -299,7 +300,7 @@ void keep_direction(Context& context, const std::string& name, bool keeps) {
 
 void aim_at_cross_hair(Context& context, const std::string& name) {
   settle_frame(context);
-  change_constraint(context, name, "Target at cross-hair", [&](Constraint& constraint) {
+  change_constraint(context, name, "Target to cross-hair", [&](Constraint& constraint) {
     const PosedRig rig(*context.document().armature, pose_of(context.document()));
     const glm::dvec3 place = context.views->cross_hair;
     constraint.place =
@@ -320,7 +321,7 @@ double shown_weight(const Context& context, const Constraint& constraint) {
 void set_weight(Context& context, const std::string& name, double weight) {
   settle_frame(context);
   const int frame = context.document().frame;
-  change_free_clip(context, "Set weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
+  change_free_clip(context, "Set constraint weight", [&](Clip& clip) { put_weight(clip, name, frame, weight); });
 }
 
 void preview_weight(Context& context, const std::string& name, double weight) {
@@ -350,7 +351,7 @@ void switch_weight(Context& context, const std::string& name) {
   const int frame = context.document().frame;
   const int later = frame + std::max(1, static_cast<int>(std::lround(frame_rate(context.document()) / 3)));
   const double weight = shown_weight(context, *constraint);
-  change_free_clip(context, "Switch weight", [&](Clip& clip) {
+  change_free_clip(context, "Switch constraint weight", [&](Clip& clip) {
     insert_weight_key(clip.keys, name, frame, weight);
     insert_weight_key(clip.keys, name, later, weight > 0.5 ? 0 : 1);
     for (int between = frame + 1; between < later; ++between) delete_weight_key(clip.keys, name, between);
@@ -360,7 +361,7 @@ void switch_weight(Context& context, const std::string& name) {
 }
 
 void set_weight_steps(Context& context, const std::string& name, Interpolation next) {
-  change_free_clip(context, "Set weight interpolation",
+  change_free_clip(context, "Set interpolation of constraint weight",
                    [&](Clip& clip) { set_weight_interpolation(clip.keys, name, next); });
 }
 

@@ -109,7 +109,7 @@ std::vector<Operator> constraint_operators() {
        "Key the weight at this frame, and the opposite weight a third of a second later, to fade the constraint in or "
        "out.",
        of_active(switch_weight), needs_constraint},
-      {"constraint.to_cross_hair", "Target at cross-hair", icon::kCrossHair, "Motion",
+      {"constraint.to_cross_hair", "Target to cross-hair", icon::kCrossHair, "Motion",
        "Move the target of the active bone's constraint to the cross-hair.", of_active(aim_at_cross_hair), needs_place},
       {"constraint.apply", "Apply constraints", "", "Motion",
        "Bake all constraints of the clip into keys, one in each frame. The animation does not change.",

@@ -227,7 +227,7 @@ void draw_axes(Context& context, Column& column, const Constraint& constraint) {
     const float x = std::round(rect.low.x + static_cast<float>(axis) * width);
     const std::string label(1, "XYZ"[axis]);
     if (checkbox(context.ui, "Axis " + label, {{x, rect.low.y}, {x + width, rect.high.y}}, label, on))
-      change(context, constraint, "Set axes", [axis, on](Constraint& changed) { changed.axes[axis] = on; });
+      change(context, constraint, "Set local axes", [axis, on](Constraint& changed) { changed.axes[axis] = on; });
   }
 }
 
@@ -285,9 +285,9 @@ void draw_plant(Context& context, Column& column, const Constraint& constraint) 
 }
 
 void draw_inverse_kinematics(Context& context, Column& column, const Constraint& constraint) {
-  Number chain = number_of(constraint, "chain", "Set chain", constraint.chain, [](Constraint& changed, double bones) {
-    changed.chain = static_cast<int>(std::lround(bones));
-  });
+  Number chain =
+      number_of(constraint, "chain", "Set chain length", constraint.chain,
+                [](Constraint& changed, double bones) { changed.chain = static_cast<int>(std::lround(bones)); });
   chain.high = kLongestChain;
   chain.format = "%.0f";
   chain.unit = constraint.chain == 0 ? "(to the root)" : constraint.chain == 1 ? "bone" : "bones";
@@ -300,7 +300,7 @@ void draw_inverse_kinematics(Context& context, Column& column, const Constraint&
 void draw_copy(Context& context, Column& column, const Constraint& constraint) {
   int space = static_cast<int>(constraint.space);
   if (choose(context, column, "Rotation", {"World space", "Parent space"}, space))
-    return change(context, constraint, "Set space",
+    return change(context, constraint, "Set rotation space",
                   [space](Constraint& changed) { changed.space = static_cast<RotationSpace>(space); });
   draw_axes(context, column, constraint);
 }

@@ -262,7 +262,7 @@ void ask_cleaning(Context& context) {
        [feet, cleaning_of](const Context& c, const std::vector<FormField>& fields) {
          require_frames(c.document());
          const Cleaning cleaning = cleaning_of(fields);
-         if (cleaning.smooth <= 0 && !cleaning.plants_feet) throw NotYet{"Set a filter, or plant the feet."};
+         if (cleaning.smooth <= 0 && !cleaning.plants_feet) throw NotYet{"Set Smooth above 0, or set Feet to Planted."};
          if (cleaning.plants_feet && !feet)
            throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
          const auto [first, last] = playing_range(c.document());
@@ -331,7 +331,8 @@ std::string hold_outcome(const Context& context, const std::vector<FormField>& f
                  position_text(*place) + "."};
   const glm::dvec3 wanted = hold_position(context.views, fields);
   if (!place) return words;
-  return words + " In the first one it is " + mm_text(glm::distance(*place, wanted)) + " from there.";
+  return words + " In frame " + std::to_string(first) + " the " + limb + " is " +
+         mm_text(glm::distance(*place, wanted)) + " away from this position.";
 }
 
 void hold_limb(Context& context, const std::vector<FormField>& fields) {

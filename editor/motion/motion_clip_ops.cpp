@@ -38,7 +38,7 @@ void ask_clip_name(Context& context) {
                                    {text_of("Name", "The clip's name.", shown_clip(context.document())->name)},
                                    [](const Context&, const std::vector<FormField>& fields) -> std::string {
                                      if (fields[0].text.empty())
-                                       throw Error("a clip needs a name", "rename", "type one");
+                                       throw Error("a clip needs a name", "rename", "type a name");
                                      return "";
                                    },
                                    [](Context& c, const std::vector<FormField>& fields) {
@@ -182,12 +182,13 @@ void delete_clip(Context& context) {
   stop_playing(context);
   Question question{.title = "Delete " + clip->name + " and its strips?", .icon = icon::kTrash};
   for (const StripUse& use : uses)
-    question.lines.push_back(std::to_string(use.strips) + (use.strips == 1 ? " strip of " : " strips of ") + use.clip +
-                             (use.strips == 1 ? " plays it and goes with it." : " play it and go with it."));
+    question.lines.push_back(
+        std::to_string(use.strips) + (use.strips == 1 ? " strip of " : " strips of ") + use.clip +
+        (use.strips == 1 ? " plays this clip and is deleted too." : " play this clip and are deleted too."));
   if (constexpr std::size_t kListed = 3; question.lines.size() > kListed) {
     const std::size_t others = question.lines.size() - kListed + 1;
     question.lines.resize(kListed - 1);
-    question.lines.push_back("Strips of " + std::to_string(others) + " other clips go with it.");
+    question.lines.push_back("Strips of " + std::to_string(others) + " other clips are deleted too.");
   }
   question.answers = {{"Cancel", {}}, {"Delete", [clip](Context& c) {
                                          if (shown_clip(c.document()) == clip.get()) delete_shown(c);
@@ -291,8 +292,7 @@ std::vector<Operator> motion_clip_operators() {
            &RestStances::source, RestStance::APose),
       rest("motion.rest_anatomical", "Clip supine",
            "Treat the clip's rest pose as arms hanging and palms forward, like a body on its back, regardless of its "
-           "joints' "
-           "directions.",
+           "joints' directions.",
            &RestStances::source, RestStance::Anatomical),
       rest("motion.rig_rest_file", "Rig as stored", "Take the direction of the rig's palms at rest from its fingers.",
            &RestStances::rig, RestStance::AsItLies),

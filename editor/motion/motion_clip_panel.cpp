@@ -65,7 +65,7 @@ void draw_turned(Context& context, Column& column) {
   if (!clip || !clip->retarget() || clip->retarget()->turned_joints().empty()) return;
   const std::vector<int>& turned = clip->retarget()->turned_joints();
   const std::string first = clip->clip()->motion->joints[turned.front()].name;
-  const std::string words = "Turned from the file's rest pose into the selected one: " + first +
+  const std::string words = "Joints turned from the file's rest pose into the selected one: " + first +
                             (turned.size() > 1 ? " and " + std::to_string(turned.size() - 1) + " more" : "") + ".";
   const Rect row = column.row(34);
   put_wrapped(context.ui, look.fonts.small, look.theme.text2, {row.low.x + look.px(10), row.low.y},

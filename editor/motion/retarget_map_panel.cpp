@@ -25,7 +25,7 @@ const char* words_of(MatchKind kind) {
     case MatchKind::None: return "not moved";
     case MatchKind::ByHand: return "by hand";
     case MatchKind::Chain: return "by position";
-    case MatchKind::SamePart: return "same part";
+    case MatchKind::SamePart: return "body part";
     case MatchKind::SameName: return "same name";
   }
   return "";

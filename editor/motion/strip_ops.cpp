@@ -313,7 +313,7 @@ void add_track(Context& context) {
   if (!shown_strips(context)) make_strips(context);
   show_strips(context, true);
   if (shown_strips(context)->tracks.size() >= kMostTracks)
-    throw Error("no more tracks can be added", std::to_string(kMostTracks) + " tracks", "delete one first");
+    throw Error("no more tracks can be added", std::to_string(kMostTracks) + " tracks", "delete a track first");
   const std::string name = track_name_of(*shown_strips(context));
   change_strips(context, "Add track", [&](Strips& strips) { strips.tracks.push_back({.name = name}); });
   strip_view(context.timeline).track = name;
@@ -344,7 +344,7 @@ void ask_track_name(Context& context) {
                                    {text_of("Name", "The track's name.", before)},
                                    [](const Context&, const std::vector<FormField>& fields) -> std::string {
                                      if (fields[0].text.empty())
-                                       throw Error("a track needs a name", "rename", "type one");
+                                       throw Error("a track needs a name", "rename", "type a name");
                                      return "";
                                    },
                                    [before](Context& c, const std::vector<FormField>& fields) {

@@ -135,7 +135,7 @@ void draw_blend(Context& context, Column& column, const Strip& strip) {
   {
     int chosen = static_cast<int>(strip.blend);
     const PathScope path(context.ui, "Strip blend");
-    if (choice_field(context.ui, column.property("Blend"), {"Replace", "Add", "Add change"}, chosen))
+    if (choice_field(context.ui, column.property("Blend"), {"Replace", "Add", "Add since start"}, chosen))
       change_active_strip(context, "Set strip's blend",
                           [&](Strip& changed) { changed.blend = static_cast<StripBlend>(chosen); });
   }
@@ -193,8 +193,8 @@ void draw_reach(Context& context, Column& column, const Strip& strip) {
   const std::string bones = strip.bones ? std::to_string(strip.bones->size()) : "all";
   draw_deeds(context, column, "Bones: " + bones, "strips.bones_selected", "Selected", "strips.bones_all");
   if (const Strip* now = active_strip(context))
-    draw_deeds(context, column, now->place == GroundMove{} ? "Moved: no" : "Moved: yes", "strips.begin_here", "To body",
-               "strips.clear_place");
+    draw_deeds(context, column, now->place == GroundMove{} ? "Position: clip" : "Position: moved", "strips.begin_here",
+               "At the body", "strips.clear_place");
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ void draw_joint(Context& context, Column& column, const SidedJoint& joint, const
   if (!at_gimbal_lock(joint.joint, motions)) return;
   const bool wrist = joint.joint == BodyJoint::Wrist || joint.joint == BodyJoint::Girdle;
   const std::string text = "At 90\u00b0 of " + std::string(motion_name(joint.joint, wrist ? 0 : 1)) +
-                           ", the joint's other motions are the same rotation.";
+                           ", the joint's other motions turn about the same axis.";
   const Rect row = column.row(36);
   put_wrapped(context.ui, look.fonts.small, look.theme.text2, {row.low.x + look.px(10), row.low.y},
               row.width() - look.px(20), text);

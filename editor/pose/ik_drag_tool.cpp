@@ -170,7 +170,7 @@ class DraggingPole final : public TransformTool {
       other_ = other;
   }
 
-  std::string title() const override { return "Turn to pole" + lock_text("along"); }
+  std::string title() const override { return "Turn limb to pole" + lock_text("along"); }
   std::vector<KeyHint> hints(const Context&) const override { return shared_hints(); }
   void cancel(Context& context) override {
     context.transform_settings->shown_pole = {};
@@ -217,7 +217,7 @@ class DraggingPole final : public TransformTool {
     if (other_) anchors.poles[armature_->bones[*other_].name] = mirrored();
     if (anchors != anchors_of(next)) next.anchors = std::make_shared<const Anchors>(std::move(anchors));
     context.transform_settings->shown_pole = {};
-    commit_pose(context, "Turn to pole", std::move(turned), std::move(next));
+    commit_pose(context, "Turn limb to pole", std::move(turned), std::move(next));
   }
 
   std::shared_ptr<const Armature> armature_;

@@ -21,7 +21,7 @@ namespace limber::editor {
 namespace {
 
 constexpr std::size_t kMostTissues = 6;  // tissues listed before the user expands the list
-constexpr char kAll[] = "Volume, live: all tissues";
+constexpr char kAll[] = "Live volume: all tissues";
 constexpr double kBeyond = 1e-6;  // an excess over a joint limit is reported if it is larger than this, radians
 
 Rect padded(const Ui& ui, const Rect& row) {
@@ -122,7 +122,7 @@ void draw_live_volume(Context& context, Column& column) {
   const PoseMetrics* metrics = known ? known : live.metrics().last();
   const std::string trouble = live.trouble().empty() ? live.metrics().trouble() : live.trouble();
   const bool posed = live.posed();
-  if (column.begin_section("Volume, live", !trouble.empty() || !posed ? "" : known ? "dense" : "coarse")) {
+  if (column.begin_section("Live volume", !trouble.empty() || !posed ? "" : known ? "dense" : "coarse")) {
     if (!document.weights) {
       const Operator* op = find_operator(context.operators, "skin.heat");
       if (empty_state(context.ui, column.row(84), trouble, op->label)) run(context, *op);

@@ -143,7 +143,7 @@ void draw_posed_bone(Context& context, Column& column) {
                     next.rotation[index] = glm::angleAxis(glm::radians(degrees) - zero, axis);
                   });
     } else {
-      draw_three(context, column, "Turn, \u00b0", label, own_angles(bone, pose.rotation[index]), 180,
+      draw_three(context, column, "Rotation, \u00b0", label, own_angles(bone, pose.rotation[index]), 180,
                  [&](Pose& next, int axis, double degrees) {
                    // The other two angles are computed from the unchanged pose `next`, so that they stay the same
                    // during a drag. Angles that are computed from the changed rotation would jump when the angle about

@@ -90,7 +90,7 @@ void ask_pose_name(Context& context) {
                                    {text_of("Name", "The pose's name.", before)},
                                    [](const Context&, const std::vector<FormField>& fields) -> std::string {
                                      if (fields[0].text.empty())
-                                       throw Error("a pose needs a name", "rename", "type one");
+                                       throw Error("a pose needs a name", "rename", "type a name");
                                      return "";
                                    },
                                    [before](Context& c, const std::vector<FormField>& fields) {

@@ -69,8 +69,7 @@ void ask_flex(Context& context) {
     if (limits.type != JointLimits::Type::Hinge)
       return std::string(
           "Not a hinge. The bone turns about the axis at right angles to the bone and its parent. The angle is added "
-          "to "
-          "its current pose.");
+          "to its current pose.");
     char text[96];
     std::snprintf(text, sizeof text, "A hinge, from %.0f\u00b0 to %.0f\u00b0. The angle is added to its current pose.",
                   glm::degrees(limits.minimum), glm::degrees(limits.maximum));
@@ -85,11 +84,11 @@ void ask_flex(Context& context) {
     commit_pose(c, "Flex " + name, std::move(pose));
     // The Rig workspace shows the body at rest, so the user would not see that the bone has turned.
     if (c.workspace() == Workspace::Rig)
-      c.messages->ok(name + " is turned", "The Pose workspace shows it", "workspace.pose");
+      c.messages->ok(name + " is turned", "The Pose workspace shows the pose", "workspace.pose");
   };
   context.dialogs->open(
       make_form({"Flex a joint",
-                 "Turns a bone about its hinge. A positive angle bends it further.",
+                 "Turns a bone about its hinge. A positive angle bends the joint further.",
                  "Flex",
                  {choice_of("Bone", "The bone that is turned about its head.", names, chosen),
                   number_of("Angle", "Angle that is added to the current pose.", 60, -180, 180, "%+.1f", "\u00b0")},

@@ -245,7 +245,7 @@ class Turning final : public TransformTool {
   std::string limit_text(const Context& context) const {
     const auto now = reading(shown_pose(context));
     if (!now)
-      return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Not the hinge's axis";
+      return armature_->bones[active_].limits.type == JointLimits::Type::Free ? "No limits" : "Not about the hinge";
     return text_of(*now);
   }
 

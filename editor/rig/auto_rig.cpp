@@ -68,7 +68,7 @@ void start_auto_fit(Context& context, const std::string& which) {
     auto laid = std::make_shared<const Armature>(fitted->armature);
     return [from, laid](const Document& now) {
       if (now.volume != from.volume)
-        throw Error("the volume was changed meanwhile", "fitting a skeleton", "start it again");
+        throw Error("the volume was changed meanwhile", "fitting a skeleton", "run the command again");
       return with_rig(now, laid);
     };
   });
@@ -84,13 +84,13 @@ void start_auto_fit(Context& context, const std::string& which) {
 void offer_fit(Context& context, const std::string& file, double inside) {
   const auto place = [](Context& c) {
     const Document from = c.document();
-    start_task(c, "Place the rig in the tissue", [from](Progress&) -> Finish {
+    start_task(c, "Position the rig in the tissue", [from](Progress&) -> Finish {
       auto rig = std::make_shared<const Armature>(placed_in_tissue(*from.volume, *from.armature));
       return [from, rig](Context& c) {
         if (c.document().volume != from.volume || c.document().armature != from.armature)
-          throw Error("the rig or the volume was changed meanwhile", "placing the rig", "start it again");
-        commit(c, "Place rig", with_rig(c.document(), rig));
-        warn_of_moved_targets(c, "Place rig", *from.armature, bones_of(*from.armature, *rig));
+          throw Error("the rig or the volume was changed meanwhile", "positioning the rig", "run the command again");
+        commit(c, "Position rig", with_rig(c.document(), rig));
+        warn_of_moved_targets(c, "Position rig", *from.armature, bones_of(*from.armature, *rig));
         frame_all(c, true);
       };
     });
@@ -101,7 +101,7 @@ void offer_fit(Context& context, const std::string& file, double inside) {
                           "Fit rig finds the rig's joints in the volume if the names of its bones are recognised."},
                 .icon = icon::kWarning,
                 .answers = {{"Keep rig", {}},
-                            {"Only place and scale", place},
+                            {"Only position and scale", place},
                             {"Fit rig", [](Context& c) { start_auto_fit(c, "rig"); }, true}}});
 }
 
@@ -128,7 +128,7 @@ void show_fit(Messages& messages, const AutoFit& fitted) {
   if (sure > 0 && fitted.check.whole >= kMostlyInside) messages.ok("Skeleton fitted", result, "view.console");
   else
     messages.warn(
-        sure > 0 ? "Skeleton fitted, but partly outside the body" : "Skeleton placed, but every joint is uncertain",
+        sure > 0 ? "Skeleton fitted, but partly outside the body" : "Skeleton positioned, but every joint is uncertain",
         result);
 }
 
@@ -165,9 +165,9 @@ void ask_template(Context& context) {
   };
   context.dialogs->open(
       make_form({"Templates",
-                 "Places a skeleton in the tissue's bounding box. You can then move its joints by hand.",
-                 "Place",
-                 {choice_of("Skeleton", "The skeleton to place in the volume.", template_labels())},
+                 "Adds a skeleton, scaled to the tissue's bounding box. You can then move its joints by hand.",
+                 "Add",
+                 {choice_of("Skeleton", "The skeleton to add.", template_labels())},
                  outcome,
                  act}));
 }

@@ -219,7 +219,7 @@ void draw_joint(Context& context, Column& column, const Bone& bone, int index) {
                   });
       draw_range(context, column, bone, index, "Twist", &JointLimits::twist_minimum, &JointLimits::twist_maximum, 0);
     }
-    operator_button(context, "rig.motion_range", column.property("Usual range"), "By joint...");
+    operator_button(context, "rig.motion_range", column.property("Usual range"), "Set limits...");
     column.space(6);
   }
   column.end_section();

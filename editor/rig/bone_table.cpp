@@ -103,7 +103,8 @@ void map_label(Context& context, Label label, std::optional<BodySide> side, std:
   note_weights_source(context);
   Document next = document;
   next.bone_map = map.empty() ? nullptr : std::make_shared<const BoneMap>(std::move(map));
-  context.history->commit(name ? what + " follows " + *name : what + " follows the found bone", std::move(next));
+  context.history->commit(name ? what + " follows " + *name : what + " follows the bone found automatically",
+                          std::move(next));
 }
 
 void clear_bone_map(Context& context) {

@@ -36,7 +36,7 @@ class HingeTool final : public TransformTool {
     return "Hinge of " + rig_.bones[bone_].name + ", turned by " + text_of_number("%.1f", degrees()) + "\u00b0";
   }
   std::vector<KeyHint> hints(const Context&) const override {
-    return {{{"X", "Y", "Z"}, "World axis, twice for local"},
+    return {{{"X", "Y", "Z"}, "World axis (twice: local)"},
             {{"0-9"}, "Turn by degrees"},
             {{"Ctrl"}, "Snap to local axes"},
             {{"Shift"}, "Precise"},

@@ -89,7 +89,7 @@ void fill(Context& context) {
     const glm::dvec3 to = context.views->cross_hair;
     if (glm::distance(to, place_of(change.start, change.ends[0])) < 1e-6)
       throw Error("the cross-hair is at the joint", rig->bones[bones[0]].name,
-                  "move it to where the bone should end: Shift and the right button");
+                  "move the cross-hair to where the bone should end: Shift and the right mouse button");
     next = with_moved_ends(change.start, change.ends, [&](const glm::dvec3&) { return to; });
   } else {
     BoneEnd from, to;
@@ -108,7 +108,7 @@ void fill(Context& context) {
   const int added = static_cast<int>(std::find(was.begin(), was.end(), -1) - was.begin());
   const std::string name = next.bones[added].name;
   context.transform_settings->part = TransformSettings::Part::Tail;
-  commit_rig(context, "Fill with " + name, mirrored_too(context, std::move(next)), {added});
+  commit_rig(context, "Fill gap with bone " + name, mirrored_too(context, std::move(next)), {added});
 }
 
 std::string needs_gap(const Context& context) {

@@ -276,7 +276,7 @@ void draw_drag(Context& context, const Row& row, const Rect& rect) {
   const int parent = row.kind == Row::Kind::Bone ? row.index : -1;
   outline(rect, context.ui->look.theme.select, 0, 2 * context.ui->look.line());
   const std::string what = bones.size() == 1 ? drag.bone : std::to_string(bones.size()) + " bones";
-  draw_dragged(context, parent < 0 ? "Clear parent of " + what : what + " to " + row.name);
+  draw_dragged(context, parent < 0 ? "Clear parent of " + what : "Parent " + what + " to " + row.name);
   if (context.ui->input.down(MouseButton::Left) || bones.empty()) return;
   attempt(context, "Make parent", [&](Context& c) {
     hang_on(c, bones, parent);

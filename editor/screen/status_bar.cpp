@@ -91,10 +91,14 @@ std::vector<KeyHint> hints(const Context& context) {
                  {"strips.duplicate", "Duplicate"}, {"strips.split", "Split"}, {"strips.mute", "Mute"},
                  {"strips.delete", "Delete"},       {"strips.pan", "Pan"},     {"motion.next_face", "Next view"}};
   else if (contexts(context).front() == "timeline")
-    operators = {{"motion.scrub", "Scrub"},         {"motion.zoom", "Zoom"},
-                 {"motion.pan", "Shift"},           {"motion.insert_key", "Key"},
-                 {"motion.move_keys", "Move keys"}, {"motion.delete_keys", "Delete keys"},
-                 {"motion.marker", "Marker"},       {"motion.play", "Play"}};
+    operators = {{"motion.scrub", "Scrub"},
+                 {"motion.zoom", "Zoom"},
+                 {"motion.pan", "Pan"},
+                 {"motion.insert_key", "Key"},
+                 {"motion.move_keys", "Move keys"},
+                 {"motion.delete_keys", "Delete keys"},
+                 {"motion.marker", "Marker"},
+                 {"motion.play", "Play"}};
   else if (view && context.workspace() == Workspace::Skin && context.skin->painting->labels->on)
     operators = {{"skin.paint", "Paint"},        {"skin.paint_subtract", "Erase"}, {"skin.radius", "Radius"},
                  {"skin.sample", "Pick tissue"}, {"slice.step", "Slice"},          {"edit.undo", "Undo"},
@@ -119,7 +123,7 @@ std::vector<KeyHint> hints(const Context& context) {
     operators = {{"select.pick", context.interaction->tool == Tool::CrossHair ? "Move cross-hair" : "Select"},
                  {"slice.step", "Slice"},
                  {"slice.zoom", "Zoom"},
-                 {"slice.pan", "Shift"},
+                 {"slice.pan", "Pan"},
                  {"view.place_cross_hair", "Cross-hair"},
                  {"slice.outline", "Outline"},
                  {"view.maximize", "Maximize"}};
@@ -145,7 +149,7 @@ std::vector<KeyHint> hints(const Context& context) {
     operators = {{"pose.rotate", "Rotate"}, {"pose.move", "Move"},  {"pose.clear_rotation", "Clear"},
                  {"view.orbit", "Turn"},    {"view.xray", "X-ray"}, {"select.all", "All bones"}};
   else
-    operators = {{"view.orbit", "Turn"},         {"view.pan", "Shift"},         {"view.zoom_step", "Zoom"},
+    operators = {{"view.orbit", "Turn"},         {"view.pan", "Pan"},           {"view.zoom_step", "Zoom"},
                  {"view.xray", "X-ray"},         {"view.clip_box", "Clip box"}, {"view.hide", "Hide tissue"},
                  {"view.frame_all", "Frame all"}};
   std::vector<KeyHint> all;

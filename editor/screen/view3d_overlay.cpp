@@ -106,8 +106,7 @@ std::string state_of(const Context& context) {
            grouped(context.views->scene.weights->weights->size()) + " tissue voxels" +
            (painted_region(context) ? " \u00b7 region of " + grouped(painted_region_voxels(context)) : "");
   if (const ProposedJoint* proposed = proposed_joint(context))
-    return std::string("X-ray \u00b7 bone overlap about the axis ") +
-           (proposed->shows_after ? "after the fit" : "before the fit");
+    return std::string("X-ray \u00b7 bone collisions ") + (proposed->shows_after ? "after the fit" : "before the fit");
   if (context.bone_table->coloured && context.workspace() == Workspace::Rig && context.views->scene.weights)
     return "X-ray \u00b7 bone tissue coloured by its rig bone";
   std::string state = context.views->display == render::Display::Solid   ? "Solid"

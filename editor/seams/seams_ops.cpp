@@ -11,8 +11,8 @@ namespace limber::editor {
 std::vector<Operator> seam_operators() {
   return {
       {"skin.find_seams", "Find seams", icon::kSearch, "Weights",
-       "Find the seams: voxel faces where limbs touch but are not connected. Discards the seams that you cut or erased "
-       "by hand.",
+       "Find the seams: voxel faces where limbs touch but are not connected. Discards all edits of seams that "
+       "you made by hand.",
        find_seams_again, why_no_seams},
       {"skin.seam_brush", "Seam brush", icon::kSeam, "Brush",
        "Cut a seam with a stroke, as deep as the brush's radius. Hold Ctrl to erase seams. Select any other brush to "

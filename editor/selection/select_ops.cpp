@@ -208,9 +208,8 @@ std::vector<Operator> select_operators() {
       {"select.none", "Select nothing", "", "Select", "Deselect all bones and tissues.",
        [](Context& c) { *c.selection = {}; }},
       {"select.all", "Select all", "", "Select",
-       "Select all bones in the Rig and Pose workspaces, and all tissues elsewhere. Also all tissues in Rig, if a "
-       "tissue "
-       "is selected.",
+       "Select all bones in the Rig and Pose workspaces, and all tissues elsewhere. In the Rig workspace, "
+       "also select all tissues if a tissue is selected.",
        choose_all, needs_volume},
       {"select.invert", "Invert selection", "", "Select",
        "Select the bones or tissues that are not selected, and deselect the others.", invert, needs_volume},

@@ -41,8 +41,8 @@ std::string progress_text(const Solve& solve) {
   const WorkerProgress progress = solve.feed->seen().progress;
   if (!progress.iteration || !progress.angle_degrees || !progress.residual_mm) return "";
   char text[96];
-  std::snprintf(text, sizeof text, "%.1f of %.1f\u00b0, iteration %d, moving %.2f mm", *progress.angle_degrees,
-                solve.angle_degrees, *progress.iteration, *progress.residual_mm);
+  std::snprintf(text, sizeof text, "%.1f of %.1f\u00b0, iteration %d, nodes move up to %.2f mm",
+                *progress.angle_degrees, solve.angle_degrees, *progress.iteration, *progress.residual_mm);
   return text;
 }
 

@@ -192,7 +192,7 @@ void require_preset_name(const std::vector<BrushPreset>& presets, const std::str
   if (name.size() > kLongestName) throw Error("this name is too long", std::to_string(name.size()) + " bytes", kHint);
   const bool is_new = std::none_of(presets.begin(), presets.end(), [&](const auto& one) { return one.name == name; });
   if (is_new && presets.size() >= kMostBrushPresets)
-    throw Error("there are too many brush presets", std::to_string(presets.size()), "delete one first");
+    throw Error("there are too many brush presets", std::to_string(presets.size()), "delete a preset first");
 }
 
 void save_brush_preset(Context& context, const std::string& name) {
@@ -228,7 +228,7 @@ void use_brush_preset(Context& context, const std::string& name) {
     context.seams->brush = painting.labels->on = false;
     return context.ui->touch();
   }
-  throw Error("there is no such brush preset any more", name, "select another one");
+  throw Error("there is no such brush preset any more", name, "select another preset");
 }
 
 }  // namespace limber::editor

@@ -49,7 +49,8 @@ void ask_preset(Context& context, const char* title, const char* description, co
                 void (*act)(Context&, const std::string&)) {
   std::vector<std::string> names;
   for (const BrushPreset& preset : brush_presets(context)) names.push_back(preset.name);
-  if (names.empty()) throw Error("there are no brush presets yet", title, "save one first: Edit > Brush > Presets");
+  if (names.empty())
+    throw Error("there are no brush presets yet", title, "save a preset first: Edit > Brush > Presets");
   context.dialogs->open(
       make_form({title,
                  description,

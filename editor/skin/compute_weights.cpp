@@ -185,7 +185,7 @@ void ask_computation(Context& context) {
     if (!computation.in_part())
       return c.document().layers ? "Computes the base weights below all layers again." : "Computes all weights again.";
     if (!of_rig(c.document()))
-      throw Error("there are no weights of this rig yet", "computing some of them", "compute all weights first");
+      throw Error("there are no weights of this rig yet", "computing some of the weights", "compute all weights first");
     if (computation.where == Computation::Where::ChosenTissue && c.selection->tissues.empty())
       throw NotYet{"Select tissues in the list first"};
     const std::string what =

@@ -45,9 +45,9 @@ void draw_gain(Ui& ui, Column& column, const RepairedJoint& repaired) {
           grouped_mean(mean_overlap(figures.before)) + " to " + grouped_mean(mean_overlap(figures.after)), colour);
   if (figures.starts_from_capsule) {
     std::snprintf(text, sizeof text, "%.0f mm", figures.widths.flexor);
-    put_row(ui, column, "Flexor side", text, look.theme.text);
+    put_row(ui, column, "Flexor blend", text, look.theme.text);
     std::snprintf(text, sizeof text, "%.0f mm", figures.widths.extensor);
-    put_row(ui, column, "Extensor side", text, look.theme.text);
+    put_row(ui, column, "Extensor blend", text, look.theme.text);
   }
 }
 

@@ -82,7 +82,7 @@ std::vector<Operator> region_operators() {
       {"skin.region_bone", "Region of selected bones", icon::kRegion, "Weights",
        "Limit brushes and edits to where the selected bones have most of the weight.", region_of_bones, needs_paint},
       {"skin.region_invert", "Invert region", "", "Weights",
-       "Limit brushes and edits to what lies outside the current region.", invert_region, needs_region},
+       "Limit brushes and edits to the tissue outside the current region.", invert_region, needs_region},
       {"skin.region_unmatched", "Region of unmatched voxels", icon::kWarning, "Weights",
        "Limit brushes and edits to the voxels for which Mirror weights found no match on the other side.",
        region_of_unmatched, needs_unmatched},

@@ -35,7 +35,7 @@ std::string needs_skin_bone(const Context& context) {
 std::string needs_weights_below(const Context& context) {
   const std::string why = needs_skin_weights(context);
   if (!why.empty()) return why;
-  return context.views->hover.weights.empty() ? "Point at the body" : "";
+  return context.views->hover.weights.empty() ? "Put the pointer on the body" : "";
 }
 
 std::string needs_hidden(const Context& context) {

@@ -114,7 +114,8 @@ void fill_part(Context& context) {
                           {"Tissue", "All"}),
                 number_of("Value", "The weight that the selected bones get in the filled part.", 1, 0, 1, "%.2f")},
                [voxel](const Context& c, const Fields& fields) {
-                 WeightOperation operation = flooding("Fill part with " + painted_name(c), Flood::Set, fields[1].value);
+                 WeightOperation operation =
+                     flooding("Fill connected tissue with weight of " + painted_name(c), Flood::Set, fields[1].value);
                  operation.reach = EditReach::AllTissues;
                  operation.edits_bone_tissue = true;
                  operation.where = [voxel, part = fields[0].chosen == 0 ? Part::Label
@@ -383,9 +384,8 @@ std::string needs_two_bones(const Context& context) {
 std::vector<Operator> weight_edit_operators() {
   return {
       {"skin.flood", "Flood", icon::kBrushSet, "Weights",
-       "Apply the brush's effect to all tissue that it may paint. The tissue filter, the clip box and plane, the "
-       "region "
-       "and the locks limit it.",
+       "Apply the brush's effect to all tissue that the brush may paint. The tissue filter, the clip box, the clip "
+       "plane, the region and the locks limit this tissue.",
        flood, needs_flood},
       {"skin.gradient", "Gradient", icon::kGradient, "Weights",
        "Draw a line along which the weight of the selected bones fades from full to none. Press R to fade it in all "
@@ -399,7 +399,7 @@ std::vector<Operator> weight_edit_operators() {
                     ? std::string("Show the body at rest first: the line is drawn on the rest pose")
                     : needs_reach(c);
        }},
-      {"skin.fill_part", "Fill part", icon::kBrushSet, "Weights",
+      {"skin.fill_part", "Fill connected tissue", icon::kBrushSet, "Weights",
        "Let the connected part of the tissue under the pointer follow the selected bone.", fill_part,
        needs_tissue_below},
       {"skin.assign_tissue", "Assign tissue to bone", icon::kTissues, "Weights",

@@ -51,10 +51,10 @@ void draw_ramp(Context& context, const Rect& box) {
     if (context.skin->contours) fill({{x, top}, {x + look.line(), bottom}}, with_alpha(0xFF000000, 0.45f));
   }
   const Rect labels{{zero.low.x, bottom + look.px(1)}, {one.high.x, box.high.y - look.px(2)}};
-  put_text(context.ui, look.fonts.small, look.theme.view_text2, labels, "exact 0");
+  put_text(context.ui, look.fonts.small, look.theme.view_text2, labels, "exactly 0");
   put_text(context.ui, look.fonts.small, look.theme.view_text2,
            Rect{{ramp.low.x, labels.low.y}, {ramp.high.x, labels.high.y}}, "0.5", Align::Centre);
-  put_text(context.ui, look.fonts.small, look.theme.view_text2, labels, "exact 1", Align::Right);
+  put_text(context.ui, look.fonts.small, look.theme.view_text2, labels, "exactly 1", Align::Right);
 }
 
 // Draws a row of colour swatches, each with a label at its right, and stops at the first that does not fit into the

@@ -175,7 +175,7 @@ std::string TransformTool::lock_text(const char* word) const {
 }
 
 std::vector<KeyHint> TransformTool::shared_hints() const {
-  return {{{"X", "Y", "Z"}, "Lock axis, twice for local"},
+  return {{{"X", "Y", "Z"}, "Lock axis (twice: local)"},
           {{"0-9"}, "Value"},
           {{"Ctrl"}, "Snap"},
           {{"Shift"}, "Precise"},

@@ -33,7 +33,7 @@ CtThresholds thresholds_of(const Fields& fields) {
 
 // Returns the shown image. Throws Error if it has been closed since the form was opened.
 const GreyLevels& image_of(const Context& context) {
-  if (!context.views->image) throw Error("the image was closed", "Labels from image", "open it again");
+  if (!context.views->image) throw Error("the image was closed", "Labels from image", "open the image again");
   return *context.views->image->image;
 }
 
@@ -75,7 +75,7 @@ void start_labels(Context& context, const std::string& label, const std::string&
                             make_ready({.volume = volume, .tissues = tissues}, progress);
                             return [volume, tissues, before, label](const Document& now) {
                               if (now.volume != before)
-                                throw Error("another volume was opened meanwhile", label, "start it again");
+                                throw Error("another volume was opened meanwhile", label, "run the command again");
                               Document next;
                               next.volume = volume;
                               next.tissues = tissues;

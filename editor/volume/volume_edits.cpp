@@ -107,7 +107,8 @@ void start_preparation(Context& context, Preparation preparation) {
         const auto left = tissues ? present(*tissues, *after) : nullptr;
         make_ready({.volume = after, .tissues = tissues, .visibility = visibility}, progress);
         return [before, after, same, left, tissues, note, is_loss, mirrors = preparation.mirrors](const Document& now) {
-          if (now.volume != before) throw Error("the volume was changed meanwhile", "preparing", "start it again");
+          if (now.volume != before)
+            throw Error("the volume was changed meanwhile", "preparing the volume", "run the command again");
           Document next = with_volume(now, after, same, mirrors, *note);
           if (left && left->tissues.size() != tissues->tissues.size() && now.tissues == tissues) next.tissues = left;
           *is_loss = !note->empty();

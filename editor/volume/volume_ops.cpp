@@ -81,7 +81,7 @@ void ask_orient(Context& context) {
     if (fields[0].chosen / 2 == fields[1].chosen / 2 || fields[0].chosen / 2 == fields[2].chosen / 2 ||
         fields[1].chosen / 2 == fields[2].chosen / 2)
       throw Error("two voxel axes point along the same body axis", code_of(fields),
-                  "use left or right, front or back, and up or down once each");
+                  "select a different body axis for each voxel axis");
     return "Voxel axes " + code_of(fields) + ". The voxels are not resampled and stay where they are.";
   };
   const auto act = [code_of](Context& c, const Fields& fields) {
@@ -146,7 +146,7 @@ void ask_merge(Context& context) {
   labels.push_back(0);
   const auto outcome = [](const Context&, const Fields& fields) {
     if (fields[0].chosen == fields[1].chosen)
-      throw Error("both tissues are the same", fields[0].choices[fields[0].chosen], "select another one");
+      throw Error("both tissues are the same", fields[0].choices[fields[0].chosen], "select another tissue");
     if (fields[0].chosen + 1 == std::ssize(fields[0].choices))
       throw Error("air cannot become tissue", "Merge", "select the tissue to merge");
     return "Every voxel of " + fields[0].choices[fields[0].chosen] + " becomes " + fields[1].choices[fields[1].chosen] +

@@ -139,7 +139,7 @@ TEST_CASE("adjust: what has no numbers says so, and what fails leaves all as it 
   test.play("key Ctrl+1\nwait-idle");
   test.choose("Fore");
   test.play("key Shift+A");
-  CHECK(why_not_redo(*test.editor) == "Add bone has nothing to adjust");
+  CHECK(why_not_redo(*test.editor) == "Add bone has no settings to adjust");
 
   act_and_allow_redo(*test.editor, {number_of("Bones", "", 1, 0, 9, "%.0f")},
                      [](Context& c, const std::vector<FormField>& fields) {

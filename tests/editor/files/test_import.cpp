@@ -116,7 +116,7 @@ TEST_CASE("opening: a rig that does not lie in the body comes in with the offer 
   import_file(sitting.editor(), FileKind::Rig, files / "rig.json");
   sitting.play("wait-job\n wait-idle\n expect dialog no");
   CHECK(inside() > 0.9);
-  for (const char* answer : {"Keep rig", "Only place and scale", "Fit rig"}) {
+  for (const char* answer : {"Keep rig", "Only position and scale", "Fit rig"}) {
     INFO(answer);
     far.bones[0].head.x += 1e-3;
     write_armature(far, files / "far.json");
@@ -126,7 +126,8 @@ TEST_CASE("opening: a rig that does not lie in the body comes in with the offer 
     CHECK((inside() > 0.6) == (std::string(answer) != "Keep rig"));
   }
   sitting.play(
-      "expect toast \"Skeleton placed, but every joint is uncertain\"\n key Ctrl+Z\n expect edit \"Import far.json\"");
+      "expect toast \"Skeleton positioned, but every joint is uncertain\"\n key Ctrl+Z\n expect edit \"Import "
+      "far.json\"");
 }
 
 TEST_CASE("opening: a damaged file is one error message, and the open project stays as it is") {

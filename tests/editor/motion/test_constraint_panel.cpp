@@ -94,10 +94,10 @@ std::vector<Proof> proofs_of_constraints() {
          return weights(s.editor()) == std::map<int, double>{{10, 1}, {20, 0}};
        },
        Shows::Nothing, "", ready(one)},
-      {"constraint.to_cross_hair", choose("Target at cross-hair"),
+      {"constraint.to_cross_hair", choose("Target to cross-hair"),
        [](Stage& s, const Seen&) {
          const Constraint& aim = list_of(s)[0];
-         return glm::distance(aim.place, s.editor().views->cross_hair) < 1e-9 && s.is("edit", "Target at cross-hair");
+         return glm::distance(aim.place, s.editor().views->cross_hair) < 1e-9 && s.is("edit", "Target to cross-hair");
        },
        Shows::InBody, "",
        [](Stage& s) {

@@ -102,7 +102,7 @@ TEST_CASE("clinical angles panel: X-mirror sets both sides, and auto-key keeps t
   // The collarbone moves with the arm.
   CHECK(s.angle({Girdle, BodySide::Right}, 2) == doctest::Approx(20.0 / 6));
   s.type("Left shoulder abduction", "90");
-  s.play("expect \"text:At 90\u00b0 of abduction, the joint's other motions are the same rotation.\"");
+  s.play("expect \"text:At 90\u00b0 of abduction, the joint's other motions turn about the same axis.\"");
 }
 
 TEST_CASE("clinical angles panel: a list selects any joint, a forearm has two, and a hand curls and spreads") {

@@ -211,7 +211,7 @@ TEST_CASE("live pose: without weights only the bones move") {
   CHECK(glm::angle(test.scene().posed_from_rest[1].rotation) == doctest::Approx(std::numbers::pi / 3));
   CHECK(test.editor->live->trouble() == "No weights yet");
   CHECK(test.fact("text:No weights yet") == "shown");
-  test.play("key Return\nclick \"Volume, live/Heat diffusion\"\nwait-job");
+  test.play("key Return\nclick \"Live volume/Heat diffusion\"\nwait-job");
   CHECK(test.scene().pose);
   CHECK(test.editor->live->trouble().empty());
 }

@@ -253,7 +253,7 @@ TEST_CASE(
 
   test.choose(0);
   test.play("wait-idle");
-  type("Bone/Turn, \u00b0 Y", "30");
+  type("Bone/Rotation, \u00b0 Y", "30");
   const Bone& upper = test.editor->document().armature->bones[0];
   CHECK(test.degrees(0, rest_axes(upper)[1]) == doctest::Approx(30));
   type("Bone/Offset, mm Z", "-7");

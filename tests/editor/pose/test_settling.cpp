@@ -114,7 +114,7 @@ TEST_CASE(
   }
   REQUIRE(scene.posed_from_rest.size() == 2);
   CHECK(glm::distance(scene.posed_from_rest[1] * glm::dvec3(1, 2, 3), turn * glm::dvec3(1, 2, 3)) < 1e-9);
-  CHECK(test.fact("text:15.0 of 30.0\u00b0, iteration 3, moving 0.80 mm") == "shown");
+  CHECK(test.fact("text:15.0 of 30.0\u00b0, iteration 3, nodes move up to 0.80 mm") == "shown");
   CHECK(test.fact("text:solving") == "shown");
   test.play("key N\nwait 4");  // opens the sidebar; the remaining time appears after some seconds
   std::this_thread::sleep_for(std::chrono::milliseconds(3100));

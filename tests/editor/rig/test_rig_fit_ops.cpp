@@ -58,7 +58,7 @@ std::vector<Proof> proofs_of_rig_fitting() {
        "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The current rig\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) {
          return s.is("edit", "Auto-fit skeleton") && s.document().armature != b.document.armature &&
-                s.is("toast", "Skeleton placed, but every joint is uncertain");
+                s.is("toast", "Skeleton positioned, but every joint is uncertain");
        },
        Shows::Nothing, rigging},
       {"rig.fit_joint_axis", "key Shift+J\n wait-job\n wait-idle",

@@ -99,7 +99,7 @@ std::vector<Proof> proofs_of_rigging() {
               }),
        Shows::InBody, "", anew({1}, 1)},
       {"rig.fill", "key F",
-       edited("Fill with Fore.001",
+       edited("Fill gap with bone Fore.001",
               [](const Armature& r) {
                 return named(r, "Fore.001").parent == 1 && named(r, "Fore.001").head.z == -36 &&
                        glm::distance(named(r, "Fore.001").tail, {10, 2, -20}) < 1e-9;

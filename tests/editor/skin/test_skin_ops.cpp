@@ -132,7 +132,7 @@ TEST_CASE("skin: the Skin workspace shows the active bone's ramp at once, and th
   CHECK(test.fact("weights") == "active");
   CHECK(test.fact("bone") == "Fore");
   CHECK(test.fact("text:Weight of Fore") == "shown");
-  CHECK(test.fact("text:exact 0") == "shown");
+  CHECK(test.fact("text:exactly 0") == "shown");
   CHECK(test.fact("text:Active bone weight") == "shown");
   test.play("key Ctrl+3\n wait-idle");
   CHECK(test.fact("weights") == "none");

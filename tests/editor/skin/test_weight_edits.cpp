@@ -141,9 +141,9 @@ TEST_CASE("weight editing: the part under the pointer, or all of a tissue, follo
   const int steps = test.steps();
   test.play("move \"3D view/view\"\nwait-idle");
   REQUIRE(test.editor->views->hover.label == kSkin);
-  test.painting().tissue = PaintedTissue::Chosen;  // Fill part ignores which tissues brushes may paint
+  test.painting().tissue = PaintedTissue::Chosen;  // Fill connected tissue ignores which tissues brushes may paint
   test.play("key L\nwait-idle");
-  CHECK(test.last_edit() == "Fill part with Fore");
+  CHECK(test.last_edit() == "Fill connected tissue with weight of Fore");
   CHECK(test.wrong([](const glm::dvec3& p, Label label) { return label == kSkin ? 1 : before(p); }) == 0);
   std::vector<FormField> fields = test.editor->last_operation->fields;
   fields[0].chosen = 1;

@@ -94,7 +94,8 @@ std::vector<Proof> proofs_of_weight_edits() {
   const std::string at_middle = "move \"3D view/view\"\n wait-idle\n ";
   return {
       {"skin.flood", "key Ctrl+X\n wait-idle", edit_is("Flood Fore"), Shows::InBody, "", weigh},
-      {"skin.fill_part", "key L\n wait-idle", edit_is("Fill part with Fore"), Shows::InBody, at_middle, weigh},
+      {"skin.fill_part", "key L\n wait-idle", edit_is("Fill connected tissue with weight of Fore"), Shows::InBody,
+       at_middle, weigh},
       {"skin.assign_tissue", "key Shift+L\n wait-idle", edit_is("Assign Skin to Fore"), Shows::InBody, at_middle,
        weigh},
       {"skin.gradient", "key Shift+A\n press \"3D view/view\"\n move 600 400\n release\n wait-idle",

@@ -373,7 +373,7 @@ TEST_CASE("gizmos: a pole is dragged as one edit with the limb that turns to it,
   test.press();
   for (int i = 1; i <= 4; ++i) test.pointer_to(from + glm::dvec2(20 * i, 0));
   test.release();
-  CHECK(test.last_edit() == "Turn to pole");
+  CHECK(test.last_edit() == "Turn limb to pole");
   CHECK(glm::distance(pole(), first) > 5);
   const auto turned = test.pose();
   CHECK(turned != bent);
