@@ -35,7 +35,7 @@ Operator by_step(const char* id, const char* label, int step) {
 
 std::vector<Operator> workspace_operators() {
   return {
-      to_workspace("workspace.rig", "Rig", icon::kRig, "Switch to the Rig workspace, to fit a skeleton into the bones.",
+      to_workspace("workspace.rig", "Rig", icon::kRig, "Switch to the Rig workspace, to fit a rig into the bones.",
                    Workspace::Rig),
       to_workspace("workspace.skin", "Skin", icon::kSkin,
                    "Switch to the Skin workspace, to paint how tissue follows the bones.", Workspace::Skin),

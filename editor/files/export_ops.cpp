@@ -160,7 +160,7 @@ std::vector<Operator> export_operators() {
            "-tissues"}),
       export_operator({"file.export_rig",
                        "Rig...",
-                       "Export the skeleton in its rest pose.",
+                       "Export the rig in its rest pose.",
                        ExportKind::Rig,
                        {{"Limber rig", {".json"}}, {"Bender armature", {".vtk"}}, {"BVH", {".bvh"}}},
                        "-rig"}),
@@ -208,7 +208,7 @@ std::vector<Operator> export_operators() {
        "report as text or JSON.",
        [](Context& c) {
          browse_for_result(c, "Report", "report", stem_of(c) + "-results",
-                           {{"Page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}},
+                           {{"Web page of all results", {".html"}}, {"Text", {".txt"}}, {"JSON", {".json"}}},
                            export_report);
        },
        needs_result},

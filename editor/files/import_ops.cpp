@@ -101,7 +101,7 @@ std::vector<Operator> import_operators() {
        import_image},
       import_operator({"file.import_rig",
                        "Rig...",
-                       "Import a skeleton into the project.",
+                       "Import a rig (skeleton) into the project.",
                        FileKind::Rig,
                        {"Rigs", {".json", ".vtk", ".arm", ".bvh", ".gltf", ".glb"}}},
                       nullptr),

@@ -186,7 +186,7 @@ void export_motion_pictures(Context& context, const Path& path, MotionCamera cam
     const auto scenes = std::make_shared<PosedScenes>(c, frames);
     start_picture_files(
         c, path,
-        {.label = "Motion pictures",
+        {.label = "Export motion as pictures",
          .scene = c.views->scene,
          .size = size_of_view(c.screen, ViewId::Body),
          .pictures = static_cast<int>(frames.size()),

@@ -106,7 +106,7 @@ void ask(Context& context, const std::shared_ptr<const Incoming>& incoming) {
       words += (as_guessed ? " Z is up: " : " Check the up axis: ") + reason + ".";
     if (std::abs(fields[3].value - clip_of(incoming->motion, "").rate) > 1e-3) {
       char text[64];
-      std::snprintf(text, sizeof text, " Plays in %.2f s.", incoming->motion->frame_count / fields[3].value);
+      std::snprintf(text, sizeof text, " The motion lasts %.2f s.", incoming->motion->frame_count / fields[3].value);
       words += text;
     }
     for (const std::string& warning : incoming->motion->warnings) words += "\n" + warning;

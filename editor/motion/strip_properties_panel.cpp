@@ -193,8 +193,8 @@ void draw_reach(Context& context, Column& column, const Strip& strip) {
   const std::string bones = strip.bones ? std::to_string(strip.bones->size()) : "all";
   draw_deeds(context, column, "Bones: " + bones, "strips.bones_selected", "Selected", "strips.bones_all");
   if (const Strip* now = active_strip(context))
-    draw_deeds(context, column, now->place == GroundMove{} ? "Position: clip" : "Position: moved", "strips.begin_here",
-               "At the body", "strips.clear_place");
+    draw_deeds(context, column, now->place == GroundMove{} ? "Position: of clip" : "Position: moved",
+               "strips.begin_here", "At the body", "strips.clear_place");
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ bool draw_difference(Context& context, const Rect& view) {
 }
 
 bool draw_overlap(Context& context, const Rect& view) {
-  Legend legend{"Voxels that overlap", {"by tissue", "by two bones"}, {}, ""};
+  Legend legend{"Voxels that overlap", {"any tissue", "two bones"}, {}, ""};
   const auto add = [&](const char* letter, const std::shared_ptr<const Result>& result, const std::string& name) {
     if (result && result->overlap)
       legend.rows.push_back({letter, name,

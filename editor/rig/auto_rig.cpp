@@ -158,9 +158,9 @@ void ask_template(Context& context) {
     const RigTemplate& chosen = rig_templates()[fields[0].chosen];
     auto rig = std::make_shared<const Armature>(scaled_to_tissue(*c.document().volume, rig_template(chosen.name)));
     const std::shared_ptr<const Armature> before = c.document().armature;
-    c.history->commit("Template " + chosen.label, with_rig(c.document(), rig));
-    if (before) warn_of_moved_targets(c, "Template " + chosen.label, *before, bones_of(*before, *rig));
-    c.messages->ok("Template " + chosen.label,
+    c.history->commit("Add template " + chosen.label, with_rig(c.document(), rig));
+    if (before) warn_of_moved_targets(c, "Add template " + chosen.label, *before, bones_of(*before, *rig));
+    c.messages->ok("Add template " + chosen.label,
                    "The skeleton is scaled to the tissue. Use Auto-fit skeleton to find its joints");
   };
   context.dialogs->open(

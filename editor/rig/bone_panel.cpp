@@ -48,7 +48,7 @@ void draw_number(Context& context, const Rect& rect, const std::string& name, co
   Armature next = with(number);
   if (!too_short(next.bones[bone])) return commit_rig(context, label, std::move(next), {bone});
   drop_shown_rig(context);
-  context.messages->warn(rig->bones[bone].name + " stays as it was", "A bone is at least 0.1 mm long");
+  context.messages->warn(rig->bones[bone].name + " stays as it was", "A bone must be at least 0.1 mm long");
 }
 
 void draw_name(Context& context, const Rect& rect, int index) {
@@ -165,8 +165,8 @@ void draw_range(Context& context, Column& column, const Bone& bone, int index, c
   const float middle = std::round(rect.centre().x), gap = context.ui->look.px(2);
   const auto number = [&](const Rect& field, const std::string& name, double JointLimits::*angle, double from,
                           double to) {
-    draw_number(context, field, name, "Limits of " + bone.name, glm::degrees(bone.limits.*angle) + zero, from + zero,
-                to + zero, "%.0f", "\u00b0", index, [&](const Armature& rig, double degrees) {
+    draw_number(context, field, name, "Set limits of " + bone.name, glm::degrees(bone.limits.*angle) + zero,
+                from + zero, to + zero, "%.0f", "\u00b0", index, [&](const Armature& rig, double degrees) {
                   JointLimits limits = rig.bones[index].limits;
                   limits.*angle = glm::radians(degrees - zero);
                   return with_limits(rig, index, limits);
@@ -196,7 +196,8 @@ void draw_joint(Context& context, Column& column, const Bone& bone, int index) {
         limits.axis = rest_axes(bone)[0], limits.maximum = glm::radians(90.0);
       if (limits.type == JointLimits::Type::Ball)
         limits.cone = limits.twist_maximum = glm::radians(45.0), limits.twist_minimum = -limits.twist_maximum;
-      commit_rig(context, "Limits of " + bone.name, mirrored_too(context, with_limits(*rig, index, limits)), {index});
+      commit_rig(context, "Set limits of " + bone.name, mirrored_too(context, with_limits(*rig, index, limits)),
+                 {index});
     }
     if (bone.limits.type == JointLimits::Type::Hinge) {
       int axis = axis_choice(bone);
@@ -205,14 +206,16 @@ void draw_joint(Context& context, Column& column, const Bone& bone, int index) {
       if (choose("Axis", axes, axis)) {
         JointLimits limits = bone.limits;
         limits.axis = own_axis(bone, axis);
-        commit_rig(context, "Hinge of " + bone.name, mirrored_too(context, with_limits(*rig, index, limits)), {index});
+        commit_rig(context, "Set hinge of " + bone.name, mirrored_too(context, with_limits(*rig, index, limits)),
+                   {index});
       }
       draw_range(context, column, bone, index, "Angle", &JointLimits::minimum, &JointLimits::maximum,
                  hinge_angle_at_rest(*rig, index, bone.limits.axis));
     }
     if (bone.limits.type == JointLimits::Type::Ball) {
-      draw_number(context, column.property("Cone"), "Cone", "Limits of " + bone.name, glm::degrees(bone.limits.cone), 0,
-                  180, "%.0f", "\u00b0", index, [&](const Armature& before, double degrees) {
+      draw_number(context, column.property("Cone"), "Cone", "Set limits of " + bone.name,
+                  glm::degrees(bone.limits.cone), 0, 180, "%.0f", "\u00b0", index,
+                  [&](const Armature& before, double degrees) {
                     JointLimits limits = before.bones[index].limits;
                     limits.cone = glm::radians(degrees);
                     return with_limits(before, index, limits);
@@ -246,7 +249,7 @@ void draw_bone(Context& context, Column& column) {
     Rect rect = column.property("Length \u00b7 roll");
     rect.low.x = std::round(rect.high.x - std::max(rect.width(), look.px(156)));
     const float middle = std::round(rect.low.x + 0.56f * rect.width());
-    draw_number(context, {rect.low, {middle - look.px(2), rect.high.y}}, "Length", "Length of " + bone.name,
+    draw_number(context, {rect.low, {middle - look.px(2), rect.high.y}}, "Length", "Set length of " + bone.name,
                 glm::distance(bone.head, bone.tail), 0, kFar, "%.1f", "mm", index,
                 [&](const Armature& before, double number) {
                   const glm::dvec3 along = before.bones[index].tail - before.bones[index].head;

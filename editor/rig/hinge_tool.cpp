@@ -91,7 +91,7 @@ class HingeTool final : public TransformTool {
 
   void show(Context& context) override { show_rig(context, changed(context)); }
   void keep(Context& context) override {
-    commit_rig(context, "Hinge of " + rig_.bones[bone_].name, changed(context), {bone_});
+    commit_rig(context, "Set hinge of " + rig_.bones[bone_].name, changed(context), {bone_});
   }
 
   const Armature rig_;

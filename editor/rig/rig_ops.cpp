@@ -229,7 +229,7 @@ void ask_motion_range(Context& context) {
   const auto act = [](Context& c, const std::vector<FormField>& fields) {
     const std::vector<int> bones = bones_chosen_last(c);
     std::vector<std::string> left;
-    commit_rig(c, naming_chosen(c, "Range of motion of"),
+    commit_rig(c, naming_chosen(c, "Set range of motion of"),
                mirrored_too(c, with_usual_limits(*c.document().armature, bones, fields[0].chosen - 1, left)), bones);
   };
   context.dialogs->open(make_form(

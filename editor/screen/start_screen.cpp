@@ -327,7 +327,7 @@ void draw_steps(Context& context, const Plan& plan, float y) {
   };
   const float width = (plan.right - plan.left) / 4;
   int i = 0;
-  for (const Step& step : {Step{icon::kRig, "1 Rig", "Fit a skeleton into the bones."},
+  for (const Step& step : {Step{icon::kRig, "1 Rig", "Fit a rig into the bones."},
                            Step{icon::kSkin, "2 Skin", "Paint how tissue follows bones."},
                            Step{icon::kPose, "3 Pose", "Turn joints or play a motion."},
                            Step{icon::kResample, "4 Resample", "Write a new label volume."}}) {

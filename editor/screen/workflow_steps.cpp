@@ -56,7 +56,7 @@ Step prepare_step(const Context& context) {
 }
 
 Step rig_step(const Document& document) {
-  Step step{"Rig",          StepState::Later, "No skeleton yet",
+  Step step{"Rig",          StepState::Later, "No rig yet",
             "rig.auto_fit", "Auto-fit",       {"rig.auto_fit", "rig.templates", "file.import_rig"}};
   if (!document.armature) return step;
   step.state = StepState::Done;

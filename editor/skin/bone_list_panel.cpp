@@ -203,8 +203,7 @@ void draw_bones(Context& context, Column& column) {
   const bool open = column.begin_section("Bones");
   if (armature) draw_search_icon(context, column.head());
   if (open && !armature) {
-    if (empty_state(context.ui, column.row(72), "No skeleton yet",
-                    find_operator(context.operators, "rig.auto_fit")->label))
+    if (empty_state(context.ui, column.row(72), "No rig yet", find_operator(context.operators, "rig.auto_fit")->label))
       run(context, "rig.auto_fit");
   } else if (open && !context.document().weights) {
     if (empty_state(context.ui, column.row(72), "No weights yet", find_operator(context.operators, "skin.heat")->label))

@@ -109,7 +109,7 @@ class GradientTool final : public Modal {
                             fields[1].value,
                             fields[2].value,
                             static_cast<FalloffShape>(fields[3].chosen)};
-          return WeightOperation{.label = "Gradient of " + painted_name(c),
+          return WeightOperation{.label = "Draw weight gradient of " + painted_name(c),
                                  .work = [gradient, amount = fields[4].value](const WeightsToEdit& what,
                                                                               const EditScope& scope) -> EditedWeights {
                                    return {with_gradient(what.body(), *what.document.weights, what.settings.bones,

@@ -289,7 +289,7 @@ void set_levels(Context& context) {
         levels.gamma = fields[2].value;
         const std::vector<int> bones = painted_bones(c);
         return WeightOperation{
-            .label = "Levels of " + c.document().weights->bones()[static_cast<std::size_t>(bones[0])],
+            .label = "Set weight levels of " + c.document().weights->bones()[static_cast<std::size_t>(bones[0])],
             .work = [levels](const WeightsToEdit& what, const EditScope& scope) -> EditedWeights {
               return {with_levels(what.body(), *what.document.weights, what.settings.bones[0], levels, scope), ""};
             }};

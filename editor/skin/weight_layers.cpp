@@ -171,7 +171,7 @@ void rename_layer(Context& context, std::size_t layer, const std::string& name) 
 
 void set_layer_opacity(Context& context, std::size_t layer, double opacity) {
   if (opacity == context.document().layers->layers[layer]->opacity) return;
-  change_layer(context, layer, "Opacity of " + context.document().layers->layers[layer]->name,
+  change_layer(context, layer, "Set opacity of " + context.document().layers->layers[layer]->name,
                [&](WeightLayer& l) { l.opacity = opacity; });
 }
 

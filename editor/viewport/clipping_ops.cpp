@@ -40,7 +40,7 @@ void toggle_box(Context& context) {
     const int axis = weight.x > weight.y && weight.x > weight.z ? 0 : weight.y > weight.z ? 1 : 2;
     (front[axis] > 0 ? box.high : box.low)[axis] = std::round(size[axis] / 2) - 0.5;
   }
-  commit_visibility(context, box.enabled ? "Clip box on" : "Clip box off", visibility);
+  commit_visibility(context, box.enabled ? "Switch clip box on" : "Switch clip box off", visibility);
 }
 
 void toggle_plane(Context& context) {
@@ -51,7 +51,7 @@ void toggle_plane(Context& context) {
     plane.point = context.views->cross_hair;
     plane.normal = glm::normalize(render::eye_of(context.views->body.camera) - context.views->body.camera.centre);
   }
-  commit_visibility(context, plane.enabled ? "Clip plane on" : "Clip plane off", visibility);
+  commit_visibility(context, plane.enabled ? "Switch clip plane on" : "Switch clip plane off", visibility);
 }
 
 void reset_clips(Context& context) {

@@ -113,7 +113,7 @@ void set_kind(Context& context, Label label, TissueKind kind) {
   tissue.priority = after.priority;
   for (double Tissue::*number : {&Tissue::density, &Tissue::young_modulus, &Tissue::poisson_ratio})
     if (tissue.*number == before.*number) tissue.*number = after.*number;
-  set_tissue(context, "Kind of " + shown_name(tissue), tissue);
+  set_tissue(context, "Set kind of " + shown_name(tissue), tissue);
 }
 
 void rename_tissue(Context& context, Label label, const std::string& name) {

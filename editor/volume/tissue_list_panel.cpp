@@ -50,7 +50,7 @@ void draw_opacity(Context& context, const Rect& rect, const Tissue& tissue, cons
             std::to_string(static_cast<int>(value * 100 + 0.5f)) + " %. Used by the X-ray and tissue displays.");
   if (pressed.held) preview_look(context, tissue.label, {shown.visible, share});
   if (released && context.views->preview_visibility)
-    set_look(context, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, share});
+    set_look(context, "Set opacity of " + shown_name(tissue), tissue.label, {shown.visible, share});
 }
 
 void draw_row(Context& context, Column& column, int index, const Tissue& tissue) {

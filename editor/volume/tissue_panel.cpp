@@ -46,7 +46,7 @@ void draw_number(Context& context, Column& column, const Tissue& tissue, const c
   Tissue next = tissue;
   next.*member = edited.value;
   edited = {};
-  set_tissue(context, std::string(label) + " of " + shown_name(tissue), next);
+  set_tissue(context, std::string("Set ") + label + " of " + shown_name(tissue), next);
 }
 
 void draw_opacity(Context& context, Column& column, const Tissue& tissue) {
@@ -62,7 +62,7 @@ void draw_opacity(Context& context, Column& column, const Tissue& tissue) {
   if (!committed || edited.name != "Opacity") return;
   const auto opacity = static_cast<float>(edited.value / 100);
   edited = {};
-  set_look(context, "Opacity of " + shown_name(tissue), tissue.label, {shown.visible, opacity});
+  set_look(context, "Set opacity of " + shown_name(tissue), tissue.label, {shown.visible, opacity});
 }
 
 void draw_kind(Context& context, Column& column, const Tissue& tissue) {
@@ -101,7 +101,7 @@ void draw_colour(Context& context, Column& column, const Tissue& tissue) {
     Tissue next = tissue;
     next.colour = *context.field_edit->colour;
     context.field_edit->colour.reset();
-    set_tissue(context, "Colour of " + shown_name(tissue), next);
+    set_tissue(context, "Set colour of " + shown_name(tissue), next);
   }
 }
 

@@ -148,7 +148,7 @@ void ask_merge(Context& context) {
     if (fields[0].chosen == fields[1].chosen)
       throw Error("both tissues are the same", fields[0].choices[fields[0].chosen], "select another tissue");
     if (fields[0].chosen + 1 == std::ssize(fields[0].choices))
-      throw Error("air cannot become tissue", "Merge", "select the tissue to merge");
+      throw Error("air cannot become tissue", "Merge", "select a tissue to merge");
     return "Every voxel of " + fields[0].choices[fields[0].chosen] + " becomes " + fields[1].choices[fields[1].chosen] +
            ".";
   };

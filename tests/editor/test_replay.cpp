@@ -445,7 +445,7 @@ TEST_CASE("replay: a handle or button in a view keeps the press to itself") {
 
 TEST_CASE("replay: opacity is dragged live and is one edit") {
   SmallEditor test({1280, 720});
-  test.play("drag Muscle/17/opacity -15 0\n expect edit \"Opacity of Muscle\"\n expect history 2");
+  test.play("drag Muscle/17/opacity -15 0\n expect edit \"Set opacity of Muscle\"\n expect history 2");
   CHECK(test.editor->document().visibility->looks.at(17).opacity < 0.5f);
   CHECK_FALSE(test.editor->views->preview_visibility);
 }

@@ -122,9 +122,9 @@ std::vector<Proof> proofs_of_tissues() {
        [](Stage& s, const Seen&) { return s.document().tissues->find(17)->name == "Thigh"; }, Shows::Nothing, chosen},
       {"edit.history", "click Edit/History", becomes("widget:History/step 0")},
 
-      {"view.clip_box", "move \"3D view/view\"\n key Alt+B", edits("Clip box on", "clip-box", "yes"), Shows::InBody,
-       "move \"3D view/view\"\n key Alt+H"},
-      {"view.clip_plane", "move \"3D view/view\"\n key Shift+Alt+B", edits("Clip plane on", "clip-plane", "yes"),
+      {"view.clip_box", "move \"3D view/view\"\n key Alt+B", edits("Switch clip box on", "clip-box", "yes"),
+       Shows::InBody, "move \"3D view/view\"\n key Alt+H"},
+      {"view.clip_plane", "move \"3D view/view\"\n key Shift+Alt+B", edits("Switch clip plane on", "clip-plane", "yes"),
        Shows::InBody},
       {"view.reset_clipping", "click \"View/Clipping/Reset clipping\"", edits("Reset clipping", "clip-box", "no"),
        Shows::InBody},

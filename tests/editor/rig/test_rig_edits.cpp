@@ -164,7 +164,7 @@ TEST_CASE("rigging: the sidebar sets what a joint allows, one edit each, and res
   RiggingEditor test({1280, 900});
   test.play("click Steps/fold\n click Outliner/fold\n click Tissues/fold\n wait-idle\n click Joint/fold\n wait-idle");
   const auto limits = [&] { return test.rig().bones[1].limits; };
-  test.play("click Joint/Kind/list\n click Joint/Kind/Ball\n wait-idle\n expect edit \"Limits of Fore\"");
+  test.play("click Joint/Kind/list\n click Joint/Kind/Ball\n wait-idle\n expect edit \"Set limits of Fore\"");
   CHECK(limits().type == JointLimits::Type::Ball);
   test.play(
       "double-click Joint/Cone\n type \"30\"\n key Return\n double-click \"Joint/Twist from\"\n type \"-200\"\n key "
@@ -439,7 +439,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
     const double reach = glm::distance(handle, head);
     const glm::dvec3 to = head + reach * glm::dvec3(std::cos(glm::radians(30.0)), 0, std::sin(glm::radians(30.0)));
     test.drag(view, handle, to);
-    test.play("expect edit \"Hinge of Fore\"");
+    test.play("expect edit \"Set hinge of Fore\"");
     const glm::dvec3 axis = test.rig().bones[1].limits.axis;
     CHECK(glm::degrees(std::acos(std::min(1.0, glm::dot(axis, glm::normalize(to - head))))) < 0.1);
     test.play("key Ctrl+Z");
@@ -476,7 +476,7 @@ TEST_CASE("rigging: the axis of a hinge is drawn by its handle, and a knob rolls
                         {std::cos(glm::radians(30.0)), std::sin(glm::radians(30.0)), 0}) < 1e-9);
     test.play("key Return");
     release();
-    test.play("expect edit \"Hinge of Fore\"\n key Ctrl+Z");
+    test.play("expect edit \"Set hinge of Fore\"\n key Ctrl+Z");
     CHECK(test.rig() == *limber::test::small_limb().armature);
 
     // Tests the knob that rolls the bone, with a typed angle and with Escape.

@@ -48,7 +48,7 @@ std::vector<Proof> proofs_of_rig_fitting() {
   return {
       {"rig.templates", "click rig.templates\n click Skeleton/list\n click \"Skeleton/Quadruped\"\n key Return",
        [](Stage& s, const Seen&) {
-         return s.is("edit", "Template Quadruped") &&
+         return s.is("edit", "Add template Quadruped") &&
                 s.document().armature->bones.size() == rig_template("quadruped").bones.size() &&
                 check_rig(*s.document().volume, *s.document().armature).whole > 0.1;
        },

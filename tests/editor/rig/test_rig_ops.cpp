@@ -166,7 +166,7 @@ std::vector<Proof> proofs_of_rigging() {
               [](const Armature& r) { return named(r, "Hip.R").tail.x == -20 && r.bones[2].name == "Hip.R"; }),
        Shows::Nothing, "", choose({2, 3}, 3)},
       {"rig.motion_range", "click \"Edit/Bone/Range of motion...\"\n click Joint/list\n click Joint/Elbow\n key Return",
-       edited("Range of motion of Fore",
+       edited("Set range of motion of Fore",
               [](const Armature& r) {
                 return r.bones[1].limits.type == JointLimits::Type::Hinge &&
                        std::abs(glm::degrees(r.bones[1].limits.maximum) - 150) < 1e-9;

@@ -188,7 +188,7 @@ TEST_CASE("layers: opacity, eye and mask are edits in the sidebar, and a hidden 
   const SkinWeights full = test.weights();
   test.play("double-click \"sidebar/sections/Layers/layer 0/opacity\"\nkey Ctrl+A\ntype \"40\"\nkey Return\nwait-idle");
   CHECK(layers(test).layers[0]->opacity == doctest::Approx(0.4));
-  CHECK(test.last_edit() == "Opacity of Layer 1");
+  CHECK(test.last_edit() == "Set opacity of Layer 1");
   CHECK(comes_out(test));
   CHECK(test.weights() != full);
 

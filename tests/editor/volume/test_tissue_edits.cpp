@@ -16,7 +16,7 @@ TEST_CASE("tissue panel: a kind is chosen from the list, takes its usual materia
   editor::select_tissue(c, 17, false);
   test.play(
       "wait-idle\n click \"sidebar/sections/Outliner/fold\"\n wait-idle\n click \"Tissue/Kind/list\"\n wait-idle");
-  test.play("click \"Tissue/Kind/Cartilage\"\n wait-idle\n expect edit \"Kind of Muscle\"");
+  test.play("click \"Tissue/Kind/Cartilage\"\n wait-idle\n expect edit \"Set kind of Muscle\"");
   Tissue cartilage = own;
   cartilage.kind = TissueKind::Cartilage;
   apply_kind_defaults(cartilage);
