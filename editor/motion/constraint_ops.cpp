@@ -22,7 +22,7 @@ std::string needs_pose_bone(const Context& context) {
 
 std::string needs_constraint(const Context& context) {
   if (const std::string why = needs_pose_bone(context); !why.empty()) return why;
-  return active_constraint(context) ? "" : "The active bone has no constraint";
+  return active_constraint(context) ? "" : "The active bone has no constraint: add a constraint first";
 }
 
 std::string needs_place(const Context& context) {
@@ -34,7 +34,7 @@ std::string needs_place(const Context& context) {
 
 std::string needs_any_constraint(const Context& context) {
   if (!context.document().armature) return "Import a rig first";
-  return constraints_of(context.document()).list.empty() ? "The clip has no constraints" : "";
+  return constraints_of(context.document()).list.empty() ? "The clip has no constraints: add a constraint first" : "";
 }
 
 // Returns the label of the operator that adds a constraint of this kind, such as "Add copy rotation".

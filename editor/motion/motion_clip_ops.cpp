@@ -203,7 +203,7 @@ void trim(Context& context) {
     const int low = clip.range_start, high = std::max(low, clip.range_end);
     if (clip.motion) {
       if (high < clip.start || low > clip.end())
-        throw Error("the range lies outside the motion", clip.name, "move it over the frames to keep");
+        throw Error("the range lies outside the motion", clip.name, "move the range over the frames to keep");
       const int first = std::clamp(clip.first + low - clip.start, clip.first, clip.last),
                 last = std::clamp(clip.first + high - clip.start, first, clip.last);
       clip.start = std::max(low, clip.start);

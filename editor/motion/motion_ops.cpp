@@ -33,7 +33,7 @@ std::string needs_clip(const Context& context) {
 std::string needs_rig(const Context& context) { return context.document().armature ? "" : "Import a rig first"; }
 std::string needs_keys(const Context& context) {
   const Clip* clip = shown_clip(context.document());
-  return clip && !clip->keys.empty() ? "" : "There are no keys yet";
+  return clip && !clip->keys.empty() ? "" : "There are no keys yet: insert a key first";
 }
 
 void toggle_play(Context& context, int direction) {

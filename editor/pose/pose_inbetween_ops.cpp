@@ -38,13 +38,15 @@ std::string needs_other_key(const Context& context) {
   if (context.workspace() != Workspace::Pose) return "Switch to the Pose workspace first";
   std::set<int> frames = key_frames(context);
   frames.erase(shown_frame(context));
-  return frames.empty() ? "The selected bones have no key at another frame" : "";
+  return frames.empty() ? "The selected bones have no key at another frame: insert a key first" : "";
 }
 
 std::string needs_next_key(const Context& context) {
   if (context.workspace() != Workspace::Pose) return "Switch to the Pose workspace first";
   const std::set<int> frames = key_frames(context);
-  return frames.upper_bound(shown_frame(context)) == frames.end() ? "The selected bones have no later key" : "";
+  return frames.upper_bound(shown_frame(context)) == frames.end()
+             ? "The selected bones have no later key: insert a key first"
+             : "";
 }
 
 void blend_to_neighbours(Context& context) {
@@ -83,7 +85,7 @@ void propagate(Context& context) {
 
 std::string needs_change(const Context& context) {
   if (context.workspace() != Workspace::Pose) return "Switch to the Pose workspace first";
-  return context.document().armature && context.document().pose ? "" : "The rig is at rest";
+  return context.document().armature && context.document().pose ? "" : "The rig is at rest: pose a bone first";
 }
 
 // Makes the pose the rest pose of the rig. The volume does not move, so a rig can be fitted to a body by posing it.

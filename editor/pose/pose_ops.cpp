@@ -31,7 +31,8 @@ std::string needs_rig(const Context& context) { return context.document().armatu
 std::string needs_pose(const Context& context) {
   const Document& document = context.document();
   if (!document.armature) return "Import a rig first";
-  return document.pose && *document.pose != rest_pose(*document.armature) ? "" : "The rig is at rest";
+  return document.pose && *document.pose != rest_pose(*document.armature) ? ""
+                                                                          : "The rig is at rest: pose a bone first";
 }
 
 void clear_pose(Context& context) {

@@ -46,7 +46,7 @@ std::string needs_result(const Context& context) {
 }
 
 std::string needs_solve(const Context& context) {
-  return context.fem->solves.empty() ? "No finite elements are being solved" : "";
+  return context.fem->solves.empty() ? "No finite elements are being solved: resample by FEM first" : "";
 }
 
 void toggle_watching(Context& context) {

@@ -61,7 +61,7 @@ std::string why_no_bone_table(const Document& document) {
   const auto& tissues = document.tissues->tissues;
   return std::any_of(tissues.begin(), tissues.end(), [](const Tissue& tissue) { return is_bone(tissue.kind); })
              ? ""
-             : "No tissue is marked as bone";
+             : "No tissue is marked as bone: set the kind of a tissue to bone";
 }
 
 const BoneTable::Known* bone_table(Context& context) {

@@ -157,9 +157,10 @@ std::string why_no_seams(const Context& context) {
   const Document& document = context.document();
   if (!document.volume || !document.tissues) return "Open a volume first";
   if (!document.armature) return "Import a rig first: limbs are found by its bone names";
-  if (!body_seams().has_limbs(document.armature)) return "No bone of the rig is named as an arm, leg or finger";
+  if (!body_seams().has_limbs(document.armature))
+    return "No bone of the rig is named as an arm, leg or finger: rename the bones";
   return context.seams->searching && context.background->tasks.contains(*context.seams->searching)
-             ? "The search for seams is running"
+             ? "The search for seams is running: wait until the job ends"
              : "";
 }
 

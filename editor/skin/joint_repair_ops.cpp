@@ -19,7 +19,7 @@ std::string needs_joint(const Context& context) {
   const std::optional<int> bone = skin_bone(context);
   if (!bone) return "Select the bone below the joint first";
   if (bones[static_cast<std::size_t>(*bone)].parent < 0) return "This bone has no joint: select a bone with a parent";
-  return repairs_joint(context.jobs) ? "A joint is being repaired" : "";
+  return repairs_joint(context.jobs) ? "A joint is being repaired: wait until the job ends" : "";
 }
 
 }  // namespace

@@ -159,7 +159,7 @@ std::vector<Operator> paint_operators() {
       {"skin.paint_smooth", "Smooth weights", "", "Brush", "Smooth weights with the brush.",
        [](Context& c) { c.seams->brush ? begin_seam_stroke(c, SeamStroke::Join) : begin_stroke(c, BrushKind::Smooth); },
        [](const Context& c) {
-         return paints_labels(c.skin) ? "The label brush does not smooth" : needs_paint_below(c);
+         return paints_labels(c.skin) ? "The label brush does not smooth: select another brush" : needs_paint_below(c);
        }},
       {"skin.brush_pie", "Brushes", icon::kSkin, "Brush", "Open a menu at the pointer to select a brush.",
        [](Context& c) { c.menus->open_popup = "Brushes"; }},

@@ -24,7 +24,9 @@ std::string needs_rest(const Context& context) {
   return why.empty() && context.views->scene.pose ? "Show the body at rest first: a region is drawn on the rest pose"
                                                   : why;
 }
-std::string needs_region(const Context& context) { return painted_region(context) ? "" : "No region is set"; }
+std::string needs_region(const Context& context) {
+  return painted_region(context) ? "" : "No region is set: draw a region first";
+}
 std::string needs_unmatched(const Context& context) {
   return context.skin->painting->unmatched.empty() ? "Mirror weights found a match for every voxel, or was not run yet"
                                                    : needs_paint(context);

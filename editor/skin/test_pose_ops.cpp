@@ -22,7 +22,9 @@ std::string needs_weights(const Context& context) {
 
 std::string needs_bend(const Context& context) {
   const std::string why = needs_weights(context);
-  return !why.empty() ? why : context.trial->degrees == 0 ? "No joint is bent in the test pose" : "";
+  return !why.empty()                  ? why
+         : context.trial->degrees == 0 ? "No joint is bent in the test pose: bend a joint first"
+                                       : "";
 }
 
 }  // namespace

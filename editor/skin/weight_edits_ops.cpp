@@ -376,7 +376,8 @@ void ask_transfer(Context& context) {
 
 std::string needs_two_bones(const Context& context) {
   if (const std::string why = needs_reach(context); !why.empty()) return why;
-  return context.document().weights->bones().size() > 1 ? "" : "The rig has only one bone";
+  return context.document().weights->bones().size() > 1 ? ""
+                                                        : "The rig has only one bone: this command needs two bones";
 }
 
 }  // namespace

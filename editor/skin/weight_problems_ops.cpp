@@ -15,15 +15,16 @@ namespace {
 
 std::string needs_weights(const Context& context) {
   if (std::string why = why_not_these_weights(context); !why.empty()) return why;
-  return finds_problems(context.jobs) ? "The search for problems is running" : "";
+  return finds_problems(context.jobs) ? "The search for problems is running: wait until the job ends" : "";
 }
 
 std::string needs_problem(const Context& context) {
   if (std::string why = needs_weights(context); !why.empty()) return why;
   const Painting& painting = *context.skin->painting;
   if (!painting.problems || painting.problem < 0) return "Select a problem first";
-  return painting.problems->repaired[static_cast<std::size_t>(painting.problem)] ? "This problem is already repaired"
-                                                                                 : "";
+  return painting.problems->repaired[static_cast<std::size_t>(painting.problem)]
+             ? "This problem is already repaired: select another problem"
+             : "";
 }
 
 // Shows a message that describes the problem in the views, because its row in the list may be scrolled out of view.

@@ -184,7 +184,7 @@ void ask_specks(Context& context) {
 
 std::string needs_tissues(const Context& context) {
   if (!context.document().volume || !context.document().tissues) return "Open a volume first";
-  return context.document().tissues->tissues.empty() ? "The volume has no tissue" : "";
+  return context.document().tissues->tissues.empty() ? "The volume has no tissue: add a tissue first" : "";
 }
 
 }  // namespace

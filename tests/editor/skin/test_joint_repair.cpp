@@ -123,7 +123,7 @@ TEST_CASE("joint repair: a bone without a parent is refused with the reason, and
   const Document before = test.editor->document();
   start_repairing_joint(*test.editor);
   CHECK(repairs_joint(test.editor->jobs));
-  CHECK(disabled_reason(*test.editor, *repair) == "A joint is being repaired");
+  CHECK(disabled_reason(*test.editor, *repair) == "A joint is being repaired: wait until the job ends");
   test.editor->jobs->cancel_all();
   test.play("wait-job\nwait-idle");
   CHECK_FALSE(repairs_joint(test.editor->jobs));
