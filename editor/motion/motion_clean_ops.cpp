@@ -109,7 +109,7 @@ void tell_of_short(const Armature& rig, const std::vector<PlantedLimb>& limbs, c
   const WorstPlant worst = worst_of(rig, limbs, plants, result.poses);
   result.is_short = !(worst.off <= kOff);
   if (!result.is_short) return;
-  if (worst.plant->limb == told) result.detail += ": the limb is too short to reach it";
+  if (worst.plant->limb == told) result.detail += ": the limb is too short to reach its position";
   else
     result.detail += "; the " + limbs[worst.plant->limb].name + " does not reach its position and is " +
                      mm_text(worst.off) + " away";

@@ -220,7 +220,7 @@ void edit_clip(Context& context, const std::string& label, PoseThen pose, const 
     next.frame = static_cast<int>(std::clamp<double>(moment, left.low, left.high));
     if (next.frame != moment)
       context.messages->info("The play head is at frame " + std::to_string(next.frame),
-                             "Its old frame is no longer in the clip");
+                             "The old frame is no longer in the clip");
   }
   shown = std::make_shared<const Clip>(std::move(clip));
   if (pose == PoseThen::FromClip) next.pose = pose_at_frame(next, &context.timeline->prepared);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Panel "Volume, live": how the shown pose changes the volume of each tissue (cm^3 and percent), the overlap in voxels,
+// Panel "Live volume": how the shown pose changes the volume of each tissue (cm^3 and percent), the overlap in voxels,
 // and whether joints exceed their limits.
 #include <algorithm>
 #include <array>

@@ -46,7 +46,8 @@ std::string what_goes(const Document& document) {
        {std::pair(now.armature != nullptr, "rig"), std::pair(now.weights != nullptr, "weights"),
         std::pair(now.pose != nullptr, "pose")})
     if (is_there) parts += (parts.empty() ? "" : ", ") + std::string(name);
-  return parts.empty() ? "Runs in the background. It can be undone." : "Replaces: " + parts + ". It can be undone.";
+  return parts.empty() ? "Runs in the background. You can undo the change."
+                       : "Replaces: " + parts + ". You can undo the change.";
 }
 
 std::vector<std::string> template_labels() {

@@ -109,10 +109,10 @@ void fill_part(Context& context) {
   const glm::ivec3 voxel = context.views->hover.voxel;
   edit_weights(context,
                {choice_of("Fill within",
-                          "Tissue: fill the connected part of the tissue under the pointer. All: also fill other "
+                          "Tissue: fill the connected piece of the tissue under the pointer. All: also fill other "
                           "tissues that are connected to it.",
                           {"Tissue", "All"}),
-                number_of("Value", "The weight that the selected bones get in the filled part.", 1, 0, 1, "%.2f")},
+                number_of("Value", "The weight that the selected bones get in the filled piece.", 1, 0, 1, "%.2f")},
                [voxel](const Context& c, const Fields& fields) {
                  WeightOperation operation =
                      flooding("Fill connected tissue with weight of " + painted_name(c), Flood::Set, fields[1].value);
@@ -401,8 +401,7 @@ std::vector<Operator> weight_edit_operators() {
                     : needs_reach(c);
        }},
       {"skin.fill_part", "Fill connected tissue", icon::kBrushSet, "Weights",
-       "Let the connected part of the tissue under the pointer follow the selected bone.", fill_part,
-       needs_tissue_below},
+       "Let the connected piece of tissue under the pointer follow the selected bone.", fill_part, needs_tissue_below},
       {"skin.assign_tissue", "Assign tissue to bone", icon::kTissues, "Weights",
        "Let the selected tissues, or the one under the pointer, follow the selected bone.", assign_tissue,
        needs_named_tissue},

@@ -89,7 +89,7 @@ void StatisticsDialog::draw_table(Context& context, const Rect& rect) {
   fill(head, look.theme.head);
   // The titles leave room for the scroll bar, as the rows below do, so that each title stands above its column.
   const Rect heads{head.low, {head.high.x - ImGui::GetStyle().ScrollbarSize, head.high.y}};
-  put_row(context.ui, heads, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Parts"},
+  put_row(context.ui, heads, look.theme.text2, look.theme, {"Tissue", "Label", "Voxels", "mm\u00b3", "Pieces"},
           look.fonts.regular);
   if (!counted_->done) {
     put_text(context.ui, look.fonts.regular, look.theme.text2,

@@ -214,7 +214,7 @@ std::vector<Operator> prepare_operators() {
       {"prepare.specks", "Remove specks...", icon::kFilter, "Prepare",
        "Replace small stray pieces of a tissue by the label around them.", ask_specks, needs_volume},
       {"prepare.statistics", "Statistics", icon::kTable, "Prepare",
-       "Show each tissue's number of voxels, volume and number of separate parts.",
+       "Show each tissue's number of voxels, volume and number of separate pieces.",
        [](Context& c) { c.dialogs->open(open_statistics(c)); }, needs_tissues},
   };
 }
