@@ -81,7 +81,8 @@ std::vector<ScriptLine> parse_script(const std::string& text) {
   };
   for (const char c : text + "\n") {
     if (c == '\n') {
-      if (quoted) throw Error("a quote has no end", "line " + std::to_string(line.number), "close it on the same line");
+      if (quoted)
+        throw Error("a quote has no end", "line " + std::to_string(line.number), "close the quote on the same line");
       end_word();
       if (!line.words.empty()) script.push_back(line);
       line = {line.number + 1, {}};

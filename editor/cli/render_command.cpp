@@ -158,7 +158,8 @@ Document read_document(const Options& options, Progress& progress) {
   cmd::warn(project.warnings);
   Document& document = project.document;
   if (!document.volume || !document.tissues)
-    throw Error("there is nothing to draw: the project has no volume", options.body.volume, "import one in the editor");
+    throw Error("there is nothing to draw: the project has no volume", options.body.volume,
+                "import a volume in the editor");
   if (!document.armature && cmd::wants_pose(options.pose))
     throw Error("a pose needs a rig", options.body.volume, "add a rig to the project");
   return std::move(document);

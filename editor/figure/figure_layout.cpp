@@ -65,7 +65,7 @@ class Composer {
     if (high.y - low.y < kSmallestPicture * result_.options.size.y)
       throw Error("the figure has no room for its picture beside the title and " + std::to_string(legend.size()) +
                       " tissues in the legend",
-                  "figure", "make it larger, hide tissues, or leave out the legend");
+                  "figure", "make the figure larger, hide tissues, or leave out the legend");
     result_.picture_low = glm::ivec2(glm::ceil(low * per_mm));
     result_.picture_pixels = glm::ivec2(glm::floor(high * per_mm)) - result_.picture_low;
     return result_;
@@ -90,7 +90,8 @@ class Composer {
     // bar.
     figure.texts.push_back({{left - kSwatchGap - width, middle + 0.36 * kTextSize}, kTextSize, false, text, width});
     if (left - kSwatchGap - width < 0)
-      throw Error("the figure is too narrow for its scale bar", "figure", "make it wider, or leave out the scale bar");
+      throw Error("the figure is too narrow for its scale bar", "figure",
+                  "make the figure wider, or leave out the scale bar");
     return figure;
   }
 

@@ -107,7 +107,7 @@ struct Video::Encoder {
     listen();
     const std::string line = complaint.substr(0, complaint.find('\n'));
     return {"ffmpeg could not make the video", path.string(),
-            line.empty() ? "it gave no reason; use a name that ends in .png for numbered pictures" : line};
+            line.empty() ? "ffmpeg gave no reason; use a name that ends in .png for numbered pictures" : line};
   }
   void send(std::string_view bytes) {
     while (!bytes.empty()) {

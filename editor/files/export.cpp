@@ -92,7 +92,7 @@ std::string why_not_export(const Document& document, ExportKind kind) {
     case ExportKind::Motion:
       return document.shown_clip() && (document.armature || document.shown_clip()->motion)
                  ? ""
-                 : "There is no motion yet: import one first";
+                 : "There is no motion yet: import a motion first";
     case ExportKind::Gltf:
       return !document.volume     ? "Open a volume first"
              : !document.armature ? "Import a rig first"
@@ -142,7 +142,7 @@ std::vector<TissueMaterial> materials_at(const TissueTable& tissues, double freq
   for (const std::string& name : found.unmatched) unmatched += (unmatched.empty() ? "" : ", ") + name;
   if (!unmatched.empty())
     throw Error("no dielectric properties are known for: " + unmatched, "tissues",
-                "rename or merge them, or convert the exported volume with `limber convert --properties`");
+                "rename or merge these tissues, or convert the exported volume with `limber convert --properties`");
   return std::move(found.materials);
 }
 

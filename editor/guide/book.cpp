@@ -23,7 +23,7 @@ std::string name_of(const std::string& target) { return Path(target).stem().stri
 Page read_page(const std::string& file, const KeyOf& key_of) {
   Page page{name_of(file), "", parse_markdown(with_tables(read_file(asset(file))), key_of)};
   if (page.blocks.empty() || page.blocks[0].kind != Block::Kind::Title)
-    throw Error("a page of the guide has no title", file, "begin it with \"# Title\"");
+    throw Error("a page of the guide has no title", file, "begin the page with \"# Title\"");
   page.title = plain_text(page.blocks[0]);
   return page;
 }

@@ -165,7 +165,7 @@ std::string join_outcome(const Context& context, const NextTake& next, const std
   const auto limbs = planted_limbs(*context.document().armature);
   const bool has_legs = std::any_of(limbs.begin(), limbs.end(), [](const PlantedLimb& limb) { return limb.is_leg; });
   if (wish.settings.keeps_feet && !has_legs)
-    throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
+    throw Error("no leg is recognised in the rig's bone names", "feet", "name the leg bones as in \"LeftThigh\"");
   const bool is_locked =
       shown_clip(context.document())->motion && shown_clip(context.document())->retarget.travel == Travel::Locked;
   return grouped(here) + " frames and " + grouped(there) + " of " + next.name + " become " +

@@ -29,7 +29,7 @@ std::string needs_place(const Context& context) {
   if (const std::string why = needs_constraint(context); !why.empty()) return why;
   return constraint_rule(active_constraint(context)->kind).target == ConstraintTarget::Place
              ? ""
-             : "This needs a constraint whose target is a position";
+             : "This command needs a constraint whose target is a position";
 }
 
 std::string needs_any_constraint(const Context& context) {

@@ -105,7 +105,7 @@ bool draw_order(Context& context, const Rect& rect, const Constraint& constraint
     }
     if (!draw_small_icon(context.ui, place, earlier ? "Up" : "Down", earlier ? icon::kUp : icon::kDown,
                          look.theme.text2, std::string("Apply ") + (earlier ? "before " : "after ") + other->name,
-                         "Both turn the same bones. The one applied later decides the rotation."))
+                         "Both constraints turn the same bones. The constraint applied later decides the rotation."))
       continue;
     attempt(context, "Move constraint", [&](Context& c) { move_constraint(c, name, where); });
     return true;

@@ -43,7 +43,7 @@ void draw_channel_button(Context& context, const GraphChannel& channel, const Re
            Align::Centre);
   if (pressed.hovered)
     tooltip(context.ui, place, name_of(channel.track) + " " + kAxes[channel.axis],
-            "Click to show or hide this curve. Ctrl-click to show only this one.");
+            "Click to show or hide this curve. Ctrl+click to show only this curve.");
   if (!pressed.clicked) return;
   if (context.ui->input.modifiers().ctrl) {
     graph.hidden.clear();

@@ -264,7 +264,8 @@ void ask_cleaning(Context& context) {
          const Cleaning cleaning = cleaning_of(fields);
          if (cleaning.smooth <= 0 && !cleaning.plants_feet) throw NotYet{"Set Smooth above 0, or set Feet to Planted."};
          if (cleaning.plants_feet && !feet)
-           throw Error("no leg is recognised in the rig's bone names", "feet", "name its bones as in \"LeftThigh\"");
+           throw Error("no leg is recognised in the rig's bone names", "feet",
+                       "name the leg bones as in \"LeftThigh\"");
          const auto [first, last] = playing_range(c.document());
          return "Cleans " + frames_text(first, last) + ". The clip's keys are baked into the motion." +
                 (is_let_go(*shown_clip(c.document()), cleaning)

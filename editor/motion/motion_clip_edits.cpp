@@ -184,7 +184,7 @@ void take_in_clip(Context& context, const std::shared_ptr<const Clip>& source,
   Document next = context.document();
   const auto place = std::find(next.clips.begin(), next.clips.end(), source);
   if (place == next.clips.end() || next.armature != rig)
-    throw Error("the clip or the rig was changed meanwhile", source->name, "do this again: " + label);
+    throw Error("the clip or the rig was changed meanwhile", source->name, "run the command again: " + label);
   const double last = std::max(clip.range_start, clip.range_end);
   next.frame = static_cast<int>(std::clamp(frame.value_or(next.frame), double(clip.range_start), last));
   if (is_new) {

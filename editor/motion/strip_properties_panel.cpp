@@ -149,7 +149,7 @@ void draw_blend(Context& context, Column& column, const Strip& strip) {
   draw_number(context, in,
               {"Fade in",
                "Number of frames in which the strip's influence grows from 0. Where strips of one track overlap, the "
-               "later one always fades in.",
+               "later strip always fades in.",
                double(active_strip(context)->blend_in), 0, kLongestBlend, "%.0f", "", false,
                [](Strip& s, double value) { s.blend_in = whole(value); }});
   if (!active_strip(context)) return;

@@ -45,7 +45,7 @@ class Blending final : public TransformTool {
     return blend_.label + " " + (number_.typed() ? number_.text() : text_of_number("%.0f", 100 * amount_)) + " %";
   }
   std::vector<KeyHint> hints(const Context&) const override {
-    return {{{"0-9"}, "Type percent"},
+    return {{{"0-9"}, "Type a percentage"},
             {{"Ctrl"}, "Snap"},
             {{"Shift"}, "Precise"},
             {{"Enter"}, "Confirm"},

@@ -114,7 +114,7 @@ void draw_left_out(Ui& ui, Column& column, const std::vector<std::string>& left_
            Rect{{rect.low.x + look.px(32), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, words);
   std::string all;
   for (const std::string& key : left_out) all += (all.empty() ? "" : ", ") + key;
-  if (press_area(ui, "left out", rect).hovered) tooltip(ui, rect, "Not used", all);
+  if (press_area(ui, "left out", rect).hovered) tooltip(ui, rect, "Entries not used", all);
 }
 
 void draw_foot(Context& context, Column& column) {

@@ -117,7 +117,7 @@ std::string state_of(const Context& context) {
   if (const Solve* solve = watched_solve(context)) state += " \u00b7 solving, " + progress_text(*solve);
   else if (const PreviewMap* map = context.views->scene.pose.get())
     state += std::string(" \u00b7 ") + rule_of(preview_blend(context.resampling)).label + " preview, " +
-             std::to_string(map->step) + "-voxel lattice";
+             std::to_string(map->step) + "-voxel grid";
   if (context.document().armature)
     state += " \u00b7 " + std::to_string(context.document().armature->bones.size()) + " bones";
   if (!context.views->renderer.note().empty()) state += " \u00b7 " + context.views->renderer.note();

@@ -197,7 +197,7 @@ std::vector<Operator> paint_operators() {
       setting("skin.reach_through", "All depths", "Paint all tissue within the brush's radius.", &Painting::depth,
               BrushDepth::Through),
       {"skin.along_tissue", "Geodesic", "", "Brush",
-       "Measure the brush's distances inside the tissue, so that it never crosses air to the next finger.",
+       "Measure the brush's distances inside the tissue, so that a stroke never crosses air to the next finger.",
        [](Context& c) {
          c.skin->painting->distance =
              c.skin->painting->distance == BrushDistance::Geodesic ? BrushDistance::Euclidean : BrushDistance::Geodesic;
