@@ -359,9 +359,9 @@ AutoFit by_extents(const LabelVolume& volume, const Armature& rig, const std::st
   result.armature = scaled_to_tissue(volume, rig);
   const double error = error_by_extents(volume);
   result.joints.assign(rig.bones.size(), {JointFit::How::Extents, 0.1, error});
-  result.warnings.push_back(reason +
-                            ": the rig was only scaled to the tissue's extents, and its joints may lie up to some " +
-                            std::to_string(std::lround(error)) + " mm off");
+  result.warnings.push_back(
+      reason + ": the rig was only scaled to the tissue's extents, and its joints may be off by up to about " +
+      std::to_string(std::lround(error)) + " mm");
   return result;
 }
 
@@ -378,12 +378,13 @@ void warn_of_joints(AutoFit& result) {
     else if (found && joint.error > kFarOff) list(far_off), farthest = std::max(farthest, joint.error);
     if (result.check.share[b] < kOutside) list(outside);
   }
-  if (!doubtful.empty()) result.warnings.push_back("found with little confidence, check by eye: " + doubtful);
+  if (!doubtful.empty())
+    result.warnings.push_back("joints found with little confidence, check them by eye: " + doubtful);
   if (!far_off.empty())
     result.warnings.push_back(
-        "the body's shape differs here from the known body, so these joints may be off by up to about " +
+        "near these joints the body's shape differs from the known body, so they may be off by up to about " +
         std::to_string(std::lround(farthest)) + " mm: " + far_off);
-  if (!outside.empty()) result.warnings.push_back("bones that leave the tissue: " + outside);
+  if (!outside.empty()) result.warnings.push_back("bones that lie partly outside the tissue: " + outside);
 }
 
 }  // namespace
@@ -462,7 +463,8 @@ AutoFit auto_fit(const LabelVolume& volume, const TissueTable& tissues, const Ar
     // diagonal.
     constexpr double kUnlike = 0.016;
     if (result.misfit_mm > kUnlike * target.length)
-      result.warnings.push_back("the tissue differs much from the body of this rig; check every joint by eye");
+      result.warnings.push_back(
+          "the shape of the tissue differs much from the body of this rig; check every joint by eye");
   }
   result.check = check_rig(volume, result.armature);
   warn_of_joints(result);

@@ -72,10 +72,12 @@ void check(const Armature& rig, int bone, const BakeSettings& settings) {
                         settings.high <= kWidest && settings.high - settings.low >= kLeastRange;
   if (!is_range)
     throw Error(
-        "a joint is not baked over this range", in_degrees(settings.low) + " to " + in_degrees(settings.high),
-        "write two angles from rest, such as -20,100: the first -170 to 0, the second 0 to 170, 5 or more apart");
+        "a joint cannot be baked over this range", in_degrees(settings.low) + " to " + in_degrees(settings.high),
+        "write two angles from rest, such as -20,100: the first from -170 to 0, the second from 0 to 170, at least 5 "
+        "degrees apart");
   if (settings.angles < 1 || settings.angles > 30)
-    throw Error("a joint is not baked at so many angles", std::to_string(settings.angles), "write a number of 1 to 30");
+    throw Error("a joint cannot be baked at this number of angles", std::to_string(settings.angles),
+                "write a number from 1 to 30");
 }
 
 // Returns the angles to solve on one side of rest: the baked angles, and halfway before each of them an angle at which
@@ -125,13 +127,13 @@ SolvedSide solve_side(const RigidTissue& tissue, int bone, const glm::dvec3& axi
     if (shape->reached < 1) {
       bake.all_reached = false;
       bake.warnings.push_back(in_degrees(angles[i].degrees) +
-                              " could not be reached, so no angle from there on is baked" +
+                              " could not be reached, so this angle and all beyond it are not baked" +
                               (shape->solve.blocked_by.empty() ? "" : ": " + shape->solve.blocked_by));
       break;
     }
     if (!shape->solve.converged)
       bake.warnings.push_back("the shape at " + in_degrees(angles[i].degrees) +
-                              " has not settled: " + shape->solve.blocked_by);
+                              " has not converged: " + shape->solve.blocked_by);
     angles[i].motions = bone_motions(tissue.weights.bones(), body.rig, shape->pose);
     angles[i].V = shape->V;
     side.angles.push_back(std::move(angles[i]));

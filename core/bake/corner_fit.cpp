@@ -146,7 +146,8 @@ std::vector<glm::dvec3> CornerFit::fit(const std::vector<glm::vec3>& given) cons
   std::vector<glm::dvec3> z = preconditioned(residual), p = z;
   double rz = dot(residual, z);
   if (!std::isfinite(rz))
-    throw Error("the solve moves tissue to positions that are not finite", "baked joint", "bake a smaller range");
+    throw Error("the solve moves tissue to positions that are not finite numbers", "baked joint",
+                "bake a smaller range");
   const double enough = kTolerance * kTolerance * rz;
   for (int iteration = 0; iteration < kMostIterations && rz > enough; ++iteration) {
     const std::vector<glm::dvec3> Ap = product(p);

@@ -44,12 +44,13 @@ std::string read_file(const Path& path, std::uint64_t limit) {
 void check_place(const Path& path) {
   std::error_code error;
   if (path.string().find('\0') != std::string::npos)
-    throw Error("the name holds a zero byte, at which the system would cut it", path.string().c_str(),
+    throw Error("the name contains a zero byte, where the system would cut the name off", path.string().c_str(),
                 "choose another name");
   const Path folder = path.has_parent_path() ? path.parent_path() : Path(".");
   if (!fs::is_directory(folder, error))
     throw Error("the folder does not exist", folder.string(), "make it first, or write elsewhere");
-  if (fs::is_directory(path, error)) throw Error("a folder has the file's name", path.string(), "choose another name");
+  if (fs::is_directory(path, error))
+    throw Error("a folder has this name already", path.string(), "choose another name");
 }
 
 namespace {

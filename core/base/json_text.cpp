@@ -32,7 +32,7 @@ class Inspector final : public nlohmann::json_sax<Json> {
   bool end_object() override { return close(); }
   bool key(string_t& name) override {
     if (!keys_.back().insert(name).second)
-      problem = "the key \"" + name.substr(0, 80) + "\" is there twice in one object";
+      problem = "the key \"" + name.substr(0, 80) + "\" occurs twice in one object";
     return problem.empty();
   }
   bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }

@@ -59,10 +59,10 @@ void check_apart(const std::vector<NamedFile>& inputs, const std::vector<NamedFi
     if (!identity) continue;
     if (const auto input = read.find(*identity); input != read.end())
       throw UsageError("the output is also an input", told(output) + " and " + told(input->second),
-                       "give the output a name of its own");
+                       "give the output another name");
     if (const auto [other, is_new] = written.emplace(*identity, output); !is_new)
       throw UsageError("two outputs would be the same file", told(other->second) + " and " + told(output),
-                       "give each a name of its own");
+                       "give each output another name");
   }
 }
 

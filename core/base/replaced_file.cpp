@@ -11,7 +11,7 @@ Path target_of(const Path& path) {
   std::error_code error;
   for (int links = 0; fs::is_symlink(target, error); ++links) {
     if (links == kMostLinks)
-      throw Error("the links go round in a circle", path.string(), "remove them, or write elsewhere");
+      throw Error("the links form a cycle", path.string(), "remove the links, or write elsewhere");
     const Path next = fs::read_symlink(target, error);
     if (error) throw Error("the link cannot be read", target.string(), error.message());
     target = next.is_absolute() ? next : target.parent_path() / next;

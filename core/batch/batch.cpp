@@ -21,13 +21,14 @@ void read_weights(const Description& value, DescribedBody& body) {
   if (std::find(words.begin(), words.end(), body.weights) != words.end()) return;
   if (body.spacing)
     value.refuse("weights from a file belong to the volume's own voxels", "weights",
-                 "leave \"weights\" or \"spacing_mm\" out");
-  if (!body.phantom.empty()) value.refuse("a phantom's weights are computed", "weights", "leave the file out");
+                 "leave out \"weights\" or \"spacing_mm\"");
+  if (!body.phantom.empty()) value.refuse("a phantom's weights are always computed", "weights", "leave out the file");
   body.weights_file = value.file("weights");
 }
 
 DescribedBody read_body(const Description& value) {
-  if (!value.is_object()) value.refuse("a body is an object", R"(write {"name": "man", "volume": FILE, "rig": FILE})");
+  if (!value.is_object())
+    value.refuse("a body must be a JSON object", R"(write {"name": "man", "volume": FILE, "rig": FILE})");
   value.check_keys({"name", "volume", "phantom", "rig", "tissues", "bones", "bone_map", "seams", "weights",
                     "spacing_mm", "with", "landmarks"});
   DescribedBody body = read_described_body(value, "an entry of \"bodies\"");
@@ -58,12 +59,12 @@ BatchExport read_export(const Description& value) {
   const Path name = "posed" + one.ending;
   const Exporter* exporter = is_ending(one.ending) ? exporter_for(name) : nullptr;
   if (!exporter && !(is_ending(one.ending) && how_written(name)))
-    value.refuse("this is not an extension that Limber writes: \"" + one.ending + "\"",
+    value.refuse("Limber writes no files with this extension: \"" + one.ending + "\"",
                  "write \".nii.gz\", \".stl\" or another that `limber convert` knows");
   if (exporter && !exporter->takes_voxels)
     value.refuse("this format needs a mesh: \"" + one.ending + "\"", "write \"mesh\": \"" + one.ending + "\"");
   if (exporter && exporter->needs_frequency && one.frequency == 0)
-    value.refuse("this needs the frequency of the field: \"" + one.ending + "\"",
+    value.refuse("this format needs the frequency of the field: \"" + one.ending + "\"",
                  R"(write {"ending": ")" + one.ending + R"(", "frequency_hz": 9e8})");
   return one;
 }
@@ -76,7 +77,7 @@ CellSettings read_settings(const Description& description) {
   settings.fit_joints = description.flag("fit_joints");
   const std::string format = description.text("format", ".nrrd");
   if (!is_ending(format) || !how_written("posed" + format))
-    description.refuse("no volume is written under this ending: \"" + format + "\"", "format",
+    description.refuse("volumes cannot be written with this extension: \"" + format + "\"", "format",
                        "use " + writable_endings());
   settings.outputs = {{"output", "posed" + format}, {"report", "report.json"}};
   for (const std::string& volume : description.texts("volumes")) {
@@ -90,7 +91,8 @@ CellSettings read_settings(const Description& description) {
   const std::string mesh = description.text("mesh");
   const Exporter* exporter = is_ending(mesh) ? exporter_for("mesh" + mesh) : nullptr;
   if (!mesh.empty() && !(exporter && exporter->takes_mesh))
-    description.refuse("no mesh is written under this ending: \"" + mesh + "\"", "mesh", R"(write ".vtu" or ".node")");
+    description.refuse("meshes cannot be written with this extension: \"" + mesh + "\"", "mesh",
+                       R"(write ".vtu" or ".node")");
   if (!mesh.empty()) settings.mesh = "mesh" + mesh;
   return settings;
 }
@@ -112,7 +114,8 @@ Batch read_batch(const Path& path) {
   batch.poses = read_described_poses(description, "batch");
   batch.techniques = read_techniques(description, {"dqs"});
   if (batch.bodies.size() * batch.poses.size() * batch.techniques.size() > kMostCells)
-    description.refuse("the batch has too many cells", "split it into several batches");
+    description.refuse("the batch has too many cells (combinations of body, pose and method)",
+                       "split it into several batches");
   for (const Description& one : description.list("exports")) {
     batch.exports.push_back(read_export(one));
     endings.push_back(batch.exports.back().ending);

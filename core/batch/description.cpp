@@ -106,7 +106,7 @@ Path Description::file(const std::string& key) const {
   const Path file = file_->path.parent_path() / name;
   std::error_code unreadable;  // set for a name that no file can have, such as one that is too long
   if (!std::filesystem::exists(file, unreadable))
-    refuse("the file does not exist", key + ": " + file.string(), "paths are relative to the description");
+    refuse("the file does not exist", key + ": " + file.string(), "give a path relative to the description's folder");
   return file;
 }
 
@@ -175,7 +175,8 @@ void add_frames(const Description& value, const DescribedPose& pose, const std::
 }
 
 void add_pose(const Description& value, std::vector<DescribedPose>& poses) {
-  if (!value.is_object()) value.refuse("a pose is an object", R"(write {"name": "+45", "flex": ["Forearm=45"]})");
+  if (!value.is_object())
+    value.refuse("a pose must be a JSON object", R"(write {"name": "+45", "flex": ["Forearm=45"]})");
   value.check_keys({"name", "flex", "pose_name", "joints", "pose", "motion", "map", "frame", "frames", "up"});
   if (!value.has("name")) value.refuse("a pose needs a name", R"(write {"name": "+45", "flex": ["Forearm=45"]})");
   DescribedPose pose{.name = value.text("name")};
@@ -189,12 +190,14 @@ void add_pose(const Description& value, std::vector<DescribedPose>& poses) {
   pose.map = value.file("map");
   pose.up = value.text("up", "", {"y", "z", "auto"});
   if (const auto frame = value.number("frame", 0, 1e9)) {
-    if (*frame != std::floor(*frame)) value.refuse("a frame is a whole number", "frame", "frames count from 0");
+    if (*frame != std::floor(*frame))
+      value.refuse("a frame is a whole number", "frame", "write the frame's number, counted from 0");
     pose.frame = static_cast<int>(*frame);
   }
   const std::string frames = value.text("frames");
   if (!pose.body.name.empty() && !(pose.pose.empty() && pose.motion.empty()))
-    value.refuse("a pose is given either by its name or by a file", "leave \"pose_name\" or the file out");
+    value.refuse("a pose is given either by its name or by a pose or motion file",
+                 "leave \"pose_name\" or the file out");
   if (!pose.pose.empty() && !pose.motion.empty())
     value.refuse("a pose is given either by a file or by a motion", "leave \"pose\" or \"motion\" out");
   if (pose.motion.empty() && (pose.frame || !frames.empty() || !pose.map.empty() || !pose.up.empty()))
@@ -243,14 +246,14 @@ bool read_nearest(const Description& description, const std::vector<Technique>& 
   if (nearest && std::any_of(techniques.begin(), techniques.end(),
                              [](const Technique& technique) { return technique.mass_exact; }))
     description.refuse("mass-exact techniques need interpolated labels, which \"nearest\" does not compute", "nearest",
-                       "leave one of the two out");
+                       "leave out \"nearest\" or the mass-exact techniques");
   return nearest;
 }
 
 void check_distinct(const Description& description, const std::string& key, std::vector<std::string> values) {
   std::sort(values.begin(), values.end());
   if (std::adjacent_find(values.begin(), values.end()) != values.end())
-    description.refuse("a value occurs twice", key, "name each once");
+    description.refuse("a value occurs twice", key, "name each value once");
 }
 
 }  // namespace limber

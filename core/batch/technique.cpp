@@ -42,9 +42,9 @@ std::vector<Technique> techniques_of(const std::vector<std::string>& words, cons
         std::find_if(known.begin(), known.end(), [&](const Technique& one) { return word_of(one) == word; });
     if (found == known.end())
       throw Error("there is no such method: " + word, where,
-                  "use " + technique_words() + ", or one of them with " + kExactWord + " behind it");
+                  "use " + technique_words() + ", or one of these with " + kExactWord + " at its end");
     if (std::count(techniques.begin(), techniques.end(), *found))
-      throw Error("a value occurs twice", where, "name each once");
+      throw Error("a value occurs twice", where, "name each value once");
     techniques.push_back(*found);
   }
   return techniques;

@@ -89,15 +89,15 @@ void cover_islands(const LabelVolume& volume, const TissueVoxels& tissue, const 
   for (size_t k = 0; k < std::min(islands.size(), kMostLines); ++k) {
     const Island& island = islands[k];
     char text[256];
-    std::snprintf(text, sizeof text, "no bone reaches %lld %s of %.80s near (%.0f, %.0f, %.0f): given to %.80s",
+    std::snprintf(text, sizeof text, "no bone reaches %lld %s of %.80s near (%.0f, %.0f, %.0f) mm: assigned to %.80s",
                   static_cast<long long>(island.voxels), island.voxels == 1 ? "voxel" : "voxels", island.tissue.c_str(),
                   island.centre.x, island.centre.y, island.centre.z, armature.bones[island.bone].name.c_str());
     report.warnings.push_back(text);
   }
   if (const size_t others = islands.size() - std::min(islands.size(), kMostLines); others > 0)
-    report.warnings.push_back(
-        "no bone reaches " + std::to_string(others) + " smaller " +
-        (others == 1 ? "piece either; it follows its nearest bone" : "pieces either; each follows its nearest bone"));
+    report.warnings.push_back("no bone reaches " + std::to_string(others) + " smaller " +
+                              (others == 1 ? "piece either; it is assigned to its nearest bone"
+                                           : "pieces either; each is assigned to its nearest bone"));
 }
 
 }  // namespace limber

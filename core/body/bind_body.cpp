@@ -36,7 +36,8 @@ std::vector<std::string> binding_words() { return {"heat", "geodesic", "rigid"};
 Binding require_binding(const std::string& word, const std::string& where) {
   const std::vector<std::string> words = binding_words();
   const auto found = std::find(words.begin(), words.end(), word);
-  if (found == words.end()) throw Error("weights are not computed that way", where, "write heat, geodesic or rigid");
+  if (found == words.end())
+    throw Error("there is no such method to compute weights", where, "write heat, geodesic or rigid");
   return static_cast<Binding>(found - words.begin());
 }
 

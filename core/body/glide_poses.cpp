@@ -57,10 +57,13 @@ std::string overlap_warning(const std::optional<std::vector<GlidedJoint>>& joint
     stuck += (stuck.empty() ? "" : ", ") + joint.bone + " still overlaps " + joint.against + how;
   }
   if (stuck.empty() && claimed_twice == 0) return "";
-  const std::string claimed = std::to_string(claimed_twice) + " voxels are covered by two bones: ";
+  const std::string claimed =
+      claimed_twice == 0 ? ""
+                         : std::to_string(claimed_twice) + (claimed_twice == 1 ? " voxel is covered by two bones: "
+                                                                               : " voxels are covered by two bones: ");
   if (joints && stuck.empty())
     return claimed + "no bones of a joint overlap by more than half a voxel; other bones may overlap";
-  return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints do not glide") +
+  return claimed + (joints ? stuck + ": --glide MM allows longer shifts" : "joints are not shifted") +
          "; the command limber fit-joint moves the axis of a joint";
 }
 

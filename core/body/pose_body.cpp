@@ -151,8 +151,8 @@ void pose_body(const Body& body, BoundBody& bound, std::vector<Pose> poses, cons
   const Method method = method_of(settings, events);
   check_baked(settings.resample.baked, body, bound);
   if (settings.fit_joints && !settings.resample.baked.empty())
-    throw Error("a joint is baked around the axis that it had, which fitting moves", "fit joints",
-                "leave one of the two out, or bake with the fitted rig");
+    throw Error("fitting joints moves the axis around which a joint was baked", "fit joints",
+                "leave out the fitting or the baked joint, or bake the joint with the fitted rig");
   const glm::dvec3 voxel = volume.grid.spacing;
   const auto glide = glide_settings(settings.glide, std::max({voxel.x, voxel.y, voxel.z}), "glide " + settings.glide);
   Report base = report;

@@ -242,8 +242,9 @@ void apply(const BoneMap& map, const TissueTable& tissues, const Armature& armat
     for (int side = 0; side < 2; ++side)
       if (bones.candidates[side].empty()) {
         const Tissue* tissue = tissues.find(label);
-        throw Error("the bone map has only one side of \"" + (tissue ? tissue->name.substr(0, 80) : std::string()) +
-                        "\", and its name does not give the other side",
+        throw Error("the bone map has only one side of the label \"" +
+                        (tissue ? tissue->name.substr(0, 80) : std::string()) +
+                        "\", and the label's name does not give the other side",
                     "bone map", side == 0 ? "add the label with @left" : "add the label with @right");
       }
 }
@@ -268,9 +269,10 @@ BoneMap parse_bone_map(const std::string& bytes, const std::string& where) {
   };
   const Json json = Json::parse(bytes, note_keys, false);
   if (!json.is_object()) throw wrong("this is not a bone map");
-  if (!twice.empty()) throw wrong("the bone map says \"" + twice.substr(0, 80) + "\" twice");
+  if (!twice.empty()) throw wrong("the bone map has the label \"" + twice.substr(0, 80) + "\" twice");
   for (const auto& [key, value] : json.items()) {
-    if (!value.is_string()) throw wrong("the bone map gives \"" + key.substr(0, 80) + "\" no rig bone's name");
+    if (!value.is_string())
+      throw wrong("the bone map gives the label \"" + key.substr(0, 80) + "\" no name of a rig bone");
     map[key] = value.get<std::string>();
   }
   return map;

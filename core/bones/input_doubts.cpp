@@ -289,7 +289,7 @@ std::optional<std::string> doubt_about_labels(const LabelVolume& volume, const T
         std::snprintf(share, sizeof share, "%.0f %%", 100 * double(count) / double(voxels.count.at(label)));
         return std::string(share) + " of the label \"" + tissues.find(label)->name.substr(0, 60) +
                "\" lie along the middle of " + armature.bones[bone].name +
-               ", another bone: correct the labels, or say with --bone-map which bone it follows";
+               ", another bone: correct the labels, or say with --bone-map which bone the label follows";
       }
   return std::nullopt;
 }
@@ -322,7 +322,7 @@ std::optional<std::string> doubt_about_limb(const TissueTable& tissues, const Ar
   if (of_labels.size() != 1 || of_rig.size() != 1 || of_labels == of_rig || of_labels.contains(0) || of_rig.contains(0))
     return std::nullopt;
   return std::string("this is a rig of the ") + name_of_limb(*of_rig.begin()) + ", and the labels are bones of the " +
-         name_of_limb(*of_labels.begin()) + "; give the rig of this limb";
+         name_of_limb(*of_labels.begin()) + "; give a rig of the same limb as the labels";
 }
 }  // namespace
 

@@ -26,7 +26,7 @@ std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable&
   for (const BoneParts::Identity& identity : parts.identities) {
     const Tissue* tissue = tissues.find(identity.label);
     if (!identity.is_substitute || !tissue) continue;
-    lines.push_back("the rig has no bone for \"" + tissue->name.substr(0, 80) + "\": it follows " +
+    lines.push_back("the rig has no bone for \"" + tissue->name.substr(0, 80) + "\": the label follows " +
                     armature.bones[identity.bone].name + "; set another bone with --bone-map");
   }
   if (const std::vector<BroadCut>& cuts = parts.broad_cuts; !cuts.empty()) {
@@ -35,11 +35,11 @@ std::vector<std::string> unsure_bones(const BoneParts& parts, const TissueTable&
     const std::string others = cuts.size() == 1 ? ""
                                                 : " and at " + std::to_string(cuts.size() - 1) + " other joint" +
                                                       (cuts.size() == 2 ? "" : "s");
-    lines.push_back("bones of one label touch over a large area between " + armature.bones[broadest.bone].name +
+    lines.push_back("bones that share one label touch over a large area between " + armature.bones[broadest.bone].name +
                     " and " + armature.bones[broadest.other].name + others +
                     ": the cut between them may be off by one or two voxels" +
                     (has_knee(cuts, armature) ? ", and the tip of a kneecap may follow the shank" : "") +
-                    "; use separate labels if this matters");
+                    "; give each bone its own label if this matters");
   }
   return lines;
 }

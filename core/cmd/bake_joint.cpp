@@ -43,18 +43,18 @@ BakeSettings settings_of(const BakeJointOptions& options) {
 
 void print_errors(const char* name, const std::vector<BakeError>& errors) {
   for (const BakeError& error : errors)
-    print("%-8s %+9.1f %9.2f %9.2f %9.2f\n", name, error.degrees, error.flesh_mm, error.skin_mm, error.largest_mm);
+    print("%-8s %+9.1f %15.2f %14.2f %12.2f\n", name, error.degrees, error.flesh_mm, error.skin_mm, error.largest_mm);
 }
 
 // Prints how far shapes of the baked joint differ from those of finite elements, at the baked angles and between them.
 void print_bake(const BakedJoint& joint) {
-  print("%-8s %9s %9s %9s %9s\n", "", "degrees", "flesh mm", "skin mm", "most mm");
+  print("%-8s %9s %15s %14s %12s\n", "", "degrees", "95 % flesh, mm", "95 % skin, mm", "largest, mm");
   print_errors("baked", joint.at_baked);
   print_errors("between", joint.between);
   const BakeError worst = worst_between(joint);
   print(
-      "%s is baked from %+.4g to %+.4g degrees, %lld nodes at %lld angles. Between them, at %+.4g degrees, 95 %% of "
-      "flesh is within %.2f mm and of skin within %.2f mm of the finite element solution.\n",
+      "%s is baked from %+.4g to %+.4g degrees, %lld nodes at %lld angles. Between these angles, at %+.4g degrees, "
+      "95 %% of flesh is within %.2f mm and 95 %% of skin within %.2f mm of the finite element solution.\n",
       one_line(joint.bone).c_str(), joint.degrees.front(), joint.degrees.back(),
       static_cast<long long>(joint.nodes.size()), static_cast<long long>(joint.degrees.size() - 1), worst.degrees,
       worst.flesh_mm, worst.skin_mm);
@@ -85,8 +85,8 @@ void bake(const BakeJointOptions& options) {
 
 void add_bake_joint(CLI::App& app) {
   auto* command = app.add_subcommand("bake-joint",
-                                     "solves a joint by finite elements once and stores the shapes, which resample "
-                                     "--baked then uses as fast as blending");
+                                     "solves a joint by finite elements once and stores the shapes, which 'limber "
+                                     "resample --baked' then applies as fast as blending");
   auto options = std::make_shared<BakeJointOptions>();
   add_body_options(*command, options->body);
   command->add_option("--bone", options->bone, "the bone below the joint")->required();
@@ -115,7 +115,7 @@ void add_bake_joint(CLI::App& app) {
   command
       ->add_option("--glide", options->glide,
                    "largest shift of the joint where its bones would overlap: joint (5 percent of the shorter bone), "
-                   "voxel (no bone further than a voxel), a length in mm, or off (default: joint)")
+                   "voxel (no bone moves further than one voxel), a length in mm, or off (default: joint)")
       ->type_name("off|voxel|joint|MM");
   writes(command->add_option("-o,--output", options->output, "baked joint to write, JOINT.bake"))->required();
   add_run_options(*command, options->run);

@@ -94,7 +94,9 @@ void add_batch(CLI::App& app) {
                                      "computes all combinations (cells) of bodies, poses or frames, methods and "
                                      "exports; finished cells are kept, and several machines may share a folder");
   auto options = std::make_shared<BatchOptions>();
-  command->add_option("BATCH", options->batch, "description (JSON): bodies, poses, methods, exports")->required();
+  command
+      ->add_option("BATCH", options->batch, "description of the batch (JSON): its bodies, poses, methods and exports")
+      ->required();
   writes(command->add_option(
              "-o,--output", options->out,
              "folder for the cells, and for cells.csv and times.csv when all are computed; created if missing"),

@@ -89,14 +89,14 @@ Plant hold_of(const std::string& value, const std::vector<PlantedLimb>& limbs, c
   for (const double one : place)
     if (std::abs(one) > kFarthest)
       throw Error("the position is more than 1 km from the origin", where,
-                  "write it in millimetres of the rig's world");
+                  "write it in millimetres, in the world coordinates of the rig");
   return hold;
 }
 
 void print_plants(const std::vector<Plant>& plants, const Armature& rig, const std::vector<PlantedLimb>& limbs,
                   const std::vector<Pose>& before, const std::vector<Pose>& after) {
   if (plants.empty()) return;
-  print("%-12s %-6s %12s %14s %14s %14s\n", "limb", "point", "frames", "slid before", "slides now", "off target");
+  print("%-12s %-6s %12s %14s %14s %14s\n", "limb", "point", "frames", "slide before", "slide after", "off target");
   for (const Plant& plant : plants) {
     const PlantError was = error_of(plant, rig, limbs, before), is = error_of(plant, rig, limbs, after);
     const std::string frames = std::to_string(plant.first) + "-" + std::to_string(plant.last);
@@ -112,7 +112,7 @@ void warn_of_short_limbs(const std::vector<Plant>& plants, const Armature& rig, 
   for (const Plant& plant : plants)
     if (const PlantError error = error_of(plant, rig, limbs, poses); error.from_place > kOff)
       warn(limbs[plant.limb].name + ", frames " + std::to_string(plant.first) + " to " + std::to_string(plant.last) +
-           ": the limb does not reach its position; distance " + std::to_string(std::lround(error.from_place)) + " mm");
+           ": the limb stays " + std::to_string(std::lround(error.from_place)) + " mm away from its position");
 }
 
 // Mirrors the poses, changes their speed and repeats them, as the options say.

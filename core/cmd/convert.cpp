@@ -45,7 +45,7 @@ void convert_volume(const ConvertOptions& options) {
   const Exporter* exporter = exporter_for(options.out);
   if (exporter && !exporter->takes_voxels)
     throw Error("this format stores a tet mesh, which a volume does not have", options.out,
-                "make one with `limber mesh` or `limber resample --mesh-out`");
+                "make a mesh with `limber mesh` or `limber resample --mesh-out`");
   if (exporter && exporter->needs_frequency && !options.material.frequency)
     materials_of({}, options.material, options.out);  // throws an Error that says which option is missing
   if (exporter) check_place(options.out);
@@ -55,7 +55,7 @@ void convert_volume(const ConvertOptions& options) {
   CommandProgress progress(options.run.progress);
   const VolumeSummary summary = summarize_volume(options.in);
   if (!summary.is_label) {
-    if (exporter) throw Error("this is not a label volume", options.in, "give one whose voxels are labels");
+    if (exporter) throw Error("this is not a label volume", options.in, "give a volume whose voxels are labels");
     const GreyVolume grey = read_grey_volume(options.in, progress);
     warn(grey.warnings);
     write_grey_volume(grey, options.out);

@@ -85,7 +85,8 @@ void run_experiment(const ExperimentOptions& options, const std::string& commit,
   if (run.shards == 1) {
     write(options, study, outcomes, commit, pictures, progress);
   } else {
-    tell("the cells of shard " + options.shard + " are done: run the same command without --shard to collect");
+    tell("the cells of shard " + options.shard +
+         " are done: run the same command without --shard to collect the results");
   }
   if (failed)
     throw Error(std::to_string(failed) + " of " + std::to_string(outcomes.size()) + " cells failed", options.out,
@@ -110,18 +111,19 @@ void add_experiment(CLI::App& app, const std::string& commit, const StartPicture
           "STUDY", options->study,
           "description (JSON), or the word arm: a built-in study of the elbow at 2, 3 and 4 mm, by every technique")
       ->required();
-  command->add_option("DIR", options->folder,
-                      "for arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
-  writes(command->add_option(
-             "-o,--output", options->out,
-             "folder for cells.csv, cells.json, report.html and all that was computed; created if missing"),
-         files_of_folder)
+  command->add_option(
+      "DIR", options->folder,
+      "only for the study arm: a folder with man-arm-2mm.mha and its armature (default: the procedural arm)");
+  writes(
+      command->add_option("-o,--output", options->out,
+                          "folder for cells.csv, cells.json, report.html and all computed files; created if missing"),
+      files_of_folder)
       ->required();
   command
       ->add_option("--methods", options->methods,
                    technique_words() +
-                       "; each also with the suffix -mass-exact (default: those of the description, or lbs, dqs, fem "
-                       "and fem-contact)")
+                       "; each also with the suffix -mass-exact (default: the methods of the description, or lbs, "
+                       "dqs, fem and fem-contact)")
       ->delimiter(',')
       ->type_name("M,M");
   command

@@ -73,7 +73,7 @@ void add_export_gltf(CLI::App& app) {
       ->needs(motion);
   command
       ->add_option("--step", options->settings.step,
-                   "distance of the surface's vertices, mm (default: 1/400 of the volume's longest side)")
+                   "distance between the surface's vertices, mm (default: 1/400 of the volume's longest side)")
       ->type_name("MM")
       ->check(CLI::PositiveNumber);
   writes(command->add_option("-o,--output", options->output, "glTF file to write, OUT.glb"))->required();

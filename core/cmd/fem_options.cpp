@@ -130,34 +130,38 @@ FemObject object_of(const std::string& request) {
 }  // namespace
 
 void add_fem_options(CLI::App& command, const std::shared_ptr<FemOptions>& options) {
-  command.add_flag("--contact", options->contact, "fem: let skin press against skin instead of passing through it");
+  command.add_flag("--contact", options->contact,
+                   "with --method fem: let skin press against skin instead of passing through it");
   command.add_flag("--slide", options->slide,
-                   "fem: near bent joints skin and fat slide over the bone instead of sticking to it");
+                   "with --method fem: near bent joints skin and fat slide over the bone instead of sticking to it");
   command
       .add_option("--quality", options->quality,
-                  "fem: resolution of the mesh: 8 tets across the thinnest bent limb (draft), 12 (normal), or 24 "
-                  "around joints (fine); tets of 12, 8 and 4 mm in an adult's elbow")
+                  "with --method fem: resolution of the mesh: 8 tets across the thinnest bent limb (draft), 12 "
+                  "(normal), or 24 around joints (fine); tets of 12, 8 and 4 mm in an adult's elbow")
       ->check(CLI::IsMember({"draft", "normal", "fine"}));
   command.add_flag("--error-estimate", options->error_estimate,
-                   "fem: solve again with tets of 1.5 times the edge, and estimate the error of positions due to the "
-                   "size of the tets; takes about 40 % longer");
+                   "with --method fem: solve again with tets of 1.5 times the edge length, and estimate the error of "
+                   "positions that is due to the size of the tets; takes about 40 % longer");
   command
       .add_option("--mesher", options->mesher,
-                  "fem: method that fills the body's surface with tets: lattice (default) or tetgen")
+                  "with --method fem: method that fills the body's surface with tets: lattice (default) or tetgen")
       ->check(CLI::IsMember({"lattice", "tetgen"}));
   command
       .add_option(
           "--obstacle", options->obstacles,
-          "fem, repeatable: a rigid object that is pressed against the posed body. SHAPE is a surface (STL, OBJ, PLY, "
-          "glTF), or in mm box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH or plane:X,Y, round the origin. "
-          "@X,Y,Z moves it to this position, @ and 12 numbers transform it by a 3 x 4 matrix, given row by row; "
-          "@from=X,Y,Z is the direction from which it comes (default: the shortest way), @from=around tightens a cuff; "
-          "@force=NEWTON or @force=weight moves it until it presses with this force")
+          "with --method fem, repeatable: a rigid object that is pressed against the posed body. SHAPE is a surface "
+          "file (STL, OBJ, PLY, glTF), or in mm box:X,Y,Z, cylinder:RADIUS,LENGTH, tube:RADIUS,LENGTH or plane:X,Y, "
+          "centred at the origin. @X,Y,Z moves the object to this position, @ and 12 numbers transform it by a 3 x 4 "
+          "matrix, given row by row; @from=X,Y,Z is the direction from which it comes (default: the shortest way), "
+          "@from=around tightens a cuff; @force=NEWTON or @force=weight moves the object until it presses with this "
+          "force, or with the body's weight")
       ->type_name("SHAPE[@PLACE][@from=..][@force=..]");
-  command.add_option("--gravity", options->gravity, "fem: direction of gravity; soft tissue sags under its weight")
+  command
+      .add_option("--gravity", options->gravity,
+                  "with --method fem: direction of gravity; soft tissue sags under its weight")
       ->type_name("X,Y,Z");
   writes(command.add_option("--pressure", options->pressure,
-                            "fem: table to write: the pressure of obstacles on each node of the skin"))
+                            "with --method fem: table to write: the pressure of obstacles on each node of the skin"))
       ->type_name("OUT.csv");
 }
 

@@ -69,7 +69,8 @@ void print_fit(const AutoFit& fitted) {
     print("%-24s %-14s %9.0f%% %7.0f mm %9.0f%%\n", one_line(fitted.armature.bones[b].name).c_str(),
           std::string(to_string(fitted.joints[b].how)).c_str(), 100 * fitted.joints[b].confidence,
           fitted.joints[b].error, 100 * fitted.check.share[b]);
-  if (fitted.misfit_mm > 0) print("skin %.1f mm from the fitted body's skin, ", fitted.misfit_mm);
+  if (fitted.misfit_mm > 0)
+    print("the skin lies %.1f mm (root mean square) from the fitted body's skin, ", fitted.misfit_mm);
   print("%.1f %% of the length of all bones lies in tissue\n", 100 * fitted.check.whole);
 }
 

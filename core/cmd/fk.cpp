@@ -172,7 +172,8 @@ void add_fk(CLI::App& app) {
   command
       ->add_option(
           "FILE", options->file,
-          "a rig (prints posed positions in LPS mm, rotations from rest) or a BVH (prints its own axes and units)")
+          "a rig (prints posed positions in LPS mm and rotations from rest) or a BVH file (prints in its own axes and "
+          "units)")
       ->required();
   auto* json =
       command->add_flag("--json", options->json, "print {\"joints\": [{name, parent, position, rotation_wxyz}]}");

@@ -5,9 +5,11 @@ namespace limber::cmd {
 
 void add_glide_option(CLI::App& command, std::string& glide) {
   command
-      .add_option("--glide", glide,
-                  "largest shift of joints whose bones would overlap: joint (5 percent of the shorter bone), voxel (no "
-                  "bone further than a voxel), a length in mm, or off (default: joint; with --pose or --motion: voxel)")
+      .add_option(
+          "--glide", glide,
+          "largest shift of joints whose bones would overlap: joint (5 percent of the shorter bone), voxel (no "
+          "bone moves further than one voxel), a length in mm, or off (default: joint; with --pose or --motion: "
+          "voxel)")
       ->type_name("off|voxel|joint|MM");
 }
 

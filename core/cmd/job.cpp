@@ -43,7 +43,7 @@ std::string text_of(const Json& value, const std::string& key, const Path& job) 
   if (value.is_string()) {
     const std::string text = value.get<std::string>();
     if (text.find('\0') != std::string::npos)
-      throw Error("a setting contains a zero byte", job.string() + ", " + key, "take it out");
+      throw Error("a setting contains a zero byte", job.string() + ", " + key, "remove the byte");
     return text;
   }
   if (value.is_number()) return value.dump();

@@ -32,11 +32,11 @@ void print_tissues(const TetMesh& mesh, const LabelVolume& volume, const TissueT
     ++tets[mesh.region[t]];
     mm3[mesh.region[t]] += signed_volume(mesh.V, mesh.T.row(t));
   }
-  print("%-28s %10s %14s %10s %10s\n", "tissue", "tets", "mm3", "of voxels", "mass, g");
+  print("%-28s %10s %14s %18s %10s\n", "tissue", "tets", "mm3", "of voxels' volume", "mass, g");
   for (const Tissue& tissue : tissues.tissues) {
     if (tets[tissue.label] == 0) continue;
     const double by_voxels = double(voxels[tissue.label]) * volume.grid.voxel_volume();
-    print("%-28s %10lld %14.6g %9.3f%% %10.4g\n", one_line(tissue.name).c_str(),
+    print("%-28s %10lld %14.6g %17.3f%% %10.4g\n", one_line(tissue.name).c_str(),
           static_cast<long long>(tets[tissue.label]), mm3[tissue.label], 100 * mm3[tissue.label] / by_voxels,
           mm3[tissue.label] * tissue.density / 1000);
   }

@@ -54,7 +54,7 @@ BodyMesh mesh_of(const LabelVolume& volume, const TissueVoxels& tissue, const Ti
   const BodyMeshSettings settings{.relaxations = options.relaxations, .volumes = volumes};
   BodyMesh body;
   if (options.spacing) {
-    if (tissue.seams()) warn("seams are not cut in a mesh at another spacing than that of the voxels");
+    if (tissue.seams()) warn("the mesh is not cut at seams, because its spacing differs from that of the voxels");
     const LabelVolume sampled = balanced_regrid(volume, *options.spacing, progress);
     body = mesh_body(sampled, TissueVoxels(sampled), settings, progress);
   } else {
@@ -104,7 +104,8 @@ std::string share_of_body(const TissueModel& model, const LabelVolume& body) {
 
 std::string inside_out_warning(std::int64_t tets, const std::string& name) {
   return std::to_string(tets) + " tets of " + in_quotes(name) +
-         " are inside out, at joints that are bent far; bend them less, or use --method fem, which leaves fewer";
+         " are inside out, at joints that are bent far; bend the joints less, or use --method fem, which inverts fewer "
+         "tets";
 }
 
 Path mesh_path(const Path& name) {

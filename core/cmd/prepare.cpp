@@ -211,16 +211,17 @@ void add_prepare(CLI::App& app) {
                          "prepares a label volume; the options are applied in this order: --from-ct, --orient, --flip, "
                          "--merge, --spacing, --drop-specks, --crop, --pad, --close-skin, --seams, --statistics");
   auto options = std::make_shared<PrepareOptions>();
-  command->add_option("IN", options->in, "label volume; with --from-ct a CT")->required();
+  command->add_option("IN", options->in, "label volume; with --from-ct: a CT")->required();
   writes(command->add_option("-o,--output", options->out, "label volume to write; its extension selects the format"))
       ->required();
   auto* from_ct = command->add_flag("--from-ct", options->from_ct,
                                     "IN is a CT: makes labels for skin, fat, soft tissue, lung, gas and bone by "
                                     "thresholds; leaves out the table and other thin things around the body");
   command
-      ->add_option("--thresholds", options->thresholds,
-                   "from-ct: smallest values, in Hounsfield units, of the body, fat, soft tissue and bone (default: "
-                   "-300,-190,-30,200)")
+      ->add_option(
+          "--thresholds", options->thresholds,
+          "with --from-ct: smallest values, in Hounsfield units, of the body, fat, soft tissue and bone (default: "
+          "-300,-190,-30,200)")
       ->delimiter(',')
       ->expected(4)
       ->type_name("BODY,FAT,SOFT,BONE")
@@ -259,7 +260,7 @@ void add_prepare(CLI::App& app) {
       "--seams", options->seams,
       "finds where limbs touch without being connected (hand on hip, thigh on thigh) and writes "
       "the faces between them as a label volume: a voxel has the sum of 1, 2 and 4 for faces towards x, y and z"));
-  auto* rig = command->add_option("--rig", options->rig, "seams: the rig whose bones define the limbs");
+  auto* rig = command->add_option("--rig", options->rig, "with --seams: the rig whose bones define the limbs");
   seams->needs(rig);
   rig->needs(seams);
   writes(command->add_option("--statistics", options->statistics,

@@ -298,10 +298,10 @@ void add_project(CLI::App& app) {
       ->check(CLI::IsMember({"inspect", "info", "create", "verify", "recover", "export"}));
   command->add_option(
       "PART", options->part,
-      "only for create: a label volume; of recover: an earlier copy of the project, or its original volume, "
-      "from which lost parts are taken; of export: volume, tissues, rig, weights, pose, motion, gltf, "
-      "seams, bone-map, or a result's name");
-  command->add_flag("--json", options->json, "inspect: print as JSON");
+      "for create: a label volume; for recover: an earlier copy of the project, or its original volume, from which "
+      "lost parts are taken; for export: the part to write: volume, tissues, rig, weights, pose, motion, gltf, seams, "
+      "bone-map, or a result's name");
+  command->add_flag("--json", options->json, "only for inspect: print as JSON");
   command->add_option("--tissues", options->tissues, "only for create: tissue table (JSON, .ctbl, ITK-SNAP)");
   command->add_option("--rig", options->rig, "only for create: rig file");
   command->add_option("--weights", options->weights,
@@ -316,13 +316,14 @@ void add_project(CLI::App& app) {
       "only for create: file of seams, where tissue touches without being connected, from 'limber prepare --seams'");
   command->add_option("--bone-map", options->bone_map,
                       "only for create: JSON file that says which rig bone each bone label follows");
-  writes(command->add_option("-o,--output", options->output, "of recover and export: the file to write"));
+  writes(command->add_option("-o,--output", options->output, "only for recover and export: the file to write"));
   command
       ->add_option(
           "--frame", options->frame,
-          "of export pose: frame of the shown clip to export, with keys and constraints (default: the project's pose)")
+          "only for export pose: frame of the shown clip to export, with keys and constraints (default: the project's "
+          "pose)")
       ->check(CLI::Range(-kFarthestFrame, kFarthestFrame));
-  command->add_flag("--replace", options->replace, "of create and recover: overwrite an existing file");
+  command->add_flag("--replace", options->replace, "only for create and recover: overwrite an existing file");
   command
       ->add_option("--progress", options->progress,
                    "with the value json: print progress to stderr, one line of JSON per step (default: a progress bar)")

@@ -137,11 +137,11 @@ void check_sequence(const Resampling& options) {
     throw Error("--frames needs a motion", "--frames " + options.frames, "add --motion F.bvh");
   if (options.pose.frame)
     throw Error("--frame and --frames exclude each other", "--frame " + std::to_string(*options.pose.frame),
-                "leave --frame or --frames out");
+                "leave out --frame or --frames");
   if (options.fit_joints)
     throw Error("joints are fitted to one pose, not to a sequence", "--fit-joints",
                 "fit each joint first: limber fit-joint VOLUME --rig RIG --bone B -o RIG2");
-  if (!options.steps.empty()) throw Error("--steps excludes --frames", "--steps " + options.steps, "leave it out");
+  if (!options.steps.empty()) throw Error("--steps excludes --frames", "--steps " + options.steps, "leave out --steps");
   for (const std::string& output :
        {options.output, options.report, options.grey, options.field, options.jacobian, options.overlap,
         options.mesh_out, options.solver_mesh, options.landmarks, options.fem->pressure})
@@ -154,13 +154,13 @@ void check_sequence(const Resampling& options) {
 void check_method(const Resampling& options) {
   if (options.mass_exact && options.nearest)
     throw Error("--mass-exact needs interpolated labels, which --nearest does not compute", "--mass-exact",
-                "leave one of the two out");
+                "leave out --mass-exact or --nearest");
   if (!options.baked.empty() && options.method != rule_of(Blend::DualQuaternion).word)
     throw Error("baked joints correct dual quaternions only", "--method " + options.method,
-                "use --method dqs, or leave --baked out");
+                "use --method dqs, or leave out --baked");
   if (!options.baked.empty() && options.fit_joints)
     throw Error("--fit-joints moves the axis around which a joint was baked", "--fit-joints",
-                "leave one of the two out, or bake with the fitted rig");
+                "leave out --fit-joints or --baked, or bake the joint with the fitted rig");
   glide_settings(glide_word(options.glide, options.pose), 1, "--glide " + options.glide);
   if (options.method == kFiniteElements) return;
   std::string given = given_fem_option(*options.fem);
@@ -417,7 +417,7 @@ void add_resample(CLI::App& app) {
       ->add_option(
           "--frames", options->frames,
           "poses several frames of the motion, one after the other: put {frame} into the outputs' names, where each "
-          "frame's number replaces it; fem makes its mesh once and starts each solve from the frame before")
+          "frame's number replaces it; --method fem makes the mesh once and starts each solve from the frame before")
       ->type_name("FIRST:LAST[:STEP]");
   command->add_option("--method", options->method, method_summaries(Methods::All))
       ->capture_default_str()
@@ -433,13 +433,13 @@ void add_resample(CLI::App& app) {
   add_mesh_options(*command, options->mesh, "--mesh-");
   writes(
       command->add_option("--solver-mesh", options->solver_mesh,
-                          "fem: the solver's posed mesh, with the main tissue of each tet. It contains only the soft "
-                          "tissue that bends; its share of the body is printed"),
+                          "with --method fem: the solver's posed mesh, with the main tissue of each tet. It contains "
+                          "only the soft tissue that bends; its share of the body is printed"),
       files_of_mesh(options))
       ->type_name("NAME");
   writes(command->add_option("--steps", options->steps,
-                             "fem: writes the mesh as NAME.mesh and the newest step of the solve as NAME.step, for a "
-                             "program that shows the progress"),
+                             "with --method fem: writes the mesh as NAME.mesh and the newest step of the solve as "
+                             "NAME.step, for a program that shows the progress"),
          files_written_to(options, {".mesh", ".step"}))
       ->type_name("NAME");
   add_glide_option(*command, options->glide);
@@ -466,7 +466,7 @@ void add_resample(CLI::App& app) {
                                        "tissue borders as possible, the least certain first");
   command
       ->add_option("--mass-limit", options->mass_limit,
-                   "largest change that mass-exact may make, percent of a tissue; more is refused (default: 3)")
+                   "largest change that --mass-exact may make, percent of a tissue; more is refused (default: 3)")
       ->needs(mass_exact)
       ->check(CLI::Range(0.0, 20.0));
   writes(command->add_option("--with", options->grey, "also poses a grey volume (CT, MR): reads GREY, writes OUT"),

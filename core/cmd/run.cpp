@@ -113,7 +113,7 @@ int run(CLI::App& app, int argc, char** argv) {
   const int code = xml.empty() ? run_command(app, argc, argv) : 0;
   if (all_is_printed()) return code;
   return told(
-      "the printed text could not be written: standard output: check that its disk has room and that it is open",
+      "the printed text could not be written: standard output: check that the output is open and its disk has room",
       code == 0 ? 1 : code);
 }
 

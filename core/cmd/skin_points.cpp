@@ -31,7 +31,7 @@ class CaseReader {
  public:
   explicit CaseReader(const Path& path) : where_(path.string()) {
     json_ = nlohmann::json::parse(checked_json(read_file(path), where_), nullptr, false);
-    if (!json_.is_object()) fail("not a JSON object", "give a file of schema skin-ref/1");
+    if (!json_.is_object()) fail("this is not a JSON object", "give a file of schema skin-ref/1");
     if (json_.value("schema", nlohmann::json()) != "skin-ref/1")
       fail("\"schema\" is not \"skin-ref/1\"", "give a file of that schema");
   }
@@ -42,7 +42,7 @@ class CaseReader {
       const glm::dmat4 rest = matrix(bone, "rest"), pose = matrix(bone, "pose");
       const glm::dmat4 bone_from_world = glm::inverse(rest);
       if (!std::isfinite(bone_from_world[0][0]) || glm::determinant(rest) == 0)
-        fail("a bone's \"rest\" matrix cannot be inverted", "check it");
+        fail("a bone's \"rest\" matrix cannot be inverted", "correct the matrix");
       skin.bones.push_back(skin_transform(pose * bone_from_world, rest));
     }
     const auto flat = numbers(json_, "rest");
@@ -59,7 +59,7 @@ class CaseReader {
 
   const nlohmann::json& array(const nlohmann::json& object, const char* key) const {
     if (!object.is_object() || !object.contains(key) || !object[key].is_array())
-      fail("no list \"" + std::string(key) + "\"", "add it");
+      fail("the list \"" + std::string(key) + "\" is missing", "add it");
     return object[key];
   }
 
@@ -67,7 +67,7 @@ class CaseReader {
     std::vector<double> values;
     for (const auto& value : array(object, key)) {
       if (!value.is_number() || !std::isfinite(value.get<double>()))
-        fail("\"" + std::string(key) + "\" holds something that is not a finite number", "correct it");
+        fail("\"" + std::string(key) + "\" contains a value that is not a finite number", "correct the list");
       values.push_back(value.get<double>());
     }
     return values;
@@ -87,18 +87,18 @@ class CaseReader {
     const auto offsets = numbers(json_, "influence_offsets"), bones = numbers(json_, "influence_bones"),
                weights = numbers(json_, "influence_weights");
     if (bones.size() != weights.size())
-      fail("\"influence_bones\" and \"influence_weights\" differ in length", "correct it");
+      fail("\"influence_bones\" and \"influence_weights\" differ in length", "correct the lists");
     if (offsets.size() != skin.points.size() + 1)
-      fail("\"influence_offsets\" is not one longer than the points", "correct it");
+      fail("\"influence_offsets\" does not have one number more than there are points", "correct the list");
     for (size_t i = 0; i < bones.size(); ++i) {
       if (!(bones[i] >= 0 && bones[i] < double(skin.bones.size())) || !(weights[i] >= 0))
-        fail("influence " + std::to_string(i) + " has an unknown bone or a negative weight", "correct it");
+        fail("influence " + std::to_string(i) + " has an unknown bone or a negative weight", "correct the influence");
       skin.influences.push_back({static_cast<int>(bones[i]), weights[i]});
     }
     double last = 0;
     for (double offset : offsets) {
       if (!(offset >= last && offset <= double(bones.size())))
-        fail("\"influence_offsets\" do not ascend", "correct them");
+        fail("the numbers of \"influence_offsets\" do not ascend", "correct the list");
       skin.offsets.push_back(static_cast<std::int64_t>(offset));
       last = offset;
     }

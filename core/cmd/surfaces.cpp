@@ -43,12 +43,12 @@ void keep_chosen(LabelSurfaces& all, const TissueTable& tissues, const std::vect
 void print_surfaces(const LabelSurfaces& all, const LabelVolume& volume, const TissueTable& tissues) {
   std::vector<std::int64_t> voxels(65536);
   for (const Label label : volume.voxels) ++voxels[label];
-  print("%-28s %10s %10s %7s %14s %9s\n", "tissue", "triangles", "vertices", "Euler", "mm3", "of voxels");
+  print("%-28s %10s %10s %7s %14s %18s\n", "tissue", "triangles", "vertices", "Euler", "mm3", "of voxels' volume");
   for (const LabelSurface& surface : all.surfaces) {
     const Tissue* tissue = tissues.find(surface.label);
     const double mm3 = enclosed_volume(all, surface),
                  by_voxels = static_cast<double>(voxels[surface.label]) * volume.grid.voxel_volume();
-    print("%-28s %10zu %10zu %7d %14.6g %8.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(),
+    print("%-28s %10zu %10zu %7d %14.6g %17.2f%%\n", one_line(tissue ? tissue->name : "").c_str(), surface.F.size(),
           surface.vertex.size(), surface.euler_number(), mm3, 100 * mm3 / by_voxels);
   }
 }
@@ -70,10 +70,10 @@ OptionFiles files_of_surfaces(const std::string& name) {
 void write_surfaces_of(const LabelVolume& volume, const TissueTable& tissues, const SurfaceChoice& choice,
                        const std::string& output, Progress& progress) {
   if (!is_surface_path(output))
-    throw Error("surfaces cannot be written under this name", output, std::string("end it in ") + kSurfaceEndings);
+    throw Error("surfaces cannot be written with this extension", output, std::string("use ") + kSurfaceEndings);
   LabelSurfaces all = label_surfaces(volume, choice.settings, progress);
   keep_chosen(all, tissues, choice.tissues);
-  if (all.surfaces.empty()) throw Error("there is no tissue", output, "give a volume with labels");
+  if (all.surfaces.empty()) throw Error("the volume has no tissue", output, "give a volume with labels other than 0");
   Outputs outputs;
   outputs.expect(surface_paths(all, tissues, output));
   write_surfaces(all, tissues, output);
@@ -91,9 +91,10 @@ void add_surfaces(CLI::App& app) {
       ->delimiter(',')
       ->type_name("A,B");
   command
-      ->add_option("--relax", options->choice.settings.relaxations,
-                   "number of smoothing steps (default: 5); more is smoother, but thin parts lose volume; 0 keeps the "
-                   "voxels' faces and volumes")
+      ->add_option(
+          "--relax", options->choice.settings.relaxations,
+          "number of smoothing steps (default: 5); more steps are smoother, but thin parts lose volume; 0 keeps the "
+          "voxels' faces and volumes")
       ->check(CLI::Range(0, 1000));
   writes(command->add_option("-o,--output", options->output,
                              "OUT.obj or OUT.glb (one file), OUT.stl or OUT.ply (one file per tissue: OUT-NAME.stl)"),

@@ -9,7 +9,7 @@ CLI::Option* add_material_options(CLI::App& command, MaterialOptions& options) {
   command.add_option("--tissues", options.tissues, "tissue table (JSON, .ctbl, ITK-SNAP): names, kinds and densities");
   command
       .add_option("--properties", options.properties,
-                  "CSV table of dielectric properties, used before the built-in one")
+                  "CSV table of dielectric properties; its rows take precedence over the built-in table")
       ->type_name("P.csv");
   return command
       .add_option("--frequency", options.frequency, "frequency of the electromagnetic field, Hz, such as 900e6")
@@ -29,7 +29,7 @@ std::vector<TissueMaterial> materials_of(const TissueTable& tissues, const Mater
                 "add --frequency, as in --frequency 900e6");
   TissueMaterials found = tissue_materials(tissues, read_dielectric_table(options.properties), *options.frequency);
   if (!found.unmatched.empty())
-    throw Error("no dielectric properties are known of: " + joined(found.unmatched), where,
+    throw Error("no dielectric properties are known for: " + joined(found.unmatched), where,
                 "add rows with --properties, or merge labels with `limber prepare --merge`");
   return std::move(found.materials);
 }

@@ -59,8 +59,8 @@ nlohmann::ordered_json json_of(const TissueMaterials& tissues, double frequency)
 }
 
 void print_table(const TissueMaterials& tissues) {
-  print("%8s  %-28s %-22s %-28s %10s %12s %12s  %s\n", "label", "tissue", "taken for", "found by", "kg/m3", "eps_r",
-        "S/m", "properties of");
+  print("%8s  %-28s %-22s %-28s %10s %12s %12s  %s\n", "label", "tissue", "matched row", "matched by", "kg/m3", "eps_r",
+        "S/m", "properties from");
   for (const TissueMaterial& m : tissues.materials)
     print("%8s  %-28s %-22s %-28s %10.4g %12.5g %12.5g  %s\n", text_of(m.file_value).c_str(), one_line(m.name).c_str(),
           one_line(m.row).c_str(), one_line(m.found).c_str(), m.density, m.dielectric.permittivity,
@@ -105,7 +105,7 @@ void list_tissues(const TissuesOptions& options) {
         "\n");
   else if (options.output.empty()) print_table(found);
   if (!found.unmatched.empty())
-    warn("no dielectric properties are known of: " + joined(found.unmatched) + ": add rows with --properties");
+    warn("no dielectric properties are known for: " + joined(found.unmatched) + ": add rows with --properties");
 }
 }  // namespace
 
@@ -113,7 +113,7 @@ void add_tissues(CLI::App& app) {
   auto* command =
       app.add_subcommand("tissues", "lists the permittivity, conductivity and density of each tissue at a frequency");
   auto options = std::make_shared<TissuesOptions>();
-  command->add_option("VOLUME", options->volume, "label volume (without one: every row of the table)");
+  command->add_option("VOLUME", options->volume, "label volume (default: lists every row of the table)");
   add_material_options(*command, options->material)->required();
   command->add_flag("--json", options->json, "print as JSON");
   writes(command->add_option("-o,--output", options->output, "CSV file to write: the list as comma-separated values"))

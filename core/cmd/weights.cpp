@@ -109,7 +109,7 @@ void make_weights(const WeightsOptions& options) {
 
 void add_weights(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "weights", "computes skin weights: for each voxel up to four bones that it follows, and their weights");
+      "weights", "computes skin weights: for each voxel, up to four bones that the voxel follows, and their weights");
   auto options = std::make_shared<WeightsOptions>();
   add_body_options(*command, options->body);
   command

@@ -94,11 +94,11 @@ void check_source(const BakedJoint& joint, const BakeSource& body) {
   const char* differs = joint.source.volume != body.volume     ? "another volume"
                         : joint.source.rig != body.rig         ? "another rig"
                         : joint.source.weights != body.weights ? "other weights"
-                        : joint.source.bones != body.bones     ? "other labels of bone"
+                        : joint.source.bones != body.bones     ? "other bone labels"
                                                                : nullptr;
   if (differs)
     throw Error(std::string("the joint was baked from ") + differs, joint.bone,
-                "give the same volume, rig, weights and tissues, or bake it again: limber bake-joint");
+                "give the same volume, rig, weights and tissues, or bake the joint again: limber bake-joint");
 }
 
 }  // namespace limber

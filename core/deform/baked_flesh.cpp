@@ -24,7 +24,7 @@ void check_inside(const BakedJoint& joint, const Grid& grid) {
     const std::int64_t low = std::int64_t{joint.first[axis]} * joint.step[axis];
     const std::int64_t high = (std::int64_t{joint.first[axis]} + joint.size[axis] - 1) * joint.step[axis];
     if (low < -joint.step[axis] || high > std::int64_t{grid.size[axis]} + joint.step[axis])
-      throw Error("the joint was baked from another volume", joint.bone, "bake it again: limber bake-joint");
+      throw Error("the joint was baked from another volume", joint.bone, "bake the joint again: limber bake-joint");
   }
 }
 

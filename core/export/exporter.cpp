@@ -32,7 +32,7 @@ const Exporter* exporter_for(const Path& path) {
       if (name.ends_with(ending) && name.size() > ending.size()) return &exporter;
   if (name.ends_with(".h5") || name.ends_with(".hdf5"))
     throw Error("the file name does not tell which program the HDF5 file is for", path.string(),
-                "end it in .csxcad.h5 or .gprmax.h5");
+                "end the name in .csxcad.h5 or .gprmax.h5");
   return nullptr;
 }
 

@@ -34,9 +34,10 @@ void check(const GltfBody& body, const TissueVoxels& tissue) {
   const bool same_bones = std::equal(body.weights.bones().begin(), body.weights.bones().end(),
                                      body.armature.bones.begin(), body.armature.bones.end(),
                                      [](const std::string& name, const Bone& bone) { return name == bone.name; });
-  if (!same_bones) throw Error("the weights belong to another rig", "glTF export", "compute them again for this one");
+  if (!same_bones)
+    throw Error("the weights belong to another rig", "glTF export", "compute the weights again for this rig");
   if (body.weights.size() != tissue.size())
-    throw Error("the weights belong to another volume", "glTF export", "compute them again for this one");
+    throw Error("the weights belong to another volume", "glTF export", "compute the weights again for this volume");
 }
 
 // ---- Surface mesh
@@ -63,8 +64,7 @@ void add_mesh(Glb& glb, const GltfBody& body, const TissueVoxels& tissue, const 
   progress.update("surface", 0);
   const TriangleMesh mesh = surface_of(occupancy_of(body.volume, all, step));
   if (mesh.F.empty())
-    throw Error("the volume has no surface at this step", "glTF export",
-                "take a smaller step, or a volume with tissue");
+    throw Error("the volume has no surface at this step", "glTF export", "use a smaller step, or a volume with tissue");
   progress.update("surface", 0.5);
   const std::vector<SkinAt> skin = skin_at(body.volume, tissue, body.weights, mesh.V);
 

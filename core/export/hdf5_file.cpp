@@ -32,7 +32,7 @@ decltype(&limber_hdf5_make) codec(const Path& path) {
     return module ? reinterpret_cast<decltype(&limber_hdf5_make)>(symbol_of(module, "limber_hdf5_make")) : nullptr;
   }();
   if (!loaded)
-    throw Error("HDF5 cannot be written, limber_hdf5.so is missing or damaged", path.string(),
+    throw Error("HDF5 cannot be written, because limber_hdf5.so is missing or damaged", path.string(),
                 "install Limber again, or choose another format");
   return loaded;
 }

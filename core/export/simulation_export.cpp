@@ -69,7 +69,8 @@ LabelVolume turned_to_lps(const LabelVolume& volume, std::vector<std::string>& w
   double off = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 3; ++i) off = std::max(off, std::abs(turned.grid.direction[axis][i] - (i == axis)));
-  if (off > 1e-6) warnings.push_back("the grid is oblique: coordinates run along the voxel axes, not along L, P, S");
+  if (off > 1e-6)
+    warnings.push_back("the grid is oblique: the coordinates run along the voxel axes, not along the axes L, P and S");
   return turned;
 }
 
@@ -110,8 +111,9 @@ void write_openems(const SimulationBody& body, const Path& path) { write_file_at
 
 void write_disc_material(const SimulationBody& body, const Path& path) {
   if (body.materials.size() > 254)
-    throw Error("DiscMaterial holds 254 materials, this volume has " + std::to_string(body.materials.size()),
-                path.string(), "merge labels with `limber prepare --merge`");
+    throw Error(
+        "a DiscMaterial file holds at most 254 materials, this volume has " + std::to_string(body.materials.size()),
+        path.string(), "merge labels with `limber prepare --merge`");
   // Material 0 is the background: vacuum.
   std::vector<float> permittivity = {1}, conductivity = {0}, density = {0};
   std::string names = "background";

@@ -191,8 +191,7 @@ std::vector<Path> surface_paths(const LabelSurfaces& all, const TissueTable& tis
 
 void write_surfaces(const LabelSurfaces& all, const TissueTable& tissues, const Path& path) {
   if (!is_surface_path(path))
-    throw Error("surfaces cannot be written under this name", path.string(),
-                std::string("end it in ") + kSurfaceEndings);
+    throw Error("surfaces cannot be written with this extension", path.string(), std::string("use ") + kSurfaceEndings);
   if (extension_of(path) == ".obj") return write_file_atomically(path, obj(all, words_for(all, tissues)));
   if (extension_of(path) == ".glb") return write_file_atomically(path, glb(all, tissues));
   const std::vector<Path> paths = surface_paths(all, tissues, path);
@@ -213,7 +212,8 @@ Exporter surface_exporter() {
           .endings = {".obj", ".stl", ".ply", ".glb"},
           .write = [](const ExportInput& input, const Path& path) {
             const LabelSurfaces all = label_surfaces(input.volume, {}, input.progress);
-            if (all.surfaces.empty()) throw Error("there is no tissue", path.string(), "export a volume with labels");
+            if (all.surfaces.empty())
+              throw Error("the volume has no tissue", path.string(), "export a volume with labels other than 0");
             Outputs outputs;
             outputs.expect(surface_paths(all, input.tissues, path));
             write_surfaces(all, input.tissues, path);

@@ -43,7 +43,8 @@ Cells voxels_of(const LabelVolume& volume, const TissueTable& tissues) {
   for (std::size_t label = 0; label < file_value.size(); ++label) file_value[label] = static_cast<std::int32_t>(label);
   for (const Tissue& tissue : tissues.tissues) {
     if (std::abs(tissue.file_value) > std::numeric_limits<std::int32_t>::max())
-      throw Error("the label " + text_of(tissue.file_value) + " does not fit into 32 bits", "Label", "renumber it");
+      throw Error("the label " + text_of(tissue.file_value) + " does not fit into 32 bits", "Label",
+                  "give the tissue a smaller label");
     file_value[tissue.label] = static_cast<std::int32_t>(tissue.file_value);
   }
   std::vector<std::int64_t> point_of(static_cast<std::size_t>(corner_index(size) + 1), -1);

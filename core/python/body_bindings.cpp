@@ -305,7 +305,7 @@ void export_volume(const Volume& volume, const Path& path, std::optional<double>
     std::string unknown;
     for (const std::string& name : found.unmatched) unknown += (unknown.empty() ? "" : ", ") + name;
     if (!unknown.empty())
-      throw Error("no dielectric properties are known of: " + unknown, path.string(),
+      throw Error("no dielectric properties are known for: " + unknown, path.string(),
                   "give these tissues other names or kinds, or merge their labels");
     materials = std::move(found.materials);
   }

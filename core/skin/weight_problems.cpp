@@ -310,7 +310,7 @@ std::string describe(const WeightProblem& problem, const Armature& armature) {
   const std::string voxels =
       std::to_string(problem.voxels.size()) + (problem.voxels.size() == 1 ? " voxel" : " voxels");
   switch (problem.kind) {
-    case Kind::Unreached: return voxels + " that no bone reaches, given to " + name(problem.bone);
+    case Kind::Unreached: return voxels + " that no bone reaches, assigned to " + name(problem.bone);
     case Kind::Island: return voxels + " of " + name(problem.bone) + " separate from the rest";
     case Kind::FarBones:
       return voxels + " between " + name(problem.bone) + " and " + name(problem.other) + ", which are far apart";

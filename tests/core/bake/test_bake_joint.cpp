@@ -262,6 +262,6 @@ TEST_CASE("bake joint: another volume, rig, weights or bones are refused, each b
   CHECK(refusal(volume, is_bone, rig, arm.bound.weights).find("another rig") != std::string::npos);
   const SkinWeights weights(arm.bound.weights.bones(), arm.bound.tissue);
   CHECK(refusal(volume, is_bone, arm.body.rig, weights).find("other weights") != std::string::npos);
-  CHECK(refusal(volume, LabelSet(65536, 0), arm.body.rig, arm.bound.weights).find("other labels of bone") !=
+  CHECK(refusal(volume, LabelSet(65536, 0), arm.body.rig, arm.bound.weights).find("other bone labels") !=
         std::string::npos);
 }

@@ -28,7 +28,7 @@ TEST_CASE("JSON text: what is nested too deeply or names a key twice has a probl
   CHECK(json_problem(nested(1'000'000)).find("nested") != std::string::npos);
   CHECK(json_problem(nested(1'000'000, "{\"a\":[", "]}")).find("nested") != std::string::npos);
   CHECK(json_problem(R"({"a": 1, "b": {"a": 2}, "c": [{"a": 3}, {"a": 4}]})").empty());
-  CHECK(json_problem(R"({"b": {"a": 2, "\u0061": 3}})") == "the key \"a\" is there twice in one object");
+  CHECK(json_problem(R"({"b": {"a": 2, "\u0061": 3}})") == "the key \"a\" occurs twice in one object");
   CHECK(json_problem("{\"a\": ").empty());  // json_problem leaves incomplete JSON to the parser, which reports it
   CHECK(json_problem("").empty());
   CHECK(sound_json(nested(1000)) == "");

@@ -68,7 +68,7 @@ TEST_CASE("weight problems: a piece that no bone reaches follows, repaired, what
   CHECK(problems[0].voxels.size() == 2);
   CHECK(problems[0].bone == 0);
   CHECK(problems[0].place.x == doctest::Approx(30));
-  CHECK(describe(problems[0], painted.body.armature) == "2 voxels that no bone reaches, given to Upper");
+  CHECK(describe(problems[0], painted.body.armature) == "2 voxels that no bone reaches, assigned to Upper");
   const WeightEdit edit = repaired(painted.weighted_body(), *painted.weights, problems[0]);
   CHECK(edit.changed == 2);
   CHECK(at(painted.tissue, edit.weights, {15, 15, 36}) == rigid_influence(1));
