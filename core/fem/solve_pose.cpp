@@ -38,7 +38,7 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
     throw Error("the lists of a finite element model differ in length", what, "give one entry for each");
   };
   if (std::ssize(model.material) != model.mesh.T.rows()) wrong("materials and tets");
-  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("held nodes and nodes");
+  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("holding bones and nodes");
   if (std::any_of(model.waiting.begin(), model.waiting.end(), [&](const FemModel::Waiting& each) {
         return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 ||
                model.held_by[each.node] >= 0;
@@ -49,7 +49,7 @@ void check(const FemModel& model, const Eigen::MatrixX3d* start) {
     if (each.node < 0 || each.node >= std::ssize(model.held_by) || model.held_by[each.node] >= 0 || each.bone < 0 ||
         each.bone >= std::ssize(model.bone_surface) || !model.bone_surface[each.bone])
       wrong("sliding nodes and surfaces of bones");
-  if (start && start->rows() != model.mesh.V.rows()) wrong("nodes at the start and nodes");
+  if (start && start->rows() != model.mesh.V.rows()) wrong("start positions and nodes");
   if (count_inverted(model.mesh.T, model.mesh.V))
     throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
   if (start && count_inverted(model.mesh.T, *start))

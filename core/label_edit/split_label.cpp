@@ -80,7 +80,7 @@ struct Parts {
   void take(const glm::ivec3& v, std::uint8_t mark) {
     if (side_of(v) != 0)
       throw Error("the cut does not divide the tissue", "it is still connected around the line",
-                  "draw the line across the whole of it");
+                  "draw the line across the whole tissue");
     side_of(v) = mark;
   }
 };
@@ -106,7 +106,8 @@ LabelChange split_label(const LabelVolume& volume, Label label, const LabelCut& 
           seeds[beyond ? 0 : 1].push_back(there);
         }
       }
-  if (seeds[0].empty()) throw Error("the line does not cut the tissue", "Split", "draw it across the selected tissue");
+  if (seeds[0].empty())
+    throw Error("the line does not cut the tissue", "Split", "draw the line across the selected tissue");
   const std::int64_t first = parts.flood(std::move(seeds[0]), 1), second = parts.flood(std::move(seeds[1]), 2);
   const std::uint8_t smaller = first < second ? 1 : 2;
   return change_by_rows(box, [&](int y, int z, LabelChange& change) {

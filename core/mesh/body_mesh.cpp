@@ -196,7 +196,7 @@ void check_size(const TissueVoxels& tissue, const LabelVolume& volume) {
   if (samples <= double(kMostMeshSamples)) return;
   const double spacing = std::cbrt(volume.grid.voxel_volume() * samples / double(kMostMeshSamples));
   throw Error("the body has too many voxels to be meshed at their own size", std::to_string(tissue.size()) + " voxels",
-              "mesh it at a spacing of " + std::to_string(int(std::ceil(spacing))) + " mm or more");
+              "mesh the body at a spacing of " + std::to_string(int(std::ceil(spacing))) + " mm or more");
 }
 
 }  // namespace

@@ -119,7 +119,9 @@ class GltfSurface {
 
   glm::vec3 position(const GltfElements& positions, std::uint64_t i) const {
     if (i >= positions.count)
-      soup_.refuse("a triangle names vertex " + std::to_string(i) + " of " + std::to_string(positions.count), kAgain);
+      soup_.refuse("a triangle names vertex " + std::to_string(i) + ", which is not one of the " +
+                       std::to_string(positions.count) + " vertices",
+                   kAgain);
     glm::vec3 p;
     std::memcpy(&p, positions[i].data(), sizeof p);
     return p;
@@ -133,7 +135,7 @@ class GltfSurface {
 
   GltfElements positions_of(const GltfDescription::Accessor& accessor) {
     if (accessor.type != "VEC3" || accessor.component != 5126)
-      soup_.refuse("the positions are not three floats", "export it without compression and quantization");
+      soup_.refuse("the positions are not three floats", "export the file without compression and quantization");
     return elements_of(accessor, sizeof(glm::vec3));
   }
 
@@ -142,13 +144,14 @@ class GltfSurface {
                                : accessor.component == 5123 ? 2
                                : accessor.component == 5125 ? 4
                                                             : 0;
-    if (accessor.type != "SCALAR" || size == 0) soup_.refuse("the indices are no unsigned whole numbers", kAgain);
+    if (accessor.type != "SCALAR" || size == 0) soup_.refuse("the indices are not unsigned whole numbers", kAgain);
     return elements_of(accessor, size);
   }
 
   GltfElements elements_of(const GltfDescription::Accessor& accessor, std::uint64_t size) {
-    if (accessor.is_sparse) soup_.refuse("a sparse accessor cannot be read", "export it without sparse accessors");
-    if (accessor.view < 0) soup_.refuse("an accessor has no data", "export it without compression");
+    if (accessor.is_sparse)
+      soup_.refuse("a sparse accessor cannot be read", "export the file without sparse accessors");
+    if (accessor.view < 0) soup_.refuse("an accessor has no data", "export the file without compression");
     const GltfDescription::View& view = gltf_.views[accessor.view];
     const std::string_view buffer = buffer_of(view.buffer);
     GltfElements elements{{}, accessor.count, view.stride > 0 ? view.stride : size, size};
@@ -166,7 +169,8 @@ class GltfSurface {
   std::string_view buffer_of(std::int64_t number) {
     const GltfDescription::Buffer& buffer = gltf_.buffers[number];
     if (buffer.uri.empty()) {
-      if (number > 0 || gltf_.binary.empty()) soup_.refuse("a buffer has no data", "export it without compression");
+      if (number > 0 || gltf_.binary.empty())
+        soup_.refuse("a buffer has no data", "export the file without compression");
       return gltf_.binary;
     }
     auto [found, is_new] = buffers_.try_emplace(number);
@@ -174,9 +178,9 @@ class GltfSurface {
       found->second = loaded(buffer);
       loaded_bytes_ += found->second.size();
       if (found->second.size() < buffer.bytes)
-        soup_.refuse(
-            "a buffer has " + std::to_string(found->second.size()) + " of " + std::to_string(buffer.bytes) + " bytes",
-            "copy its file again, or export it again");
+        soup_.refuse("a buffer has only " + std::to_string(found->second.size()) + " of its " +
+                         std::to_string(buffer.bytes) + " bytes",
+                     "copy its file again, or export it again");
     }
     return found->second;
   }
@@ -193,7 +197,7 @@ class GltfSurface {
     for (const Path& part : file) is_below &= part != "..";
     if (!is_below)
       soup_.refuse("a buffer is in the file " + in_quotes(buffer.uri) + ", which is not read from there",
-                   "put it beside the .gltf, or export a .glb");
+                   "put the file beside the .gltf, or export a .glb");
     return read_file(folder_ / file, kMostSurfaceBytes - std::min(loaded_bytes_, kMostSurfaceBytes));
   }
 

@@ -133,7 +133,7 @@ std::map<std::uint16_t, double> enclosed_volumes(const RegionSurface& surface, c
 }
 
 std::string find_fault(const TetMesh& mesh, const std::map<std::uint16_t, double>& volumes) {
-  if (!mesh.V.allFinite()) return "a node has no place";
+  if (!mesh.V.allFinite()) return "the position of a node is not finite";
   for (const auto& tet : mesh.T.rowwise())
     if (!(signed_volume(mesh.V, tet) > 0)) return "a tetrahedron is flat or inverted";
   const auto neighbours = neighbours_of(mesh.T);

@@ -28,7 +28,8 @@ class ObjReader {
     }
     line_ = line_of_last_;
     if (last_ > static_cast<std::int64_t>(soup_.points().size()))
-      soup_.refuse("a face names vertex " + std::to_string(last_) + " of " + std::to_string(soup_.points().size()),
+      soup_.refuse("a face names vertex " + std::to_string(last_) + ", which is not one of the " +
+                       std::to_string(soup_.points().size()) + " vertices",
                    "copy the whole file again");
   }
 

@@ -91,7 +91,7 @@ class PlyReader {
     if (word == "ascii") return PlyFormat::Ascii;
     if (word == "binary_little_endian") return PlyFormat::LittleEndian;
     if (word == "binary_big_endian") return PlyFormat::BigEndian;
-    soup_.refuse(in_quotes(word) + " is not a format of PLY", "export it as ascii, or as binary_little_endian");
+    soup_.refuse(in_quotes(word) + " is not a format of PLY", "export the file as ascii, or as binary_little_endian");
   }
 
   void add_element(std::string_view words) {

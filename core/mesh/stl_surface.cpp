@@ -32,8 +32,9 @@ void read_binary_stl(const std::string& bytes, SurfaceSoup& soup) {
   if (bytes.size() < kHeader) soup.refuse("the file is too short for STL", "copy the whole file again");
   const std::uint64_t count = little_endian(bytes.data() + 80), room = (bytes.size() - kHeader) / kFacet;
   if (count > room)
-    soup.refuse("the file says " + std::to_string(count) + " triangles and has " + std::to_string(room),
-                "copy the whole file again");
+    soup.refuse(
+        "the header states " + std::to_string(count) + " triangles, but the file has only " + std::to_string(room),
+        "copy the whole file again");
   soup.check_triangles(count);
   std::uint64_t t = 0;
   soup.place = [&t] { return ", triangle " + std::to_string(t + 1); };
@@ -97,7 +98,7 @@ class AsciiStl {
         soup_.refuse(in_quotes(words[axis + 1]) + " was found where a vertex needs a number", "correct the file");
       p[axis] = *number;
     }
-    if (++corners_ > 3) soup_.refuse("a facet has more than three vertices", "export it again, as triangles");
+    if (++corners_ > 3) soup_.refuse("a facet has more than three vertices", "export the surface again, as triangles");
     soup_.check_triangles(soup_.triangles().size() + 1);
     soup_.add_point(p);
   }

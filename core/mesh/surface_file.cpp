@@ -76,14 +76,14 @@ void SurfaceSoup::add_point(const glm::dvec3& p) {
              "export the object near the origin and in its true size: in millimetres, or glTF in metres");
   if (points_.size() >= 3 * kMostSurfaceTriangles)
     refuse("the surface has more than " + std::to_string(3 * kMostSurfaceTriangles) + " points",
-           "simplify it in the program that made it");
+           "simplify the surface in the program that made it");
   points_.push_back(p);
 }
 
 void SurfaceSoup::check_triangles(std::size_t count) const {
   if (count > kMostSurfaceTriangles)
     refuse("the surface has more than " + std::to_string(kMostSurfaceTriangles) + " triangles",
-           "simplify it in the program that made it");
+           "simplify the surface in the program that made it");
 }
 
 void SurfaceSoup::add_triangle(const glm::ivec3& f) {
@@ -105,7 +105,7 @@ TriangleMesh parse_surface(const std::string& bytes, const Path& path) {
   else if (extension == ".ply") read_ply(bytes, soup);
   else if (extension == ".glb" || extension == ".gltf") read_gltf(bytes, extension == ".glb", path.parent_path(), soup);
   else
-    throw Error("no surface can be read from a file of this name", path.string(),
+    throw Error("surfaces cannot be read from a file with this extension", path.string(),
                 std::string("use a file that ends in ") + kSurfaceFileEndings);
   TriangleMesh mesh = merged(soup);
   if (mesh.F.empty())

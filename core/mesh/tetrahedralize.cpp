@@ -29,11 +29,11 @@ struct Head {
 
 std::string name_of_problem(int code) {
   switch (code) {
-    case 1: return "it ran out of memory";
+    case 1: return "TetGen ran out of memory";
     case 3: return "the surface crosses itself";
     case 4: return "the surface has a detail too small for TetGen";
     case 5: return "two facets of the surface lie too close together";
-    default: return "it stopped with its error " + std::to_string(code);
+    default: return "TetGen stopped with error " + std::to_string(code);
   }
 }
 
@@ -95,12 +95,12 @@ Answer run_tetgen(const Polyhedra& input, const char* switches, const Tetrahedra
   if (answer.cancelled) throw Cancelled();
   if (!answer.sent) return {{}, {}, answer.failure};
   Head head;
-  if (answer.sent->size() < sizeof head) return {{}, {}, "it ended without an answer"};
+  if (answer.sent->size() < sizeof head) return {{}, {}, "TetGen ended without a result"};
   std::memcpy(&head, answer.sent->data(), sizeof head);
   if (head.problem != 0) return {{}, {}, name_of_problem(head.problem)};
   const std::size_t point_bytes = sizeof(double) * 3 * head.points, tet_bytes = sizeof(int) * 4 * head.tets;
   if (head.points < 0 || head.tets <= 0 || answer.sent->size() != sizeof head + point_bytes + tet_bytes)
-    return {{}, {}, "it ended without an answer"};
+    return {{}, {}, "TetGen ended without a result"};
 
   Answer result;
   result.points.resize(3 * static_cast<std::size_t>(head.points));
@@ -111,7 +111,7 @@ Answer run_tetgen(const Polyhedra& input, const char* switches, const Tetrahedra
   for (int tet = 0; tet < head.tets; ++tet) {
     const int* c = &corners[4 * static_cast<std::size_t>(tet)];
     for (int i = 0; i < 4; ++i)
-      if (c[i] < 0 || c[i] >= head.points) return {{}, {}, "it answered with nodes that do not exist"};
+      if (c[i] < 0 || c[i] >= head.points) return {{}, {}, "TetGen returned tetrahedra with nodes that do not exist"};
     result.T.row(tet) << c[0], c[1], c[2], c[3];
   }
   return result;
@@ -145,7 +145,7 @@ std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& tria
   triangle_of.reserve(2 * triangles.size());
   for (std::size_t i = 0; i < triangles.size(); ++i)
     if (!triangle_of.emplace(sorted(triangles[i]), static_cast<int>(i)).second)
-      return "the surface has a triangle twice";
+      return "the surface contains a triangle twice";
 
   const auto neighbours = neighbours_of(T);
   std::vector<int> found(triangles.size(), 0);
@@ -159,7 +159,7 @@ std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& tria
       const Row corners{T(tet, kTetFaces[face][0]), T(tet, kTetFaces[face][1]), T(tet, kTetFaces[face][2])};
       const auto at = triangle_of.find(sorted(corners));
       if (at == triangle_of.end()) {
-        if (neighbours[tet][face] < 0) return "its tetrahedra end where the surface does not";
+        if (neighbours[tet][face] < 0) return "the tetrahedra end where the surface does not";
         continue;
       }
       wall[tet][face] = true;
@@ -214,7 +214,7 @@ Tetrahedralized tetrahedralize_inside(const RegionSurface& surface, const Tetrah
   // nothing.
   Answer answer = run_tetgen(input, "pq2/0YMJQ", limits, progress);
   if (!answer.failure.empty()) return {std::nullopt, std::move(answer.failure)};
-  if (!starts_with(answer.points, input.points)) return {std::nullopt, "it moved nodes of the surface"};
+  if (!starts_with(answer.points, input.points)) return {std::nullopt, "TetGen moved nodes of the surface"};
 
   std::vector<std::uint16_t> region;
   if (std::string failure = find_regions(answer.T, input.triangles, surface.sides, region); !failure.empty())

@@ -12,7 +12,7 @@ namespace limber {
 Clip with_constraints_as_keys(const std::shared_ptr<const Clip>& clip, const std::shared_ptr<const Armature>& armature,
                               int first, int last, Progress& progress) {
   const ClipOnRig on_rig(clip, armature);
-  if (!on_rig.constraints()) throw Error("the clip has no constraints", clip->name, "add one first");
+  if (!on_rig.constraints()) throw Error("the clip has no constraints", clip->name, "add a constraint first");
   if (!on_rig.problem().empty())
     throw Error("the clip does not move this rig", clip->name, "match its joints: " + on_rig.problem());
   std::set<int> turned;

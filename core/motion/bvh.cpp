@@ -147,8 +147,9 @@ glm::dvec3 offset_of(Reader& in) {
 void read_channels(Reader& in, BvhJoint& joint, Motion& motion) {
   const double count = in.number("CHANNELS");
   if (count != std::floor(count) || count < 0 || count > 6)
-    in.refuse("a joint has other than 0 to 6 channels", "give each joint at most three positions and three rotations");
-  if (!joint.channels.empty()) in.refuse("a joint has two lists of channels", "keep one of them");
+    in.refuse("the number of a joint's channels is not 0 to 6",
+              "give each joint at most three positions and three rotations");
+  if (!joint.channels.empty()) in.refuse("a joint has two lists of channels", "keep one list");
   for (int i = 0; i < static_cast<int>(count); ++i) joint.channels.push_back(channel_of(in));
   joint.first_channel = motion.channel_count;
   motion.channel_count += static_cast<int>(count);
@@ -212,7 +213,7 @@ bool read_hierarchy(Reader& in, Motion& motion) {
     }
     if (same_word(word, inside ? "joint" : "root")) {
       if (motion.joints.size() == kMostJoints)
-        in.refuse("there are more than " + std::to_string(kMostJoints) + " joints", "use fewer");
+        in.refuse("there are more than " + std::to_string(kMostJoints) + " joints", "use a file with fewer joints");
       BvhJoint joint;
       joint.name = in.rest_of_line();
       joint.parent = inside ? open.back() : -1;
@@ -285,8 +286,8 @@ void read_motion(Reader& in, Motion& motion) {
     char count[32];
     *std::to_chars(count, count + sizeof count - 1, promised, std::chars_format::fixed).ptr = 0;
     motion.warnings.push_back("the file promises " + std::string(count) + " frames and holds " +
-                              std::to_string(motion.frame_count) + (cut ? " complete ones and a part of one" : "") +
-                              "; the complete ones are used");
+                              std::to_string(motion.frame_count) +
+                              (cut ? " complete frames and a part of another" : "") + "; the complete frames are used");
   }
 }
 }  // namespace

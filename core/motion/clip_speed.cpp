@@ -20,7 +20,7 @@ constexpr double kMostFrames = 1e6;  // a motion that would become longer than t
 
 void require_speed(double factor) {
   if (!(factor >= kSlowest && factor <= kFastest))
-    throw Error("this speed cannot be used", std::to_string(factor) + " times as fast", "choose one from 0.05 to 20");
+    throw Error("this speed cannot be used", std::to_string(factor) + " times as fast", "use a speed from 0.05 to 20");
 }
 
 void require_frames(double frames) {

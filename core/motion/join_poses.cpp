@@ -112,7 +112,7 @@ JoinedPoses joined(const Armature& armature, const std::vector<PlantedLimb>& lim
   const std::size_t most = std::min(first.size(), second.size());
   if (settings.fade < 1 || static_cast<std::size_t>(settings.fade) > most)
     throw Error("the cross-fade is longer than a motion", std::to_string(settings.fade) + " frames",
-                "use 1 to " + std::to_string(most));
+                "use a length from 1 to " + std::to_string(most));
   JoinedPoses out;
   out.fade_first = static_cast<int>(first.size()) - settings.fade;
   const int fade_last = static_cast<int>(first.size()) - 1, middle = out.fade_first + (settings.fade - 1) / 2;

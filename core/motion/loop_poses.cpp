@@ -23,10 +23,10 @@ void require_loop(std::size_t count, const LoopSettings& settings) {
                 "use three frames or more");
   if (settings.repeats < 1 || settings.repeats * steps >= kMostFrames)
     throw Error("these repeats have too many frames", std::to_string(settings.repeats) + " repeats",
-                "use 1 to " + std::to_string((kMostFrames - 1) / steps));
+                "use a number from 1 to " + std::to_string((kMostFrames - 1) / steps));
   if (settings.blend < 0 || settings.blend > steps)
     throw Error("the blend at the seam is longer than the motion", std::to_string(settings.blend) + " frames",
-                "use 0 to " + std::to_string(steps));
+                "use a length from 0 to " + std::to_string(steps));
 }
 
 // Removes the travel and the change of heading from a take, evenly over its frames.

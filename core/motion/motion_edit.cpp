@@ -120,12 +120,11 @@ Motion y_up_from_z_up(const Motion& motion) {
 
 Motion resampled(const Motion& motion, double rate, Progress& progress) {
   if (!(rate >= 0.1 && rate <= 1000))
-    throw Error("this rate cannot be used", std::to_string(rate) + " frames in a second",
-                "choose one from 0.1 to 1000");
+    throw Error("this rate cannot be used", std::to_string(rate) + " frames per second", "use a rate from 0.1 to 1000");
   const double seconds = std::max(0, motion.frame_count - 1) * motion.frame_time;
   const double count = std::floor(seconds * rate + 1e-6) + 1;
   if (count > static_cast<double>(kMostFrames))
-    throw Error("the clip would have too many frames", std::to_string(rate) + " frames in a second",
+    throw Error("the clip would have too many frames", std::to_string(rate) + " frames per second",
                 "choose a lower rate");
   Motion out = motion;
   if (motion.frame_count == 0) return out;

@@ -323,7 +323,7 @@ std::vector<Pose> planted(const Armature& armature, const std::vector<PlantedLim
   const int last = static_cast<int>(poses.size()) - 1;
   for (const Plant& plant : plants) {
     if (plant.limb < 0 || plant.limb >= std::ssize(limbs))
-      throw Error("a plant names no limb of the rig", "planting", "name a hand or foot that the rig has");
+      throw Error("a plant does not name a limb of the rig", "planting", "name a hand or foot that the rig has");
     if (plant.first < 0 || plant.last < plant.first || plant.last > last)
       throw Error(
           "the motion does not have these frames",

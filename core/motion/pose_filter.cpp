@@ -68,7 +68,7 @@ std::vector<Pose> smoothed(const std::vector<Pose>& poses, double rate, double c
     char frequencies[96];
     std::snprintf(frequencies, sizeof frequencies, "%g Hz in a motion of %g frames per second", cutoff, rate);
     throw Error("the cutoff frequency does not fit the motion", frequencies,
-                "choose one above 0 and below two fifths of the frames per second, such as 6");
+                "use a frequency above 0 and below two fifths of the frames per second, such as 6");
   }
   std::vector<Pose> result = poses;
   if (poses.size() < 3) return result;

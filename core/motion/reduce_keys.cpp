@@ -227,7 +227,7 @@ ReducedTrack<Value> reduced(const std::vector<Value>& recorded, const Value& res
 
 AllowedErrors allowed_everywhere(const Armature& armature, std::size_t frames, const ReduceSettings& settings) {
   if (!(settings.degrees > 0) || !(settings.mm > 0))
-    throw Error("the error must be positive", "keys", "enter an error above 0");
+    throw Error("the allowed error must be positive", "keys", "enter an error above 0");
   return {std::vector(armature.bones.size(), std::vector(frames, settings.degrees)), std::vector(frames, settings.mm)};
 }
 

@@ -76,7 +76,7 @@ std::vector<Plant> resting_limbs(const Armature& armature, const std::vector<Pla
 PlantedKeys reduced_with_plants(const Armature& armature, const std::vector<PlantedLimb>& limbs,
                                 const std::vector<Pose>& poses, int start, const ReduceSettings& settings,
                                 const std::vector<Plant>& plants, double plant_mm, Progress& progress) {
-  if (!(plant_mm > 0)) throw Error("the error must be positive", "planted feet", "enter an error above 0");
+  if (!(plant_mm > 0)) throw Error("the allowed error must be positive", "planted feet", "enter an error above 0");
   AllowedErrors allowed = allowed_everywhere(armature, poses.size(), settings);
   std::vector<double> aims(plants.size(), plant_mm);
   const LimbTracks recorded = limb_tracks(armature, limbs, poses, progress);

@@ -444,7 +444,7 @@ RetargetMap Retarget::map() const {
 Pose Retarget::at(int frame) const {
   if (frame < 0 || frame >= motion_->frame_count)
     throw Error("the motion has no frame " + std::to_string(frame), "--frame",
-                "choose one from 0 to " + std::to_string(motion_->frame_count - 1));
+                "use a frame from 0 to " + std::to_string(motion_->frame_count - 1));
   Pose pose = carried_over(forward_kinematics(*motion_, frame));
   if (!feet_.travel.empty()) pose.root_translation += feet_.travel[frame];
   for (std::size_t i = 0; i < feet_.ankle_aside.size(); ++i)

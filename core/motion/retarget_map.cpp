@@ -35,7 +35,7 @@ RestStances stances_of(const Json& value, const std::string& where) {
     throw Error("\"@rests\" is not an object", where, R"(write {"motion": "T", "rig": "anatomical"})");
   for (const auto& [whose, word] : value.items()) {
     if ((whose != "motion" && whose != "rig") || !word.is_string())
-      throw Error("\"" + whose.substr(0, 60) + "\" says no rest pose", where + ", @rests",
+      throw Error("\"" + whose.substr(0, 60) + "\" does not name a rest pose", where + ", @rests",
                   R"(write {"motion": "T", "rig": "anatomical"})");
     (whose == "rig" ? stances.rig : stances.source) = stance_of_word(word.get<std::string>(), where + ", @rests");
   }
@@ -63,7 +63,7 @@ RetargetMap parse_retarget_map(const std::string& text, const std::string& where
                     "use the rig's names (limber info RIG lists them)");
       if (!map.sources.emplace(bone.get<std::string>(), RetargetMap::Source{joint, offset}).second)
         throw Error("bone \"" + bone.get<std::string>().substr(0, 60) + "\" is moved by two joints", here,
-                    "keep one of them");
+                    "keep one of the two joints");
     };
     for (const auto& [joint, value] : json.items()) {
       const std::string here = where + ", joint " + joint.substr(0, 60);

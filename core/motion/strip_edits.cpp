@@ -197,7 +197,9 @@ Strips rescaled_strips(const Strips& strips, const std::function<int(int)>& fram
       strip.speed *= speed;
       if (!(strip.speed >= kSlowest && strip.speed <= kFastest))
         throw Error(strip.speed < kSlowest ? "the strip would play too slowly" : "the strip would play too fast",
-                    strip.name, "choose another speed, or change the strip's: it plays 0.05 to 20 times as fast");
+                    strip.name,
+                    "choose another speed, or first change the strip's own speed: a strip plays 0.05 to 20 times as "
+                    "fast as its clip");
       for (int* frames : {&strip.blend_in, &strip.blend_out})
         *frames = static_cast<int>(std::clamp<double>(std::round(*frames * ratio), 0, kLongestBlend));
     }

@@ -71,19 +71,19 @@ void require_within_limits(const Strips& strips) {
     for (const Strip& strip : track.strips) {
       for (const int frame : {strip.start, strip.first, strip.last})
         if (std::abs(std::int64_t{frame}) > kMostStripFrame)
-          throw Error("the strip begins too far away", strip.name,
-                      "keep it within " + std::to_string(kMostStripFrame) + " frames of frame 0");
+          throw Error("the strip lies too far from frame 0", strip.name,
+                      "keep the strip within " + std::to_string(kMostStripFrame) + " frames of frame 0");
       if (!begins_within(strip))
-        throw Error("the strip begins behind the end of its clip", strip.name, "let it play more frames");
+        throw Error("the strip begins after the end of its clip", strip.name, "let the strip play more frames");
       for (const glm::dvec3& place : {strip.place.from, strip.place.to})
         for (int axis = 0; axis < 3; ++axis)
           if (!(std::abs(place[axis]) <= kFarthestMove))
-            throw Error("the strip lies too far away", strip.name, "place it within 10 km");
+            throw Error("the strip moves the body too far away", strip.name, "keep its positions within 10 km");
     }
   }
   if (count > kMostStrips)
     throw Error("a clip keeps at most " + std::to_string(kMostStrips) + " strips", std::to_string(count) + " strips",
-                "bake some of them to a clip");
+                "bake some strips to a clip");
   if (strips.tracks.size() > kMostTracks)
     throw Error("a clip keeps at most " + std::to_string(kMostTracks) + " tracks",
                 std::to_string(strips.tracks.size()) + " tracks", "put strips that do not overlap on one track");

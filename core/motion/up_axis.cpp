@@ -100,7 +100,7 @@ std::string reason_of(const UpGuess& guess) {
   switch (guess.by) {
     case UpGuess::By::Frames: return "over its frames the head is above the feet along " + axis;
     case UpGuess::By::Rest: return "at rest the head is above the feet along " + axis;
-    case UpGuess::By::Travel: return "it travels across " + axis;
+    case UpGuess::By::Travel: return "the body travels perpendicular to " + axis;
     case UpGuess::By::Nothing: break;
   }
   return "";

@@ -93,12 +93,12 @@ Clock::time_point after(double seconds) {
 }
 
 std::string failure_of(Ending ending, int status) {
-  if (ending == Ending::too_much) return "it answered more than expected";
-  if (ending == Ending::too_late) return "it took too long";
-  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "it took too much processor time";
-  if (WIFSIGNALED(status)) return "it crashed (signal " + std::to_string(WTERMSIG(status)) + ")";
+  if (ending == Ending::too_much) return "the process sent more than expected";
+  if (ending == Ending::too_late) return "the process took too long";
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU) return "the process took too much processor time";
+  if (WIFSIGNALED(status)) return "the process crashed (signal " + std::to_string(WTERMSIG(status)) + ")";
   if (WIFEXITED(status) && WEXITSTATUS(status) != 0)
-    return "it failed (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
+    return "the process failed (exit code " + std::to_string(WEXITSTATUS(status)) + ")";
   return {};
 }
 
@@ -106,7 +106,7 @@ std::string failure_of(Ending ending, int status) {
 
 ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size_t most, const ChildLimits& limits,
                          const AskCancelled& cancelled) {
-  constexpr const char* kNoProcess = "no process could be started for it";
+  constexpr const char* kNoProcess = "no process could be started";
   const std::size_t memory = limits.memory_bytes > 0 ? mapped_memory() + limits.memory_bytes : 0;
   const Clock::time_point latest = after(limits.seconds);
   int ends[2];
@@ -131,7 +131,7 @@ ChildAnswer run_in_child(const std::function<bool(const Send&)>& work, std::size
   Ending ending = read_all(ends[0], most, latest, cancelled, sent);
   ::close(ends[0]);
   const int status = status_of(child, latest, cancelled, ending);
-  if (ending == Ending::cancelled) return {.failure = "it was cancelled", .cancelled = true};
+  if (ending == Ending::cancelled) return {.failure = "the process was cancelled", .cancelled = true};
   if (std::string failure = failure_of(ending, status); !failure.empty()) return {std::nullopt, std::move(failure)};
   return {std::move(sent), {}};
 }

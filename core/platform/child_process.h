@@ -22,7 +22,7 @@ struct ChildLimits {
 
 struct ChildAnswer {
   std::optional<std::string> sent;  // the bytes that the child sent; none when it failed
-  std::string failure;     // why the work failed, for example "it crashed (signal 11)"; empty when it did not fail
+  std::string failure;     // why the work failed, for example "the process took too long"; empty when it did not fail
   bool cancelled = false;  // true: the work was ended because the user had cancelled it
 };
 

@@ -54,12 +54,13 @@ SidedJoint sided(const BodyFrames& frames, const SidedJoint& joint, const std::s
   if (is_paired(joint.joint) && joint.side == BodySide::Middle) {
     const SidedJoint left{joint.joint, BodySide::Left}, right{joint.joint, BodySide::Right};
     if (has_joint(frames, left) && has_joint(frames, right))
-      throw Error("the rig has two of \"" + name_of(joint) + "\"", where, "write left, right or both before it");
+      throw Error("the rig has a left and a right \"" + name_of(joint) + "\"", where,
+                  "write left, right or both before the joint's name");
     if (has_joint(frames, left)) return left;
     if (has_joint(frames, right)) return right;
   }
   throw Error("the rig has no " + name_of(joint) + " between bones that are known by their names", where,
-              "use what it has: " + known);
+              "use one of these joints: " + known);
 }
 
 // Computes the rotations of all bones in world axes. Each rotation is computed when it is first needed, since bones may

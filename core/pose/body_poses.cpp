@@ -101,7 +101,7 @@ Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest&
   if (frames.feet_point_back)
     warnings.emplace_back(
         "the rig's feet point to its back: if left and right are exchanged in its bones' names, the pose is wrong: "
-        "exchange them, or mirror volume and rig");
+        "exchange the names, or mirror volume and rig");
   if (const std::string apart = limbs_apart(armature, frames); !apart.empty()) warnings.push_back(apart);
   JointAngles angles;
   if (!request.name.empty()) {
@@ -111,7 +111,7 @@ Pose with_request(const Armature& armature, const Pose& pose, const PoseRequest&
     if (const std::string lacking = lacking_within_limbs(frames, whole); !lacking.empty())
       warnings.push_back("the pose leaves out joints whose bones are not known by their names: " + lacking);
     if (angles.empty())
-      throw Error("the rig has no limb's joint between bones that are known by their names", where,
+      throw Error("no joint of the rig's limbs lies between bones that are known by their names", where,
                   "name its bones as in \"LeftThigh\", or give the pose by --pose FILE");
   }
   for (const std::string& one : request.joints) {

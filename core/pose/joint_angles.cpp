@@ -332,7 +332,7 @@ void add_joint_angle(JointAngles& angles, const std::string& asked, double degre
   if (add_hand_request(angles, words, first, sides, degrees)) return;
 
   const auto found = joint_at(words, first);
-  if (!found) throw Error("this names no joint that is known", where, "write one of: " + known_joints());
+  if (!found) throw Error("there is no joint of this name", where, "write one of: " + known_joints());
   const auto& [joint, plural, next] = *found;
   const std::string motion = joined(words, next, words.size());
   const auto motions = motions_of(joint, motion, degrees);

@@ -24,7 +24,7 @@ std::vector<double> numbers(const Json& value, size_t count, const char* key, co
   const std::string what =
       "\"" + std::string(key) + "\" is not " + std::to_string(count) + " finite number" + (count > 1 ? "s" : "");
   const Json list = count == 1 ? Json::array({value}) : value;
-  if (!list.is_array() || list.size() != count) throw Error(what, where, "write them as a list");
+  if (!list.is_array() || list.size() != count) throw Error(what, where, "write the numbers as a list");
   std::vector<double> read;
   for (const Json& one : list) {
     if (!one.is_number() || !(std::abs(one.get<double>()) <= kLargest))

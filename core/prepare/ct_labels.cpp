@@ -257,7 +257,7 @@ void check(const CtThresholds& t) {
   char text[160];
   std::snprintf(text, sizeof text, "body %g, fat %g, soft tissue %g, bone %g", t.body, t.fat, t.soft, t.bone);
   throw Error("the thresholds of a CT must ascend: body, fat, soft tissue, bone", text,
-              "the usual ones are -300, -190, -30 and 200");
+              "the usual thresholds are -300, -190, -30 and 200");
 }
 
 }  // namespace
@@ -275,7 +275,7 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
     char text[80];
     std::snprintf(text, sizeof text, "values from %.0f to %.0f", image.least, image.most());
     throw Error("no body was found in this image", text,
-                "it must be a CT in Hounsfield units; lower the threshold of the body if it is one");
+                "give a CT in Hounsfield units; if this is a CT, lower the threshold of the body");
   }
   CtLabels labels;
   LabelVolume& volume = labels.volume;
@@ -286,7 +286,7 @@ CtLabels labels_of_ct(const GreyLevels& image, const CtThresholds& thresholds, P
     const double value = smoothed(image, i);
     volume.voxels[i] = value >= thresholds.fat && value < thresholds.soft ? kFat : kSoft;
   });
-  progress.update("air inside", 0.4);
+  progress.update("air inside the body", 0.4);
   label_air(image, volume);
   progress.update("bone", 0.6);
   label_bone(image, thresholds, volume);
@@ -324,7 +324,8 @@ CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_m
   char range[80];
   std::snprintf(range, sizeof range, "values from %g to %g", image.least, image.most());
   if (!(skin_mm >= 0)) throw Error("the skin has no thickness", "labels of the body", "give 0 mm or more");
-  if (image.least >= threshold) throw Error("no value is below the threshold of the body", range, "raise it");
+  if (image.least >= threshold)
+    throw Error("no value is below the threshold of the body", range, "raise the threshold");
   progress.update("body", 0);
   const Mask body = body_of(image, threshold, progress);
   if (is_empty(body)) throw Error("no body was found above the threshold", range, "lower the threshold of the body");
@@ -333,7 +334,7 @@ CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_m
   volume.grid = image.grid;
   volume.voxels.resize(body.size());
   for_each_voxel(image.grid, [&](std::size_t i) { volume.voxels[i] = body[i] ? kSoft : kAir; });
-  progress.update("dark inside", 0.5);
+  progress.update("dark regions inside the body", 0.5);
   const Mask enclosed = enclosed_in_slices(volume), outside = outside_air(volume);
   for_each_voxel(image.grid, [&](std::size_t i) {
     if (enclosed[i] || !outside[i]) volume.voxels[i] = kSoft;

@@ -133,7 +133,7 @@ LabelVolume reorient(const LabelVolume& volume, const std::string& code) {
 LabelVolume crop(const LabelVolume& volume, const glm::ivec3& low, const glm::ivec3& high) {
   const glm::ivec3 first = glm::max(low, glm::ivec3(0)), last = glm::min(high, volume.grid.size - 1);
   if (glm::any(glm::lessThan(last, first)))
-    throw Error("there is nothing to crop to", "the box", "move it over the volume");
+    throw Error("there is nothing to crop to", "the box", "move the box over the volume");
   return boxed(volume, first, last - first + 1);
 }
 

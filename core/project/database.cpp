@@ -83,7 +83,7 @@ void Database::fail(int code) const {
     case SQLITE_PERM:
       throw Error("the project cannot be written: it or its folder is read-only", where_, "save elsewhere");
     case SQLITE_CANTOPEN:
-      throw Error("the project cannot be opened", where_, "check that it and its folder may be read and written");
+      throw Error("the project cannot be opened", where_, "check that you may read and write the file and its folder");
     case SQLITE_NOTADB: throw Error("this is not a Limber project", where_, "name a .limber file");
     case SQLITE_CORRUPT:
     case SQLITE_TOOBIG:
@@ -171,7 +171,7 @@ void Database::clear_journal(const Path& path) {
                       begins_as_journal(file);
     if (!ours)
       throw Error("another file has the name of the project's journal", file.string(),
-                  "move it away, or choose another name");
+                  "move that file away, or choose another name");
     std::filesystem::remove(file, error);
     if (error) throw Error("the journal of an earlier project cannot be removed", file.string(), error.message());
   }

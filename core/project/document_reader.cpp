@@ -571,7 +571,7 @@ class Reading {
     if (!lost.empty()) {
       if (lost.size() + 1 == node.leaves.size()) throw damaged("weights");
       warnings_.push_back(part_lost("weights", lost.size(), node.leaves.size() - 1) +
-                          "their voxels got the weights of a neighbouring block; compute or paint them again");
+                          "their voxels got the weights of a neighbouring block; compute or paint the weights again");
       fill_lost_bricks(chunks, lengths);
     }
     return {std::move(bones), std::move(chunks)};

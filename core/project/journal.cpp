@@ -319,8 +319,9 @@ Recovered recover(const Path& journal, Progress& progress) {
     limits.leave_out_damaged = true;
     if (read_latest(reader, with_carved, limits, journal, recovered, progress)) return recovered;
   }
-  throw Error("no edit can be recovered", journal.string(),
-              reader.edits().empty() ? "the journal is empty" : "the project it builds on is missing or damaged");
+  throw Error(
+      "no edit can be recovered", journal.string(),
+      reader.edits().empty() ? "the journal is empty" : "the project that the edits change is missing or damaged");
 }
 
 void discard(const Path& journal, const Path& folder) {

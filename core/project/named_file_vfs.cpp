@@ -82,8 +82,8 @@ bool is_no_journal(sqlite3_file* file) {
 // `state`.
 bool refuse_journal(State& state, sqlite3_file* file) {
   const std::string move_away =
-      "move it away if you do not know where it comes from, then check the project: limber project " + state.database +
-      " verify";
+      "move this file away if you do not know where it comes from, then check the project: limber project " +
+      state.database + " verify";
   if (names_super_journal(file))
     state.refuse("the journal beside the project names another file, which no journal of Limber's does", state.journal,
                  move_away);
@@ -105,7 +105,7 @@ int open_file(sqlite3_vfs* vfs, sqlite3_filename path, sqlite3_file* file, int f
   }
   if (path != state.database && !is_regular_or_missing(path)) {
     state.refuse("the file beside the project is not a regular file", path,
-                 "remove it if you do not know where it comes from, then open the project again");
+                 "remove this file if you do not know where it comes from, then open the project again");
     return SQLITE_CANTOPEN;
   }
   const int code = state.system->xOpen(state.system, path, file, flags, out_flags);

@@ -186,7 +186,7 @@ std::string read_thumbnail(const Path& path) {
 namespace {
 Error not_written(const Path& path, const std::error_code& error) {
   if (error == std::errc::permission_denied || error == std::errc::read_only_file_system)
-    return {"the project cannot be opened", path.string(), "check that it and its folder may be read and written"};
+    return {"the project cannot be opened", path.string(), "check that you may read and write the file and its folder"};
   if (is_disk_full(error))
     return {"the project cannot be written: the disk is full", path.string(), "free some space, or save elsewhere"};
   return {"the project cannot be written", path.string(), error.message()};

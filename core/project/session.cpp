@@ -293,7 +293,7 @@ std::optional<Recoverable> Session::leftover() const {
 
 Recovered Session::recover(Progress& progress) {
   const std::lock_guard disk(disk_);
-  if (!leftover_) throw Error("there is nothing to recover", path().string(), "go on with the project as it is");
+  if (!leftover_) throw Error("there is nothing to recover", path().string(), "continue with the project as it is");
   Recovered recovered = limber::recover(leftover_->journal, progress);
   // The new journal replaces the old one in one step, so one of the two exists at any moment.
   begin_journal(&recovered.document, "Recovered: " + recovered.label);
@@ -366,7 +366,7 @@ void Session::write_file(const std::function<SaveMark()>& write, const Document&
 
 std::string Session::save(const Project& project, Progress& progress) {
   const Path file = path();
-  if (file.empty()) throw Error("the project has no file yet", "save", "choose a name for it");
+  if (file.empty()) throw Error("the project has no file yet", "save", "choose a name for the project");
   const std::lock_guard one_at_a_time(saving_);
   std::error_code error;
   const bool gone = !fs::exists(file, error);

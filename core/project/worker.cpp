@@ -135,7 +135,7 @@ class Listener {
 Error relay(const std::string& line, const Path& job) {
   const std::size_t first = line.find(": "), last = line.rfind(": ");
   if (first == std::string::npos || first == last)
-    return {"the worker failed", job.string(), line.empty() ? "it gave no reason" : line};
+    return {"the worker failed", job.string(), line.empty() ? "the worker gave no reason" : line};
   return {line.substr(0, first), line.substr(first + 2, last - first - 2), line.substr(last + 2)};
 }
 
@@ -144,7 +144,7 @@ Error death(const ProgramEnd& end, const Path& job) {
     return {"the worker was ended by the system, most likely for lack of memory", job.string(),
             "use a coarser spacing, or close other programs"};
   return {"the worker crashed", job.string() + ", " + end.signal_text(),
-          "try other settings, and please report those that failed"};
+          "try other settings, and please report the settings that failed"};
 }
 
 }  // namespace
@@ -205,7 +205,8 @@ WorkerOutput run_worker(const Path& job_file, Progress& progress, const WorkerSe
   if (stop == Stop::Silence)
     throw Error("the worker stopped answering and was ended after " +
                     std::to_string(static_cast<long>(settings.silence_limit)) + " s",
-                job_file.string(), "run it again; if that happens again use a coarser spacing, and check the disk");
+                job_file.string(),
+                "run the job again; if this happens again, use a coarser spacing, and check the disk");
   const ProgramEnd& end = process.end();
   if (end.by_signal()) throw death(end, job_file);
   if (end.exit_code == 3) throw Cancelled();

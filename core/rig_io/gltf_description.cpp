@@ -386,8 +386,9 @@ void read_data(const Json& gltf, GltfDescription& description, const std::string
 void check_gltf_index(std::uint64_t index, std::size_t size, const std::string& what, const char* list,
                       const std::string& where) {
   if (index >= size)
-    throw Error(what + " points at number " + std::to_string(index) + " of " + std::to_string(size) + " " + list, where,
-                "export the file again");
+    throw Error(what + " refers to number " + std::to_string(index) + ", but there are only " + std::to_string(size) +
+                    " " + list,
+                where, "export the file again");
 }
 
 GltfDescription parse_gltf_description(const std::string& bytes, bool is_binary, const std::string& where) {

@@ -69,7 +69,8 @@ ObjSummary parse_obj_summary(const std::string& text, const std::string& where) 
   }
   if (summary.vertices == 0) throw Error("there are no vertices", where, "use a Wavefront OBJ file");
   if (largest_corner > summary.vertices)
-    throw Error("a face names vertex " + std::to_string(largest_corner) + " of " + std::to_string(summary.vertices),
+    throw Error("a face names vertex " + std::to_string(largest_corner) + ", which is not one of the " +
+                    std::to_string(summary.vertices) + " vertices",
                 where, "copy the whole file again");
   return summary;
 }

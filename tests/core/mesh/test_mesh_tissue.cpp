@@ -211,11 +211,11 @@ TEST_CASE("mesh tissue: where TetGen crashes, hangs or fails the lattice's own t
     check_quality(quality_of(result, regions));
     return result.warning;
   };
-  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("TetGen failed on its surface: it crashed (signal 11)") !=
+  CHECK(with(120, [] { ::raise(SIGSEGV); }).find("TetGen failed on its surface: the process crashed (signal 11)") !=
         std::string::npos);
-  CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("it took too long") !=
+  CHECK(with(0.05, [] { std::this_thread::sleep_for(std::chrono::hours(1)); }).find("the process took too long") !=
         std::string::npos);
-  CHECK(with(120, [] { std::_Exit(3); }).find("it failed (exit code 3)") != std::string::npos);
+  CHECK(with(120, [] { std::_Exit(3); }).find("the process failed (exit code 3)") != std::string::npos);
 }
 
 TEST_CASE("mesh tissue: no voxels make no mesh, and no fuss") {

@@ -219,7 +219,7 @@ TEST_CASE("surface file: damaged STL is refused with its place") {
   const std::string& binary = files.at("binary.stl");
   const std::string& ascii = files.at("ascii.stl");
   check_refused("", "a.stl", "too short");
-  check_refused(binary.substr(0, 200), "a.stl", "says 4 triangles and has 2");
+  check_refused(binary.substr(0, 200), "a.stl", "states 4 triangles, but the file has only 2");
   check_refused(binary.substr(0, 80) + "\xff\xff\xff\xff" + binary.substr(84), "a.stl", "says 4294967295 triangles");
   check_refused(ascii.substr(0, ascii.find("vertex")), "a.stl", "ends before");
   check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 0"), "a.stl", "does not have three numbers");

@@ -128,12 +128,12 @@ TEST_CASE(
     CHECK_FALSE(inside.mesh);
     return inside.failure;
   };
-  CHECK(why({.at_start = [] { ::raise(SIGSEGV); }}) == "it crashed (signal 11)");
+  CHECK(why({.at_start = [] { ::raise(SIGSEGV); }}) == "the process crashed (signal 11)");
   CHECK(why({.seconds = 0.05, .at_start = [] { std::this_thread::sleep_for(std::chrono::hours(1)); }}) ==
-        "it took too long");
-  CHECK(why({.at_start = [] { std::_Exit(7); }}) == "it failed (exit code 7)");
-  CHECK(why({.at_start = [] { std::_Exit(0); }}) == "it ended without an answer");
-  CHECK(why({.at_start = [] { throw 2; }}) == "it failed (exit code 1)");
+        "the process took too long");
+  CHECK(why({.at_start = [] { std::_Exit(7); }}) == "the process failed (exit code 7)");
+  CHECK(why({.at_start = [] { std::_Exit(0); }}) == "TetGen ended without a result");
+  CHECK(why({.at_start = [] { throw 2; }}) == "the process failed (exit code 1)");
 #ifndef LIMBER_ADDRESS_SANITIZER
   // The child takes all memory that its limit allows before TetGen asks for some.
   const auto eat = [] {
@@ -142,7 +142,7 @@ TEST_CASE(
       }
   };
   CHECK(tetrahedralize_inside(ball(40, {0, 0, 0}, 40), {.memory_bytes = 16 << 20, .at_start = eat}).failure ==
-        "it ran out of memory");
+        "TetGen ran out of memory");
 #endif
 }
 

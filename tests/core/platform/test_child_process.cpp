@@ -50,19 +50,20 @@ TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite
     CHECK_FALSE(answer.sent);
     return answer.failure;
   };
-  CHECK(why([](const Send&) -> bool { std::abort(); }) == "it crashed (signal 6)");
-  CHECK(why([](const Send&) -> bool { std::_Exit(3); }) == "it failed (exit code 3)");
-  CHECK(why([](const Send&) { return false; }) == "it failed (exit code 1)");
-  CHECK(why([](const Send& send) { return send("01234567890", 11), true; }) == "it answered more than expected");
-  CHECK(why([](const Send&) { return ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
+  CHECK(why([](const Send&) -> bool { std::abort(); }) == "the process crashed (signal 6)");
+  CHECK(why([](const Send&) -> bool { std::_Exit(3); }) == "the process failed (exit code 3)");
+  CHECK(why([](const Send&) { return false; }) == "the process failed (exit code 1)");
+  CHECK(why([](const Send& send) { return send("01234567890", 11), true; }) == "the process sent more than expected");
+  CHECK(why([](const Send&) { return ::sleep(100) == 0; }, {.seconds = 0.1}) == "the process took too long");
   // This child closes its pipe and does not end.
-  CHECK(why([](const Send&) { return ::closefrom(3), ::sleep(100) == 0; }, {.seconds = 0.1}) == "it took too long");
+  CHECK(why([](const Send&) { return ::closefrom(3), ::sleep(100) == 0; }, {.seconds = 0.1}) ==
+        "the process took too long");
   CHECK(why(
             [](const Send&) {
               for (volatile unsigned spins = 0;;) spins = spins + 1;
               return true;
             },
-            {.processor_seconds = 1}) == "it took too much processor time");
+            {.processor_seconds = 1}) == "the process took too much processor time");
 #ifndef LIMBER_ADDRESS_SANITIZER
   const std::size_t most = 64 << 20;
   const auto takes = [](std::size_t bytes) {
@@ -73,7 +74,7 @@ TEST_CASE("child process: the reason of a failure is told" * doctest::test_suite
     };
   };
   CHECK(run_in_child(takes(most / 4), 10, {.memory_bytes = most}).sent);
-  CHECK(why(takes(most * 2), {.memory_bytes = most}) == "it failed (exit code 1)");
+  CHECK(why(takes(most * 2), {.memory_bytes = most}) == "the process failed (exit code 1)");
 #endif
 }
 

@@ -360,7 +360,7 @@ TEST_CASE("body poses: what a rig lacks or cannot tell is refused in one line") 
     if (bone.name == "LeftThigh" || bone.name == "LeftShank") legs.bones.push_back(bone);
   legs.bones[0].parent = -1, legs.bones[1].parent = 0;
   // The root carries the whole body, so turning it would turn everything: the request is refused.
-  CHECK(refusal(legs, "", {"left hip flexion=20"}).find("use what it has: left knee") != std::string::npos);
+  CHECK(refusal(legs, "", {"left hip flexion=20"}).find("use one of these joints: left knee") != std::string::npos);
   CHECK(refusal(legs, "", {"right knee flexion=20"}).find("no right knee") != std::string::npos);
   CHECK(refusal(legs, "", {"knee flexion=20"}).empty());
   CHECK(refusal(legs, "", {"knees flexion=20"}).empty());
@@ -369,7 +369,7 @@ TEST_CASE("body poses: what a rig lacks or cannot tell is refused in one line") 
   CHECK(refusal(body_rig(), "lie", {}).find("stand, sit, walk, phone, arms-up, squat, drive, supine, reach, T, A") !=
         std::string::npos);
   Armature nameless{{{.name = "Bone", .tail = {0, 0, 10}}}};
-  CHECK(refusal(nameless, "sit", {}).find("no limb's joint") != std::string::npos);
+  CHECK(refusal(nameless, "sit", {}).find("no joint of the rig's limbs") != std::string::npos);
   CHECK(refusal(nameless, "", {"neck flexion=3"}).find("no bone name of the rig is recognised") != std::string::npos);
 }
 

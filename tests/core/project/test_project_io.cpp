@@ -295,7 +295,7 @@ TEST_CASE("project: where there is no room, and in a folder that is read-only, a
   CHECK(in_read_only ==
         "the project cannot be written: it or its folder is read-only: " + path.string() + ": save elsewhere");
   CHECK(new_in_read_only == "the project cannot be opened: " + (folder / "b.limber").string() +
-                                ": check that it and its folder may be read and written");
+                                ": check that you may read and write the file and its folder");
   CHECK(bytes_of_file(path) == before);
   update_project(project, path, mark, Unused::Remove, writer);
   CHECK(same_contents(read_project(path).document, project.document));

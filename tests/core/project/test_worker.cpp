@@ -156,10 +156,11 @@ TEST_CASE("worker: one that yields is given only what all others leave of the ma
 TEST_CASE("worker: a crash, a kill and a failure without a word become clear messages") {
   const TemporaryFolder folder;
   CHECK(message_of(folder, "kill -SEGV $$") ==
-        "the worker crashed: job.json, Segmentation fault: try other settings, and please report those that failed");
+        "the worker crashed: job.json, Segmentation fault: try other settings, and please report the settings that "
+        "failed");
   CHECK(message_of(folder, "kill -ABRT $$").find("Aborted") != std::string::npos);
   CHECK(message_of(folder, "kill -KILL $$").find("lack of memory") != std::string::npos);
-  CHECK(message_of(folder, "exit 1") == "the worker failed: job.json: it gave no reason");
+  CHECK(message_of(folder, "exit 1") == "the worker failed: job.json: the worker gave no reason");
   CHECK(message_of(folder, "echo 'limber: a: b: c' >&2; exit 1") == "a: b: c");
   CHECK(message_of(folder, "sleep 60", {.time_limit = 0.1}).starts_with("the worker took longer than"));
   Progress quiet;
