@@ -201,7 +201,7 @@ Stroke::Work::Work(const WeightedBody& body, std::shared_ptr<const SkinWeights> 
     throw std::logic_error("Stroke: the weights are of another body");
   const auto in_rig = [&](int bone) { return bone >= 0 && bone < std::ssize(body.armature.bones); };
   if (settings.bones.empty() || !std::all_of(settings.bones.begin(), settings.bones.end(), in_rig))
-    throw std::logic_error("Stroke: no bone of the rig");
+    throw std::logic_error("Stroke: a bone is not in the rig, or no bone is given");
   blocked_.assign(body.armature.bones.size(), 0);
   slot_of_.assign(body.tissue.bricks().size(), -1);
   sides_[0] = side_of(settings.bones, std::nullopt);

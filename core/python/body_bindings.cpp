@@ -163,7 +163,7 @@ void check_options(const ResampleOptions& options) {
       throw Error(std::string("there is no such ") + name, word, "write " + known[1] + " or " + known[2]);
   if (options.mass_exact && options.nearest)
     throw Error("mass_exact needs interpolated labels, which nearest does not compute", "mass_exact",
-                "leave one of the two out");
+                "leave out mass_exact or nearest");
   if (options.method == kFiniteElements) return;
   if (options.contact || !options.quality.empty() || !options.mesher.empty())
     throw Error("contact, quality and mesher need finite elements", "method " + options.method, "use method=\"fem\"");
@@ -274,7 +274,7 @@ py::array_t<double> move_points(const Weights& weights, const Doubles& points, c
                                 const std::string& method) {
   const DeformationMethod* found = find_method(method);
   if (!found || !found->blend)
-    throw Error("points are not moved by this method", method, "write " + method_summaries(Methods::Blends));
+    throw Error("this method cannot move points", method, "write " + method_summaries(Methods::Blends));
   const std::vector<glm::dvec3> rest = points_from(points, "points");
   std::vector<glm::dvec3> posed;
   {
@@ -296,7 +296,7 @@ void export_volume(const Volume& volume, const Path& path, std::optional<double>
                    const py::object& progress) {
   const Exporter* exporter = exporter_for(path);
   if (!exporter || !exporter->takes_voxels)
-    throw Error("no program reads a body under this name", path.string(), "end it in one of " + exporter_endings());
+    throw Error("bodies cannot be exported with this extension", path.string(), "use one of " + exporter_endings());
   std::vector<TissueMaterial> materials;
   if (exporter->needs_frequency) {
     if (!frequency)
@@ -336,7 +336,7 @@ void add_bodies(py::module_& module) {
   py::class_<Body, std::shared_ptr<Body>>(module, "Body", R"(A body: a volume and the rig that poses it.
 
 tissues   names and kinds of the labels, instead of the volume's own
-bones     labels that are bone, as values in the file; without them and without a table they are found
+bones     labels that are bone, as values in the file (default: from the table, or found automatically)
 bone_map  {"label or label@left": "rig bone"}: the rig bone that each label follows)")
       .def(py::init(&body_from), py::arg("volume"), py::arg("rig"), py::kw_only(), py::arg("tissues") = nullptr,
            py::arg("bones") = std::vector<double>(), py::arg("bone_map") = BoneMap())
@@ -377,7 +377,7 @@ bones, weights  N x 4, in the order of Weights.voxels; the weights of a voxel ar
       .def_property_readonly("warnings", [](const Weights& w) { return w.bound->warnings; })
       .def("save", &save_weights, py::arg("path"), "Writes the weights (.nrrd).")
       .def("move_points", &move_points, py::arg("points"), py::arg("pose"), py::arg("method") = "dqs",
-           "Returns N x 3: points at rest (N x 3, LPS mm) moved to a pose as the tissue around them.")
+           "Returns N x 3: points at rest (N x 3, LPS mm) moved into a pose like the tissue around them.")
       .def(
           "resample",
           [](const Weights& weights, const py::object& poses, const std::string& method, const std::string& glide,
@@ -394,7 +394,7 @@ bones, weights  N x 4, in the order of Weights.voxels; the weights of a voxel ar
           py::arg("nearest") = false, py::arg("mass_exact") = false, py::arg("fit_joints") = false,
           py::arg("spacing") = py::none(), py::arg("report") = false, py::arg("displacement") = false,
           py::arg("jacobian") = false, py::arg("overlap") = false, py::arg("grey") = py::none(),
-          py::arg("progress") = py::none(), R"(Computes the label volume of a pose; of a list of poses a list.
+          py::arg("progress") = py::none(), R"(Computes the posed volume; for a list of poses, returns a list.
 
 method        lbs, dqs, mix or fem
 glide         largest shift of joints whose bones would overlap: joint, voxel, off, or mm as a string (the command
@@ -418,20 +418,24 @@ progress      a function of (stage, fraction), or a tqdm bar)");
           },
           "uint16 [x, y, z], read-only, x fastest in memory; not a copy.")
       .def_readonly("rig", &PosedVolume::rig,
-                    "The body's rig, with joints fitted to the pose where that was asked for.")
-      .def_readonly("pose", &PosedVolume::pose, "The pose that was reached, for the rig in .rig, with shifted joints.")
+                    "The body's rig; its joints are fitted to the pose if fit_joints was set.")
+      .def_readonly("pose", &PosedVolume::pose,
+                    "The pose that was reached, for the rig in .rig, including the shifts of joints.")
       .def_readonly("reached", &PosedVolume::reached,
                     "Share of the pose that fem reached, from 0 (rest) to 1 (the whole pose).")
-      .def_property_readonly("report", &report_of, "The report as a dict, as the command line writes it; None without.")
+      .def_property_readonly("report", &report_of,
+                             "The report as a dict, as the command line writes it; None if report was not set.")
       .def_readonly("warnings", &PosedVolume::warnings)
-      .def_property_readonly("displacement", &displacement_of, "float32 [x, y, z, 3]: posed minus rest, mm; or None.")
+      .def_property_readonly("displacement", &displacement_of,
+                             "float32 [x, y, z, 3]: posed minus rest position, mm; None if displacement was not set.")
       .def_property_readonly(
           "jacobian", [](const PosedVolume& p) { return field_of(p, p.posed->jacobian); },
-          "float32 [x, y, z]: change of volume at each voxel; or None.")
+          "float32 [x, y, z]: posed / rest volume at each voxel; None if jacobian was not set.")
       .def_property_readonly(
           "overlap", [](const PosedVolume& p) { return field_of(p, p.posed->overlap); },
-          "uint16 [x, y, z]: 1 where tissue overlaps, 2 where bones do; or None.")
-      .def_property_readonly("grey", &grey_of, "float32 [x, y, z]: the grey values in the pose; or None.")
+          "uint16 [x, y, z]: 1 where tissue overlaps, 2 where bones overlap; None if overlap was not set.")
+      .def_property_readonly("grey", &grey_of,
+                             "float32 [x, y, z]: the grey values in the pose; None if no grey was given.")
       .def(
           "save",
           [](const PosedVolume& p, const Path& path) {
@@ -443,7 +447,7 @@ progress      a function of (stage, fraction), or a tqdm bar)");
 
   module.def("export", &export_volume, py::arg("volume"), py::arg("path"), py::kw_only(),
              py::arg("frequency") = py::none(), py::arg("progress") = py::none(),
-             "Writes a volume for another program, which the file's extension selects. frequency: Hz, needed for "
+             "Writes a volume for another program; the file's extension selects the format. frequency: Hz, needed for "
              "materials that depend on it.");
   module.def("make_phantom", &make_phantom, py::arg("name") = "arm", py::kw_only(), py::arg("spacing") = py::none(),
              "Makes a procedural sample body, arm or body, and returns (volume, rig, motion). spacing: mm.");

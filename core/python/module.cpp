@@ -28,7 +28,7 @@ PYBIND11_MODULE(_limber, module) {
   module.attr("LimberWarning") =
       py::reinterpret_steal<py::object>(PyErr_NewException("limber.LimberWarning", PyExc_UserWarning, nullptr));
   module.def("set_thread_count", &python::set_thread_count, py::arg("threads"),
-             "Sets the number of threads of every following call; 0: all cores. Results do not depend on it.");
+             "Sets the number of threads of every following call; 0: all cores. Results do not depend on the number.");
   python::add_volumes(module);
   python::add_rigs(module);
   python::add_motions(module);

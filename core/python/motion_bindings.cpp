@@ -60,7 +60,7 @@ Pose pose_at(const RiggedMotion& motion, py::ssize_t frame) {
 void add_motions(py::module_& module) {
   py::class_<RiggedMotion>(module, "RiggedMotion", "A motion on a rig: motion[frame] is a pose.")
       .def("__len__", [](const RiggedMotion& motion) { return motion.motion->frame_count; })
-      .def("__getitem__", &pose_at, py::arg("frame"), "Returns the pose of a frame, from 0.");
+      .def("__getitem__", &pose_at, py::arg("frame"), "Returns the pose of a frame, counted from 0.");
 
   py::class_<Motion, std::shared_ptr<Motion>>(module, "Motion", "Motion capture, as a BVH file holds it.")
       .def_property_readonly("joint_names",

@@ -71,7 +71,7 @@ class Preview {
 PosedPreview update_preview(Preview& preview, const Pose& pose, const std::string& method) {
   const DeformationMethod* found = find_method(method);
   if (!found || !found->blend)
-    throw Error("previews are not posed by this method", method, "write " + method_summaries(Methods::Blends));
+    throw Error("this method cannot pose previews", method, "write " + method_summaries(Methods::Blends));
   if (pose.rotation.size() != preview.bone_count())
     throw Error("the pose is of another rig", std::to_string(pose.rotation.size()) + " bones",
                 "give a pose of this body's rig");

@@ -35,7 +35,7 @@ Armature rig_from(const std::vector<std::string>& names, const std::vector<std::
                   const Doubles& heads, const Doubles& tails) {
   const std::vector<glm::dvec3> head = points_from(heads, "heads"), tail = points_from(tails, "tails");
   if (parents.size() != names.size() || head.size() != names.size() || tail.size() != names.size())
-    throw py::value_error("names, parents, heads and tails: give as many of each");
+    throw py::value_error("names, parents, heads and tails: give lists of equal length");
   std::vector<Bone> bones(names.size());
   for (std::size_t b = 0; b < bones.size(); ++b) {
     bones[b].name = names[b];

@@ -37,7 +37,7 @@ Grid grid_from(const std::array<py::ssize_t, 3>& shape, const py::object& spacin
   RawGrid raw{sizes};
   if (!affine.is_none()) {
     if (!spacing.is_none() || !origin.is_none() || !direction.is_none())
-      throw py::value_error("affine: it replaces spacing, origin and direction; give one or the other");
+      throw py::value_error("affine: it replaces spacing, origin and direction; leave these three out");
     const auto matrix = affine.cast<Doubles>();
     if (matrix.ndim() != 2 || matrix.shape(0) != 4 || matrix.shape(1) != 4)
       throw py::value_error("affine: give a matrix of 4 x 4 numbers");
@@ -92,7 +92,7 @@ VolumeFile decoded_volume(const Grid& grid, const py::array& array) {
   const auto problem =
       decoder.decode(ordered.data(), file.volume.voxels.size(), *type, 1, 0, file.volume.voxels.data());
   if (problem != LabelDecoder::Problem::None)
-    throw Error("the array holds values that are no labels", "labels",
+    throw Error("the array holds values that are not labels", "labels",
                 "give whole numbers up to 2^53, of at most 65 535 different values");
   file.tissues = tissues_of_values(decoder.values(), {});
   return file;
@@ -208,7 +208,7 @@ void add_volumes(py::module_& module) {
           [](const TissueTable& table) { return py::make_iterator(table.tissues.begin(), table.tissues.end()); },
           py::keep_alive<0, 1>())
       .def("__getitem__", &tissue_of, py::return_value_policy::reference_internal, py::arg("value_or_name"))
-      .def_readonly("source", &TissueTable::source, "Where names and kinds come from.")
+      .def_readonly("source", &TissueTable::source, "The file or table that names and kinds come from.")
       .def("save", &write_tissue_table, py::arg("path"), "Writes a table: .json, .ctbl (Slicer) or .txt (ITK-SNAP).");
 
   py::class_<Volume>(module, "Volume", R"(A label volume. It never changes.

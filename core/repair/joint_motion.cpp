@@ -48,8 +48,8 @@ std::vector<int> bones_below(const Armature& armature, int bone) {
 glm::dvec3 swing_axis(const Armature& armature, int bone) {
   const glm::dvec3 whole = armature.bones[bone].tail - armature.bones[bone].head;
   if (!(glm::length(whole) > 0))
-    throw Error("the bone has no length, so it is not known about which axes its joint turns",
-                armature.bones[bone].name, "give the bone a length, or its joint a hinge");
+    throw Error("the bone has no length, so the axes of its joint are not known", armature.bones[bone].name,
+                "give the bone a length, or its joint a hinge");
   const glm::dvec3 along = glm::normalize(whole);
   const glm::dmat3 body = upright_axes(armature);
   glm::dvec3 best(0);
@@ -74,8 +74,10 @@ void check_range(const TurnRange& range, const std::string& bone) {
     return;
   char text[96];
   std::snprintf(text, sizeof text, "%g,%g degrees at the joint of ", range.low, range.high);
-  throw Error("a joint is not repaired over this range", text + bone,
-              "write two angles from rest, such as 0,90: the first -170 to 0, the second 0 to 170, 5 or more apart");
+  throw Error(
+      "a joint cannot be repaired over this range", text + bone,
+      "write two angles from rest, such as 0,90: the first from -170 to 0, the second from 0 to 170, at least 5 "
+      "degrees apart");
 }
 
 // The range over which hips and shoulders are repaired, in degrees from the anatomical position: as far as sitting,
@@ -133,7 +135,7 @@ std::vector<JointTurn> own_turns(const Armature& armature, int bone) {
   const JointLimits::Type own = armature.bones[bone].limits.type;
   if (own == JointLimits::Type::Fixed || (turns.empty() && own != JointLimits::Type::Free))
     throw Error("the rig's limits do not let this joint turn by 5 degrees", armature.bones[bone].name,
-                "widen them, or say over which range, such as 0,90");
+                "widen the limits, or give a range, such as 0,90");
   if (turns.empty()) add_turns(flex_axis(armature, bone), 0, 90, turns);
   return turns;
 }

@@ -277,7 +277,7 @@ JointRepair repair_joint(const WeightedBody& body, const SkinWeights& weights, i
     throw Error("no tissue of this body is known to be skin, fat or muscle", body.armature.bones[bone].name,
                 "give their labels these kinds in a tissue table");
   if (!settings.locked.empty() && settings.locked[bone])
-    throw Error("the bone below the joint is locked", body.armature.bones[bone].name, "unlock it");
+    throw Error("the bone below the joint is locked", body.armature.bones[bone].name, "unlock the bone");
   return Repairer(body, weights, bone, settings, progress).run();
 }
 
@@ -287,16 +287,15 @@ std::string describe(const JointRepair& repair, const Armature& armature, int bo
     return joint + " is not changed: no weights were found that keep skin, fat and muscle closer to their volumes " +
            "without more overlap";
   char text[256];
-  std::snprintf(
-      text, sizeof text,
-      ": skin, fat and muscle change by %.2f %% in all instead of %.2f %%, %.0f voxels overlap instead of %.0f "
-      "(means of %d turns)",
-      mean_sum(repair.after), mean_sum(repair.before), mean_overlap(repair.after), mean_overlap(repair.before),
-      static_cast<int>(std::ssize(repair.after)));
+  std::snprintf(text, sizeof text,
+                ": the volumes of skin, fat and muscle change by %.2f %% in total instead of %.2f %%, %.0f voxels "
+                "overlap instead of %.0f (means of %d turns)",
+                mean_sum(repair.after), mean_sum(repair.before), mean_overlap(repair.after),
+                mean_overlap(repair.before), static_cast<int>(std::ssize(repair.after)));
   std::string sentence = joint + text;
   if (repair.starts_from_capsule) {
     std::snprintf(text, sizeof text,
-                  "; its capsule is %.0f mm wide on the flexor side and %.0f mm on the extensor side",
+                  "; its weights blend over %.0f mm on the flexor side and %.0f mm on the extensor side",
                   repair.widths.flexor, repair.widths.extensor);
     sentence += text;
   }

@@ -95,9 +95,9 @@ void judge_exposed(const Json& report, const QualityLimits& limits, QualityGate&
   const std::string exposed = counted(*voxels, "voxel") + " that lay deep inside " + (*voxels == 1 ? "is" : "are") +
                               " exposed to the air now, " + formatted("%.2f %% of the surface", *percent);
   decide(gate, passed, formatted("%.2f %%", *percent),
-         *voxels == 0
-             ? "No tissue that lay deep inside touches the air."
-             : exposed + ", most of it " + in_quotes(gate.worst) + "; worst" + at_place(part(exposure, "worst")) + ".");
+         *voxels == 0 ? "No tissue that lay deep inside touches the air."
+                      : exposed + ", most of them in " + in_quotes(gate.worst) + "; the worst place is" +
+                            at_place(part(exposure, "worst")) + ".");
 }
 
 void judge_trapped(const Json& report, const QualityLimits& limits, QualityGate& gate) {
@@ -136,8 +136,8 @@ void judge_organs(const Json& report, const QualityLimits& limits, QualityGate& 
   gate.worst = text(*worst, "name");
   const bool passed = std::abs(change) <= limits.organ_percent;
   decide(gate, passed, formatted("%+.1f %%", change),
-         passed ? "No organ's volume changed by more than " + formatted("%.1f %%", std::abs(change)) + ", that of " +
-                      in_quotes(gate.worst) + "."
+         passed ? "No organ's volume changed by more than " + formatted("%.1f %%", std::abs(change)) +
+                      ", the change of " + in_quotes(gate.worst) + "."
                 : "The volume of " + in_quotes(gate.worst) + " changed by " + formatted("%+.1f %%.", change));
 }
 
@@ -153,7 +153,8 @@ void judge_lost(const Json& report, const QualityLimits& limits, QualityGate& ga
   const bool passed = left >= limits.lost_percent;
   gate.worst = text(*worst, "name");
   decide(gate, passed, formatted("%.0f %%", left),
-         passed ? "No label is lost. The least is left of " + in_quotes(gate.worst) + ": " + formatted("%.0f %%.", left)
+         passed ? "No label is lost. The smallest share of its volume is left of " + in_quotes(gate.worst) + ": " +
+                      formatted("%.0f %%.", left)
                 : in_quotes(gate.worst) + " is lost: " +
                       (left <= 0 ? std::string("nothing") : formatted("%.1f %%", left)) + " of its volume is left.");
 }
@@ -211,7 +212,8 @@ void judge_volume(const Json& report, const QualityLimits& limits, QualityGate& 
 
 const GateRule<Json> kBodyGates[] = {
     {"inputs", "Inputs belong together",
-     "Whether the rig lies in the body, on the right side and in the right limb, and whether the volume holds labels.",
+     "Whether the rig lies in the body, on the correct side and in the correct limb, and whether the volume holds "
+     "labels.",
      [](const QualityLimits&) { return std::string("no doubt"); }, true, judge_inputs},
     {"whole", "Bones whole",
      "Largest distance of a bone's voxels from the rigid motion that fits this bone best, {}. Bones are found by the "

@@ -30,7 +30,7 @@ std::string components_of(const TissueChange& tissue) {
 }
 
 void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshReport& mesh) {
-  out << line("%8s  %-28s %36s", "label", "stretch of bent tissue", "least, most: median (5 % to 95 %)");
+  out << line("%8s  %-28s %36s", "label", "stretch of bent tissue", "smallest, largest: median (5-95 %)");
   for (const TissueChange& tissue : metrics.tissues)
     if (const auto found = mesh.stretch.find(tissue.label); found != mesh.stretch.end()) {
       const auto& [least, most] = found->second;
@@ -41,15 +41,16 @@ void print_stretch(std::ostream& out, const VolumeMetrics& metrics, const MeshRe
 
 void print_glide(std::ostream& out, const std::vector<GlidedJoint>& joints) {
   if (joints.empty()) return;
-  out << line("%-24s %-24s %9s %9s %9s %9s", "shifted joint", "against", "shift mm", "of most", "deep mm", "after");
+  out << line("%-24s %-24s %10s %10s %12s %10s", "shifted joint", "overlapped bone", "shift, mm", "limit, mm",
+              "overlap, mm", "after, mm");
   for (const GlidedJoint& joint : joints)
-    out << line("%-24.24s %-24.24s %9.1f %9.1f %9.1f %9.1f %s", joint.bone.c_str(), joint.against.c_str(),
+    out << line("%-24.24s %-24.24s %10.1f %10.1f %12.1f %10.1f %s", joint.bone.c_str(), joint.against.c_str(),
                 glm::length(joint.shift), joint.most_mm, joint.depth_before, joint.depth_after,
-                joint.free ? "free" : "NOT FREE");
+                joint.free ? "separated" : "STILL OVERLAPS");
 }
 
 void print_tissues(std::ostream& out, const VolumeMetrics& metrics) {
-  out << line("%8s  %-28s %12s %12s %10s %12s", "label", "tissue", "voxels", "after", "change %", "components");
+  out << line("%8s  %-28s %12s %12s %10s %12s", "label", "tissue", "voxels", "after", "change, %", "components");
   for (const TissueChange& tissue : metrics.tissues)
     out << line("%8.0f  %-28.28s %12lld %12lld %+10.2f %12s", tissue.file_value, tissue.name.c_str(),
                 static_cast<long long>(tissue.voxels_before), static_cast<long long>(tissue.voxels_after),
@@ -64,15 +65,15 @@ void print_error(std::ostream& out, const FemError& error) {
     return;
   }
   out << line(
-      "error of the solve, estimated by a second one with tets of %.3g mm: %.2f mm rms, 95 %% below %.2f mm, most %.1f "
-      "mm at (%.0f, %.0f, %.0f)",
+      "error of the solve, estimated by a second solve with tets of %.3g mm: %.2f mm rms, 95 %% of the flesh below "
+      "%.2f mm, largest %.1f mm at (%.0f, %.0f, %.0f)",
       error.coarse_tet_mm, error.rms_mm, error.most_mm, error.largest_mm, error.place.x, error.place.y, error.place.z);
 }
 
 void print_solve(std::ostream& out, const Report& report, const DeformReport& deform) {
   if (deform.mesh) {
     const MeshReport& mesh = *deform.mesh;
-    out << line("mesh of %lld tets, %lld inverted, smallest det F %.3f, %.2f %% of soft tets below 0.2",
+    out << line("mesh of %lld tets, %lld inverted, smallest volume ratio (det F) %.3f, %.2f %% of soft tets below 0.2",
                 static_cast<long long>(mesh.tets), static_cast<long long>(mesh.inverted), mesh.min_det_f,
                 100 * mesh.share_below_fifth);
     if (report.metrics && !mesh.stretch.empty()) print_stretch(out, *report.metrics, mesh);
@@ -86,14 +87,16 @@ void print_solve(std::ostream& out, const Report& report, const DeformReport& de
       out << line("%d of %d factorizations repeated in double precision, as single precision was too inexact",
                   solve.repeated_in_double, solve.factorizations);
     if (solve.sliding_nodes > 0)
-      out << line("slides: %lld nodes of flesh slide over bone, the furthest by %.1f mm, off by %.2f mm at most",
-                  static_cast<long long>(solve.sliding_nodes), solve.largest_slide_mm, solve.largest_slide_gap_mm);
+      out << line(
+          "slides: %lld nodes of flesh slide over bone, the furthest by %.1f mm, and leave it by %.2f mm at most",
+          static_cast<long long>(solve.sliding_nodes), solve.largest_slide_mm, solve.largest_slide_gap_mm);
     if (solve.error) print_error(out, *solve.error);
   }
   for (const ObjectReport& object : deform.objects)
-    out << line("%.60s presses with %.3g N on %.3g cm2, at most %.3g kPa, %.1f mm from its place, %lld crossings",
-                object.name.c_str(), object.pressing_n, object.area_mm2 / 100, object.largest_kpa, object.away_mm,
-                static_cast<long long>(object.crossings));
+    out << line(
+        "%.60s presses with %.3g N on %.3g cm2, at most %.3g kPa, %.1f mm from its position, %lld crossing triangles",
+        object.name.c_str(), object.pressing_n, object.area_mm2 / 100, object.largest_kpa, object.away_mm,
+        static_cast<long long>(object.crossings));
 }
 
 }  // namespace
@@ -105,26 +108,28 @@ void print_report(std::ostream& out, const Report& report) {
     if (report.metrics->has_skin)
       out << line("\nskin covers %.1f %% of the surface before and %.1f %% after",
                   100 * report.metrics->skin_share_before, 100 * report.metrics->skin_share_after);
-    out << line("trapped air %lld voxels", static_cast<long long>(report.metrics->trapped_air_voxels));
+    out << line("air trapped by the pose: %lld voxels", static_cast<long long>(report.metrics->trapped_air_voxels));
   }
   if (report.glide) print_glide(out, *report.glide);
   if (report.deform) {
     const DeformReport& deform = *report.deform;
-    out << line("voxels: dropped %lld, new holes %lld, overlap %lld, bone in bone %lld, mended %lld",
+    out << line("voxels: outside the grid %lld, new holes %lld, overlap %lld, bone in bone %lld, repaired %lld",
                 static_cast<long long>(deform.dropped_voxels), static_cast<long long>(deform.new_hole_voxels),
                 static_cast<long long>(deform.overlap_voxels), static_cast<long long>(deform.bone_overlap_voxels),
                 static_cast<long long>(deform.mended_voxels));
     if (deform.settled && deform.settled->cells > 0)
-      out << line("flesh settled: mean volume error of cells %.1f %% before, %.1f %% after; moved by up to %.1f mm",
-                  100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
-                  deform.settled->largest_shift_mm);
+      out << line(
+          "volume of flesh restored: mean error of cells %.1f %% before, %.1f %% after; flesh moved by up to %.1f mm",
+          100 * deform.settled->volume_error_before, 100 * deform.settled->volume_error_after,
+          deform.settled->largest_shift_mm);
     for (const BakedJointReport& joint : deform.baked)
-      out << line("baked %.60s at %+.1f degrees: between baked angles 95 %% of flesh within %.2f mm of finite elements",
-                  joint.bone.c_str(), joint.degrees, joint.worst_between.flesh_mm);
+      out << line(
+          "baked %.60s at %+.1f degrees: between baked angles 95 %% of flesh is within %.2f mm of finite elements",
+          joint.bone.c_str(), joint.degrees, joint.worst_between.flesh_mm);
     std::int64_t moved = 0;
     for (const auto& [_, voxels] : deform.kept_organs) moved += std::abs(voxels);
     if (moved > 0)
-      out << line("organs kept: %lld with a volume error of more than 5 %% gained or lost %lld voxels at their surface",
+      out << line("organs: %lld with a volume error of more than 5 %% gained or lost %lld voxels at their surface",
                   static_cast<long long>(deform.kept_organs.size()), static_cast<long long>(moved));
     if (deform.mass_exact)
       out << line("mass-exact: %lld voxels changed their label",

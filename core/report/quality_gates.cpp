@@ -37,7 +37,7 @@ void judge_tissues(const Json& report, const QualityLimits& limits, QualityGate&
   }
   if (!gate.worst.empty()) decide(gate, std::abs(worst) <= limits.tissue_percent, formatted("%+.2f %%", worst));
   if (!gate.worst.empty() && !any_large)
-    gate.meaning = "The volume of the tissue that changed most; none has " + least + ".";
+    gate.meaning = "Volume change of the tissue that changed most; no tissue has " + least + ".";
 }
 
 void judge_bones(const Json& report, const QualityLimits& limits, QualityGate& gate) {
@@ -136,12 +136,12 @@ void judge_limits(const Json& report, const QualityLimits& limits, QualityGate& 
 }
 
 const GateRule<Json> kFineGates[] = {
-    {"tissues", "Each tissue within {}", "The volume of the tissue that changed most, of those of",
+    {"tissues", "Each tissue within {}", "Volume change of the tissue that changed most, among tissues of",
      [](const QualityLimits& l) { return formatted("%g %%", l.tissue_percent); }, false, judge_tissues},
     {"bones", "Bone parts rigid",
      "Largest distance of a bone voxel from the position to which its rig bone moves it, {}.",
      [](const QualityLimits& l) { return "at most " + formatted("%g mm", l.bone_residual_mm); }, false, judge_bones},
-    {"skin", "Skin closed", "The share of the surface that is skin, {} below that at rest.",
+    {"skin", "Skin closed", "The share of the surface that is skin, {} below the share at rest.",
      [](const QualityLimits& l) { return "at most " + formatted("%g %% of the surface", l.skin_share_percent); }, false,
      judge_skin},
     {"islands", "No islands or holes",

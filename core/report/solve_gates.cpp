@@ -44,7 +44,7 @@ QualityGate judge_reached(const Json& report) {
   const bool converged = solve["converged"];
   gate.state = converged ? GateState::Passed : GateState::Failed;
   gate.figure = formatted("%.0f %%", std::floor(100 * reached)) + (converged || reached < 1 ? "" : ", not converged");
-  gate.sentence = "The solve reached " + gate.figure + " of the pose.";
+  gate.sentence = "Share of the pose that the solve reached: " + gate.figure + ".";
   return gate;
 }
 

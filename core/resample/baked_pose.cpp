@@ -15,7 +15,7 @@ constexpr double kOtherTurn = 10;  // degrees; if the joint turns further about 
 int bone_of(const BakedJoint& joint, const Armature& armature) {
   const auto bone = armature.find(joint.bone);
   if (!bone || armature.bones[*bone].parent < 0)
-    throw Error("the rig lacks the bone of a baked joint, or its parent", joint.bone,
+    throw Error("the rig lacks the bone of a baked joint, or the bone's parent", joint.bone,
                 "give the rig that the joint was baked with");
   return *bone;
 }
@@ -37,7 +37,7 @@ std::vector<BentJoint> joints_in_pose(const BakedJoints& baked, const Armature& 
   for (const std::shared_ptr<const BakedJoint>& joint : baked) {
     const int bone = bone_of(*joint, armature);
     if (!bones.insert(bone).second)
-      throw Error("two baked joints belong to the same bone", joint->bone, "give one of them");
+      throw Error("two baked joints belong to the same bone", joint->bone, "give only one of the two");
     joints.push_back({.baked = joint,
                       .degrees = turn_about_axis(pose.rotation[bone], joint->axis).degrees,
                       .parent_turn = motions[armature.bones[bone].parent].rotation});
@@ -75,7 +75,7 @@ std::vector<std::string> doubts_of_baked(const std::vector<BakedJointReport>& jo
                                          joint.other_degrees));
     if (!glide.empty() && glide != joint.glide && joint.degrees != 0)
       doubts.push_back("joints are shifted by --glide \"" + glide + "\", but " + joint.bone + " was baked with \"" +
-                       joint.glide + "\": its stated error does not hold");
+                       joint.glide + "\": the stated error of the baked joint does not hold");
   }
   return doubts;
 }

@@ -176,10 +176,10 @@ void FemObjects::choose(const std::vector<ObjectClearance>& clearances) {
                       ? "the object cannot reach its position: the body blocks its way for more than 1 m"
                       : "the object cannot reach its position: the body blocks every way for more than 1 m",
                   objects_[k].name,
-                  "move it to the skin, or set the direction from which it comes, as in @from=0,-1,0");
+                  "move the object to the skin, or set the direction from which it comes, as in @from=0,-1,0");
     if (!clearances[k].presses)
       throw Error("the object is not near any skin at its position", objects_[k].name,
-                  "move it to the skin, outside the body; coordinates are in mm");
+                  "move the object to the skin, outside the body; coordinates are in mm");
     way_.push_back(std::move(ways_to(objects_[k])[clearances[k].way]));
     way_.back().clear_mm = clearances[k].mm;
   }

@@ -217,7 +217,7 @@ std::string why_it_failed(const Step& step) {
   } catch (const Error& error) {
     return std::string("the second solve, with larger tets, failed: ") + error.what();
   } catch (const std::bad_alloc&) {
-    return "memory did not suffice for the second solve";
+    return "there was not enough memory for the second solve";
   }
 }
 

@@ -64,9 +64,9 @@ Armature parents_first(std::vector<Bone> bones, const std::string& where) {
   bool ordered = true;
   for (int i = 0; i < count; ++i) {
     if (bones[i].parent < -1 || bones[i].parent >= count)
-      throw Error("the parent of bone " + std::to_string(i) + " is number " + std::to_string(bones[i].parent) + " of " +
-                      std::to_string(count) + " bones",
-                  where, "let it name one of the rig's bones, or -1 for a root");
+      throw Error("the parent of bone " + std::to_string(i) + " is number " + std::to_string(bones[i].parent) +
+                      ", but the rig has " + std::to_string(count) + " bones",
+                  where, "use the number of one of the rig's bones, or -1 for a root");
     ordered = ordered && bones[i].parent < i;
   }
   if (ordered) return {std::move(bones)};
@@ -83,7 +83,8 @@ Armature parents_first(std::vector<Bone> bones, const std::string& where) {
     ready.insert(ready.end(), children[bone].begin(), children[bone].end());
   }
   if (static_cast<int>(order.size()) != count)
-    throw Error("some bones are their own ancestors", where, "let every chain of parents end at a bone without one");
+    throw Error("some bones are their own ancestors", where,
+                "let every chain of parents end at a bone without a parent");
   Armature armature;
   for (int bone : order) {
     armature.bones.push_back(std::move(bones[bone]));

@@ -78,7 +78,7 @@ Armature dropped(const Armature& armature, const std::vector<bool>& marks) {
     bone.parent = parent < 0 ? -1 : place[parent];
     rest.bones.push_back(std::move(bone));
   }
-  if (rest.bones.empty()) throw Error("no bone would be left", "rig", "keep at least one, or import another rig");
+  if (rest.bones.empty()) throw Error("no bone would be left", "rig", "keep at least one bone, or import another rig");
   return rest;
 }
 
@@ -149,7 +149,7 @@ Armature extruded(const Armature& armature, const BoneEnd& from, const glm::dvec
 Armature filled(const Armature& armature, const BoneEnd& from, const BoneEnd& to) {
   const Bone &first = armature.bones.at(from.bone), &last = armature.bones.at(to.bone);
   if (glm::distance(place_of(armature, from), place_of(armature, to)) <= kTouching)
-    throw Error("both joints are at one position: no bone fits between them", first.name + " and " + last.name,
+    throw Error("the two joints are at the same position: no bone fits between them", first.name + " and " + last.name,
                 "select bones that lie apart");
   Armature next = extruded(armature, from, place_of(armature, to));
   int root = from.bone;
@@ -221,7 +221,7 @@ Armature duplicated(const Armature& armature, const std::vector<int>& bones) {
 }
 
 Armature renamed(const Armature& armature, int bone, const std::string& name) {
-  if (name.empty()) throw Error("a bone needs a name", armature.bones.at(bone).name, "type one");
+  if (name.empty()) throw Error("a bone needs a name", armature.bones.at(bone).name, "type a name");
   Armature next = armature;
   next.bones.at(bone).name.clear();
   next.bones[bone].name = free_name(next, name);

@@ -59,7 +59,7 @@ class VtkText {
         std::from_chars(digits.data() + (digits.starts_with('+') ? 1 : 0), digits.data() + digits.size(), value);
     if (digits.empty()) refuse(std::string("the file ends inside ") + of, "copy the whole file again");
     if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
-      refuse("\"" + std::string(digits.substr(0, 40)) + "\" was found where " + of + " needs a number",
+      refuse("\"" + std::string(digits.substr(0, 40)) + "\" was found instead of a number of " + of,
              "correct the file");
     return value;
   }
@@ -147,7 +147,7 @@ void read_field(VtkText& in, VtkArmature& read) {
   const int arrays = in.count("arrays", 1000);
   for (int a = 0; a < arrays; ++a) {
     const std::string name(in.word());
-    if (name == "METADATA") in.refuse("metadata stand inside the arrays", "save the armature without metadata");
+    if (name == "METADATA") in.refuse("there are metadata inside the arrays", "save the armature without metadata");
     const int components = in.count("components", 1000), tuples = in.count("tuples", 2 * kMostBones);
     const std::string type(in.word());
     if (components < 0 || tuples < 0) in.refuse("an array has a negative size", "correct the file");
@@ -203,7 +203,7 @@ Armature parse_bender_vtk(const std::string& text, const std::string& where) {
   if (read.parents->size() != read.lines.size() || read.names->size() != read.lines.size())
     throw Error("there are " + std::to_string(read.lines.size()) + " bones, " + std::to_string(read.parents->size()) +
                     " parents and " + std::to_string(read.names->size()) + " names",
-                where, "give every bone one of each");
+                where, "give every bone one parent and one name");
 
   std::vector<Bone> bones(read.lines.size());
   for (size_t i = 0; i < bones.size(); ++i) {
@@ -298,7 +298,7 @@ void arm_open(void* data, const char* element, const char** attributes) {
   ArmReader& reader = *static_cast<ArmReader*>(data);
   if (!reader.what.empty()) return;
   if (element == std::string_view("armature")) {
-    if (reader.armature_seen) return reader.refuse("there are two armatures", "keep one in a file");
+    if (reader.armature_seen) return reader.refuse("there are two armatures", "keep one armature in a file");
     reader.armature_seen = true;
     ArmFrame frame;
     frame.axes = orientation_of(reader, attribute(attributes, "orientation"));
@@ -308,7 +308,8 @@ void arm_open(void* data, const char* element, const char** attributes) {
   } else if (element == std::string_view("bone")) {
     if (reader.open.empty()) return reader.refuse("a bone stands outside the armature", "use an .arm file of Bender");
     if (std::ssize(reader.bones) == kMostBones)
-      return reader.refuse("there are more than " + std::to_string(kMostBones) + " bones", "use fewer");
+      return reader.refuse("there are more than " + std::to_string(kMostBones) + " bones",
+                           "use an armature with fewer bones");
     const char* name = attribute(attributes, "name");
     const ArmFrame parent = reader.open.back();
     const glm::dvec3 head =

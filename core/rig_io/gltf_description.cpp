@@ -211,13 +211,13 @@ Chunks chunks_of_glb(const std::string& bytes, const std::string& where) {
     throw Error("the file is shorter than its header says", where, "copy the whole file again");
   const std::uint64_t json_bytes = u32_at(bytes, 12);
   if (bytes.compare(16, 4, "JSON") != 0 || json_bytes > bytes.size() - 20)
-    throw Error("the description is not whole", where, "copy the whole file again");
+    throw Error("the JSON part of the file is cut off", where, "copy the whole file again");
   Chunks chunks{std::string_view(bytes).substr(20, json_bytes)};
   const std::uint64_t rest = 20 + json_bytes;
   if (rest + 8 <= bytes.size() && bytes.compare(rest + 4, 4, std::string("BIN\0", 4)) == 0) {
     const std::uint64_t binary_bytes = u32_at(bytes, rest);
     if (binary_bytes > bytes.size() - rest - 8)
-      throw Error("the data are not whole", where, "copy the whole file again");
+      throw Error("the binary data of the file are cut off", where, "copy the whole file again");
     chunks.binary = std::string_view(bytes).substr(rest + 8, binary_bytes);
   }
   return chunks;

@@ -83,7 +83,7 @@ GltfSummary parse_gltf(const std::string& bytes, bool is_binary, const std::stri
   if (summary.skins > 0) summary.armature = armature_of_skin(gltf, gltf.skins[0], where);
   if (summary.skins > 1)
     summary.warnings.push_back("the file has " + std::to_string(summary.skins) +
-                               " skins; the bones are the first one's");
+                               " skins; the bones of the first skin are used");
   return summary;
 }
 

@@ -90,7 +90,7 @@ JointLimits limits_of(const Json& value, const std::string& where) {
     limits.minimum = radians(number_at(value, "minimum_degrees", where));
     limits.maximum = radians(number_at(value, "maximum_degrees", where));
     if (limits.minimum > limits.maximum)
-      throw Error("the hinge's minimum is above its maximum", where, "exchange them");
+      throw Error("the hinge's minimum is above its maximum", where, "exchange the two angles");
   } else if (type == "ball") {
     limits.type = JointLimits::Type::Ball;
     if (value.contains("axis")) limits.axis = unit_axis(vector_at(value, "axis", where), where);
@@ -238,7 +238,7 @@ ArmatureFile read_armature_file(const Path& path) {
 void check_armature_writable(const Path& path) {
   const std::string extension = extension_of(path);
   if (extension != ".json" && extension != ".vtk" && extension != ".bvh")
-    throw Error("rigs are not written in this format", path.string(), "use .json, .vtk or .bvh");
+    throw Error("rigs cannot be written with this extension", path.string(), "use .json, .vtk or .bvh");
   check_place(path);
 }
 

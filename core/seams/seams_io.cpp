@@ -23,7 +23,7 @@ std::vector<int> faces_by_label(const TissueTable& tissues, const Path& path) {
     const double value = tissue.file_value;
     if (!(value >= 1 && value <= 7) || value != std::floor(value))
       throw Error("this is not a file of seams: it has the value " + std::to_string(value), path.string(),
-                  "write them with 'limber prepare --seams'");
+                  "write the seams with 'limber prepare --seams'");
     faces[tissue.label] = static_cast<int>(value);
   }
   return faces;
@@ -51,7 +51,7 @@ Seams read_seams(const Path& path, const LabelVolume& volume, Progress& progress
   const VolumeFile file = read_volume(path, progress);
   if (!is_same_place(file.volume.grid, volume.grid))
     throw Error("the seams lie on another grid than the volume", path.string(),
-                "find them for this volume: limber prepare --seams");
+                "find the seams of this volume: limber prepare --seams");
   const std::vector<int> faces = faces_by_label(file.tissues, path);
   Seams seams(volume.grid.size);
   const glm::ivec3 size = volume.grid.size;

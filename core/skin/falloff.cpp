@@ -61,9 +61,10 @@ Falloff::Falloff(FalloffShape shape) {
 }
 
 Falloff::Falloff(std::span<const glm::dvec2> points) {
-  if (points.empty()) throw std::logic_error("Falloff: a curve without points");
+  if (points.empty()) throw std::logic_error("Falloff: the curve has no points");
   for (std::size_t i = 1; i < points.size(); ++i)
-    if (!(points[i].x > points[i - 1].x)) throw std::logic_error("Falloff: distances must grow");
+    if (!(points[i].x > points[i - 1].x))
+      throw std::logic_error("Falloff: distances must increase from point to point");
   const std::vector<double> slope = slopes(points);
   for (int i = 0; i <= kSteps; ++i) {
     const double x = double(i) / kSteps;

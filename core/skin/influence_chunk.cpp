@@ -33,7 +33,8 @@ class BoneSets {
 
 InfluenceChunk::InfluenceChunk(std::span<const Influence> influences)
     : count_(static_cast<std::uint16_t>(influences.size())) {
-  if (influences.size() > 65535) throw std::logic_error("InfluenceChunk: more than a brick");
+  if (influences.size() > 65535)
+    throw std::logic_error("InfluenceChunk: there are more influences than a brick has voxels");
   static_assert(sizeof(std::uint64_t) == kSetBytes);
   BoneSets sets;
   std::vector<std::uint16_t> set(influences.size());

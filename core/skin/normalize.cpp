@@ -163,7 +163,7 @@ void distribute(std::span<const double> share, int total, std::span<int> out) {
     sum += share[i];
     if (share[i] > share[largest]) largest = i;
   }
-  if (!(sum > 0)) throw std::logic_error("distribute: nothing to share by");
+  if (!(sum > 0)) throw std::logic_error("distribute: the shares sum to zero");
   const double factor = total / sum;
   for (const double half : {0.5, 0.0}) {
     int left = total;

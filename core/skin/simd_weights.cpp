@@ -211,7 +211,7 @@ std::int32_t key_of_bone(int bone) { return kLow - bone; }
 
 void check_groups(std::size_t influences, std::size_t weights) {
   if (influences != weights || influences % kWeightLanes != 0)
-    throw std::logic_error("simd_weights: no whole number of groups");
+    throw std::logic_error("simd_weights: the influences do not fill whole groups");
 }
 
 }  // namespace

@@ -85,8 +85,8 @@ class Sampler {
 std::vector<SkinAt> skin_at(const LabelVolume& volume, const TissueVoxels& tissue, const SkinWeights& weights,
                             std::span<const glm::dvec3> points) {
   if (tissue.size() == 0)
-    throw Error("the volume has no tissue", "the skin of points", "choose a volume with labels other than 0");
-  if (weights.size() != tissue.size()) throw std::logic_error("weights of another volume");
+    throw Error("the volume has no tissue", "weights at points", "use a volume with labels other than 0");
+  if (weights.size() != tissue.size()) throw std::logic_error("the weights are of another volume");
   const Sampler sampler(volume, tissue, weights);
   const AffineTransform to_voxel = voxel_from_world(volume.grid);
   std::vector<SkinAt> skin(points.size());

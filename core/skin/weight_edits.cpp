@@ -20,14 +20,15 @@ constexpr std::int64_t kBricksOfStep = 2048;  // bricks between two progress upd
 
 void check(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
   if (weights.size() != body.tissue.size() || weights.bones().size() != body.armature.bones.size())
-    throw std::logic_error("an edit of weights of another body");
+    throw std::logic_error("the edited weights are of another body");
   if (!scope.region.empty() && std::ssize(scope.region) != body.tissue.size())
-    throw std::logic_error("a region of another body");
+    throw std::logic_error("the region is of another body");
 }
 
 void check_bones(const WeightedBody& body, std::span<const int> bones) {
   const auto in_rig = [&](int bone) { return bone >= 0 && bone < std::ssize(body.armature.bones); };
-  if (bones.empty() || !std::all_of(bones.begin(), bones.end(), in_rig)) throw std::logic_error("no bone of the rig");
+  if (bones.empty() || !std::all_of(bones.begin(), bones.end(), in_rig))
+    throw std::logic_error("a bone is not in the rig, or no bone is given");
 }
 
 // Returns the unlocked bone with the most weight in the region, or -1 if there is none. It serves as the fallback bone
@@ -215,7 +216,7 @@ WeightEdit with_gradient(const WeightedBody& body, const SkinWeights& weights, s
   check_bones(body, bones);
   const glm::dvec3 way = gradient.to - gradient.from;
   const double length = glm::length(way);
-  if (!(length > 0)) throw std::logic_error("a gradient between two points in one place");
+  if (!(length > 0)) throw std::logic_error("the two ends of the gradient are at the same position");
   const AffineTransform world = world_from_voxel(body.volume.grid);
   return edited(
       body, weights, scope, [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3& voxel) {
@@ -262,7 +263,7 @@ WeightEdit copied(const WeightedBody& body, const SkinWeights& weights, int from
                   const EditScope& scope) {
   const std::array<int, 2> both{from, to};
   check_bones(body, both);
-  if (from == to) throw std::logic_error("a bone copied to itself");
+  if (from == to) throw std::logic_error("a bone cannot be copied to itself");
   return edited(body, weights, scope,
                 [&](const WeightRules& rules, Influence& influence, std::int64_t, const glm::ivec3&) {
                   const int source = WeightRules::sum_of(influence, std::span(&both[0], 1)),
@@ -396,7 +397,7 @@ TransferEdit transferred(const WeightedBody& body, const SkinWeights& weights, c
   }
   if (!any)
     throw Error("the two rigs have no bone in common", "bones by name",
-                "rename the bones, or choose weights of the same rig");
+                "rename the bones, or use weights of the same rig");
   progress.update("weights of the other volume", 0);
   const AffineTransform world = world_from_voxel(body.volume.grid);
   std::vector<glm::dvec3> points(body.tissue.size());

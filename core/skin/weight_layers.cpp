@@ -56,7 +56,7 @@ bool covers_all(const WeightLayer::Mask& mask) {
 }
 
 const WeightLayer& layer_at(const WeightLayers& layers, std::size_t layer) {
-  if (layer >= layers.layers.size()) throw std::logic_error("no such layer");
+  if (layer >= layers.layers.size()) throw std::logic_error("there is no such layer");
   return *layers.layers[layer];
 }
 
@@ -95,7 +95,7 @@ SkinWeights composed(const WeightLayers& layers) {
 
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before) {
   const std::int64_t count = layers.base->chunk_count();
-  if (before.base->chunk_count() != count) throw std::logic_error("layers of another body");
+  if (before.base->chunk_count() != count) throw std::logic_error("the layers are of another body");
   // Returns the index of the first layer, from `from` upwards, that covers any part of the brick. Returns the number of
   // layers if none does.
   const auto next = [](const WeightLayers& of, std::size_t from, std::int64_t brick) {
@@ -186,7 +186,7 @@ PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const S
 
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after) {
   if (before.size() != after.size() || before.size() != layer.weights.size())
-    throw std::logic_error("a layer of another body");
+    throw std::logic_error("the layer is of another body");
   WeightLayer painted = layer;
   for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
     if (before.shared_chunk(b) == after.shared_chunk(b) || before.chunk(b) == after.chunk(b)) continue;
@@ -297,7 +297,7 @@ WeightLayer mask_painted_on(const WeightLayers& layers, std::size_t index, const
 
 Armature with_below(const Armature& armature) {
   Armature more;
-  more.bones.push_back({.name = "what lies below", .tail = {0, 0, 1}});
+  more.bones.push_back({.name = "layers below", .tail = {0, 0, 1}});
   for (Bone bone : armature.bones) {
     bone.parent += 1;  // the rig's root becomes a child of kBelow
     more.bones.push_back(std::move(bone));
@@ -307,7 +307,7 @@ Armature with_below(const Armature& armature) {
 
 SkinWeights shares_as_weights(const WeightLayer& layer) {
   static_assert(kBelow == 0);
-  std::vector<std::string> names{"what lies below"};
+  std::vector<std::string> names{"layers below"};
   names.insert(names.end(), layer.weights.bones().begin(), layer.weights.bones().end());
   return as_painted(layer, std::move(names), [](const Influence& own, int cover) {
     std::vector<std::pair<int, double>> shares{{kBelow, kFullWeight - cover}};
@@ -356,7 +356,7 @@ WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& befor
 
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base) {
   if (base->chunk_count() != layers.base->chunk_count() || base->bones() != layers.base->bones())
-    throw std::logic_error("layers of another body");
+    throw std::logic_error("the layers are of another body");
   WeightLayers over{std::move(base), {}};
   for (const auto& layer : layers.layers) {
     WeightLayer next = *layer;
@@ -410,7 +410,8 @@ WeightLayer with_mask(const WeightLayers& layers, std::size_t index, const Tissu
 WeightLayers merged_down(const WeightLayers& layers, std::size_t index) {
   const WeightLayer& upper = layer_at(layers, index);
   const auto must_be_seen = [](const WeightLayer& layer) {
-    if (!layer.visible) throw Error("a hidden layer cannot be merged", layer.name, "show it first, or delete it");
+    if (!layer.visible)
+      throw Error("a hidden layer cannot be merged", layer.name, "show the layer first, or delete it");
   };
   must_be_seen(upper);
   WeightLayers fewer = layers;

@@ -56,7 +56,7 @@ std::vector<std::uint16_t> bones_in_rig(const std::string& names, const std::str
     if (found == place.end())
       throw Error("the weights name a bone that the rig lacks",
                   where + ", " + name.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace).substr(0, 80),
-                  "use the rig they were made with, or " + std::string(kMakeAnew));
+                  "use the rig that the weights were made with, or " + std::string(kMakeAnew));
     in_rig.push_back(static_cast<std::uint16_t>(found->second));
   }
   return in_rig;
@@ -71,15 +71,15 @@ void accept(Influence& influence, const std::vector<std::uint16_t>& in_rig, cons
     if (influence.weight[k] == 0) {
       influence.bone[k] = 0;
     } else if (influence.bone[k] >= in_rig.size()) {
-      throw Error(
-          "a weight belongs to bone " + std::to_string(influence.bone[k]) + " of " + std::to_string(in_rig.size()),
-          where, kMakeAnew);
+      throw Error("a weight belongs to bone number " + std::to_string(influence.bone[k]) +
+                      ", but the number of bones is " + std::to_string(in_rig.size()),
+                  where, kMakeAnew);
     } else {
       influence.bone[k] = in_rig[influence.bone[k]];
     }
   }
   if (sum != kFullWeight)
-    throw Error("a voxel's weights sum to " + std::to_string(sum) + " of " + std::to_string(kFullWeight), where,
+    throw Error("a voxel's weights sum to " + std::to_string(sum) + " instead of " + std::to_string(kFullWeight), where,
                 kMakeAnew);
   for (int k = 1; k < 4; ++k)
     for (int j = k; j > 0 && influence.weight[j] > influence.weight[j - 1]; --j) {
@@ -98,7 +98,7 @@ void require_same_grid(const Grid& grid, const LabelVolume& volume, const Path& 
   if (grid.size != volume.grid.size)
     throw Error(
         "the weights are for a grid of " + text_of(grid.size) + " voxels, the volume has " + text_of(volume.grid.size),
-        path.string(), "give the volume they were made for");
+        path.string(), "give the volume that the weights were made for");
 }
 
 // Makes every tissue voxel that has no weight yet follow the nearest bone of the rig. Adds a warning if there are any.
@@ -118,7 +118,7 @@ void cover_the_rest(BestFour& best, const LabelVolume& volume, const TissueVoxel
   });
   if (left_out > 0)
     warnings.push_back(path.string() + " gives no bone to " + std::to_string(left_out) +
-                       " tissue voxels: each follows the nearest bone");
+                       " tissue voxels: each of these voxels follows its nearest bone");
 }
 
 WeightsFile read_bender_series(const Path& folder, const LabelVolume& volume, const TissueVoxels& tissue,
@@ -161,7 +161,7 @@ WeightsFile read_bender_map(const Path& path, const LabelVolume& volume, const T
     if (value.file_value < 1 || value.file_value >= kFirstBone + double(armature.bones.size()))
       throw Error("the skin map holds the value " + std::to_string(static_cast<std::int64_t>(value.file_value)) +
                       ", the rig has " + std::to_string(armature.bones.size()) + " bones, numbered from 2",
-                  path.string(), "give the rig it was made with");
+                  path.string(), "give the rig that the map was made with");
     bone[value.label] = static_cast<int>(value.file_value) - kFirstBone;
   }
   WeightsFile result;
@@ -186,7 +186,8 @@ std::vector<std::shared_ptr<const SkinWeights::Chunk>> read_chunks(VoxelSource& 
     for (Influence& influence : influences) accept(influence, in_rig, where);
     chunks.push_back(std::make_shared<const SkinWeights::Chunk>(influences));
   }
-  if (const auto beyond = data.finish(); !beyond.empty()) throw Error("the weights are too long", where, kMakeAnew);
+  if (const auto beyond = data.finish(); !beyond.empty())
+    throw Error("the file has more weights than the volume has tissue voxels", where, kMakeAnew);
   return chunks;
 }
 
@@ -204,13 +205,13 @@ WeightsFile read_nrrd(const Path& path, const LabelVolume& volume, const TissueV
   const std::vector<std::uint16_t> in_rig = bones_in_rig(key(kWeightsKey), where, armature);
   if (header.voxel_type != VoxelType::UInt16)
     throw Error("the weights are of type " + std::string(to_string(header.voxel_type)), where,
-                "they should be unsigned short");
+                "the type must be unsigned short");
   if (header.big_endian) throw Error("the weights are not little-endian", where, kMakeAnew);
   const glm::ivec3& numbers = header.grid.size;
   if (key("limber_size") != text_of(volume.grid.size) || numbers.x != 8 || numbers.y != tissue.size() ||
       numbers.z != 1 || key("limber_tissue_sha256") != tissue_sha256(tissue))
     throw Error("the weights belong to another volume", where,
-                "give the volume they were made for, or " + std::string(kMakeAnew));
+                "give the volume that the weights were made for, or " + std::string(kMakeAnew));
   WeightsFile file{{names_of(armature), read_chunks(*opened.voxels, tissue, in_rig, where)}, header.warnings};
   if (const auto text = header.keys.find("limber_seams"); text != header.keys.end())
     file.seams = text->second.empty()
@@ -233,7 +234,7 @@ WeightsFile read_weights(const Path& path, const LabelVolume& volume, const Tiss
 
 void check_weights_writable(const Path& path) {
   if (path.extension() != ".nrrd")
-    throw Error("weights are written as .nrrd", path.string(), "choose a name that ends in .nrrd");
+    throw Error("weights cannot be written with this extension", path.string(), "use a name that ends in .nrrd");
   check_place(path);
 }
 

@@ -176,7 +176,7 @@ void check_inputs(const Study& study, const Path& expected) {
     const auto found = hashes.find("inputs/" + input.name);
     if (found == hashes.end())
       throw Error("the expected results were made without this file", input.path.string(),
-                  "take the study.json beside " + expected.string());
+                  "use the study.json beside " + expected.string());
     if (describe_input(input.path).sha256 != found->second)
       throw Error("the file is not the one that the expected results were made from", input.path.string(),
                   "put the file with the SHA-256 " + found->second.substr(0, 64) + " there");
@@ -187,9 +187,9 @@ std::string check_results(const Study& study, const std::vector<CellResult>& cel
                           Progress& progress) {
   const Json json = read_expected(expected), found = expected_of(study, cells, progress);
   if (json["cells"].size() != found.size())
-    throw Error("the expected results have " + std::to_string(json["cells"].size()) + " cells, the study " +
+    throw Error("the expected results have " + std::to_string(json["cells"].size()) + " cells, but the study has " +
                     std::to_string(found.size()),
-                expected.string(), "take the study.json beside it");
+                expected.string(), "use the study.json beside this file");
   std::string told;
   std::size_t others = 0, differences = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -208,8 +208,8 @@ std::string check_results(const Study& study, const std::vector<CellResult>& cel
     throw Error(std::to_string(others) + " of " + std::to_string(found.size()) + " cells have different numbers", told,
                 text_at(json, "sources") == computing_sources()
                     ? "both were computed by the same version of Limber: compare the machines"
-                    : "other sources made the expected results: take Limber " + version);
-  return "the same digits: every voxel and every figure of " + std::to_string(found.size()) +
+                    : "other source code computed the expected results: use Limber " + version);
+  return "the results are identical: every voxel and every figure of " + std::to_string(found.size()) +
          " cells is as expected by Limber " + version;
 }
 

@@ -155,8 +155,8 @@ class Page {
     if (!figures_.joint.empty())
       html_ += "The joint that turns the furthest is at the head of " + escaped(figures_.joint) + ". ";
     html_ +=
-        "Changes are of volume, relative to the same tissue at rest at the same spacing; they can cancel in a total, "
-        "so the tissue that changes most stands beside it.</p>\n";
+        "All changes are changes of volume, relative to the same tissue at rest at the same spacing. Changes of "
+        "tissues can cancel in the total, so the tissue that changes most stands beside the total.</p>\n";
 
     std::string rows =
         "<thead><tr><th rowspan=\"2\">Technique</th><th colspan=\"2\">Total volume</th><th colspan=\"3\">Tissue that "
@@ -165,8 +165,8 @@ class Page {
         seconds_word() + ", mean</small></th><th rowspan=\"2\">Memory<small>MB, peak</small></th><th rowspan=\"2\">" +
         (facts_.of_session ? "Results that pass" : "Cells that pass<small>all spacings</small>") +
         "</th></tr>"
-        "<tr><th>change, %</th><th class=\"word\">at</th><th>change, %</th><th class=\"word\">of</th><th "
-        "class=\"word\">at</th></tr></thead><tbody>";
+        "<tr><th>change, %</th><th class=\"word\">pose</th><th>change, %</th><th class=\"word\">tissue</th><th "
+        "class=\"word\">pose</th></tr></thead><tbody>";
     for (int t = 0; t < techniques(); ++t) {
       Extreme total, tissue;
       double seconds = 0, memory = 0;
@@ -194,7 +194,7 @@ class Page {
       rows += "<td>" + signed_number(total.value, 2) + "</td><td class=\"word\">" + pose_of(total) + "</td>";
       rows += tissue.cell ? "<td>" + signed_number(tissue.value, 2) + "</td><td class=\"word\">" +
                                 escaped(tissue.tissue->name) + "</td><td class=\"word\">" + pose_of(tissue) + "</td>"
-                          : "<td class=\"none\" colspan=\"3\">none is large enough</td>";
+                          : "<td class=\"none\" colspan=\"3\">no tissue is large enough</td>";
       rows += "<td>" + grouped(overlap) + "</td><td>" + fixed(seconds / count, 1) + "</td><td>" + fixed(memory, 0) +
               "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
     }
@@ -231,7 +231,8 @@ class Page {
             (facts_.of_session ? "result" : "cell") + " from reading the volume to writing the result" +
             std::string(too_many ? ", mean over " + std::to_string(poses()) + " poses." : ", one bar for each pose.") +
             (facts_.of_session ? ""
-                               : " Weights are computed once for each spacing and not counted" + weights_note() + "."));
+                               : " Weights are computed once for each spacing, and their time is not included" +
+                                     weights_note() + "."));
 
     std::vector<std::string> names;
     for (int t = 0; t < techniques(); ++t) names.push_back(marked_name(t));
@@ -252,7 +253,7 @@ class Page {
         for (int s = 0; s < std::ssize(study_.spacings); ++s) series.values.push_back(mean_seconds(s, t));
         lines.series.push_back(series);
       }
-      Series weights{"Weights, once", {}, {}};
+      Series weights{"Weights, computed once", {}, {}};
       for (int s = 0; s < std::ssize(study_.spacings); ++s) weights.values.push_back(seconds_of_weights(s));
       lines.series.push_back(weights);
       figure(svg_of(lines),
@@ -425,8 +426,8 @@ class Page {
                                     "cells are not computed again.") +
                "</p>\n";
     figure(grid(figures_.slices, figures_.poses, "Slice") + html_of(figures_.slices.legend),
-           "The same cut " + where() + ", voxels as they are. Each picture is " + fixed(figures_.slices.width_mm, 0) +
-               " mm wide; the bar is 50 mm." + shown,
+           "The same cut " + where() + ", with unsmoothed voxels. Each picture is " +
+               fixed(figures_.slices.width_mm, 0) + " mm wide; the bar is 50 mm." + shown,
            "grid");
   }
   std::string view_words() const {
@@ -443,7 +444,7 @@ class Page {
       return std::any_of(grid.png.begin(), grid.png.end(), [](const auto& row) { return !row[0].empty(); });
     };
     if (figures_.largest_pose < 0 || (!any(figures_.ratios) && !any(figures_.overlaps))) return;
-    section("Where it is worst", "worst");
+    section("Worst places", "worst");
     std::string html = "<table class=\"pictures maps\"><thead><tr><th></th>";
     for (int t = 0; t < techniques(); ++t) html += "<th>" + marked_name(t) + "</th>";
     html += "</tr></thead><tbody>";
@@ -641,8 +642,8 @@ class Page {
     Series averages{technique_name(first.cell.technique), look(first.cell.technique), {}}, peaks = averages;
     std::string rows =
         "<thead><tr><th>Pose</th><th>Average<small>mW/kg</small></th><th>Peak over 10 "
-        "g<small>mW/kg</small></th><th>Mass<small>kg</small></th><th>Cells of "
-        "tissue</th><th>Time<small>s</small></th></tr></thead><tbody>";
+        "g<small>mW/kg</small></th><th>Mass<small>kg</small></th><th>Tissue "
+        "cells</th><th>Time<small>s</small></th></tr></thead><tbody>";
     for (const SarFigures::Body& body : sar.bodies) {
       const std::string& pose = study_.poses[body.cell->cell.pose].name;
       for (LineChart* chart : {&average, &peak}) chart->places.push_back(pose);
@@ -702,15 +703,16 @@ class Page {
     };
     fact("Program", program() + ", sources <code>" + std::string(computing_sources()).substr(0, 12) + "</code>");
     if (!facts_.of_session) fact("Command", "<code>" + escaped(facts_.command) + "</code>");
-    fact("Made on", escaped(facts_.date));
+    fact("Written on", escaped(facts_.date));
     if (!facts_.of_session) {
       for (const std::string& machine : machines) fact("Computed on", escaped(machine));
       fact("Processor time", fixed(seconds / 60, 1) + " min for all cells");
       fact("Weights", escaped(study_.weights));
       fact("Finite elements", "quality " + escaped(study_.quality));
-      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that no bone enters another"
+      fact("Joints", study_.fit_joints ? "fitted to the bones before each pose, so that bones do not overlap"
                                        : "as the rig has them, shifted where bones would overlap");
-      fact("Labels", study_.nearest ? "of the nearest rest voxel" : "with the largest interpolated membership");
+      fact("Labels", study_.nearest ? "label of the nearest voxel at rest"
+                                    : "label with the largest share, interpolated at rest");
     }
     html_ += "<dl>" + list + "</dl>\n";
 

@@ -222,9 +222,10 @@ class MethodsWriter {
   }
 
   std::string labels() {
-    std::string text = study_.nearest
-                           ? "A posed voxel has the label of the nearest voxel at rest."
-                           : "A posed voxel has the label with the largest membership, interpolated at rest.";
+    std::string text =
+        study_.nearest
+            ? "A posed voxel has the label of the nearest voxel at rest."
+            : "A posed voxel has the label that has the largest share at the voxel's rest position, by interpolation.";
     if (uses([](const Technique& technique) { return technique.mass_exact; }))
       text += " Mass-exact techniques then change the least certain voxels at borders, by cheapest paths of a flow" +
               cite("flows") + ", until soft tissues have their volumes again.";
@@ -233,12 +234,13 @@ class MethodsWriter {
 
   std::string measures() const {
     const QualityLimits& gates = study_.gates;
-    std::string text = "Volume changes count voxels, relative to rest at the same spacing. Every label of " +
-                       grouped(gates.least_voxels) + " voxels or more at rest is judged by its change: at most " +
-                       number(gates.tissue_percent) + " %. Bones may deviate from a rigid motion by " +
-                       mm(number(gates.bone_residual_mm)) + ", skin may lose " + number(gates.skin_share_percent) +
-                       " % of its share of the surface, and joints may exceed their limits by " +
-                       number(gates.joint_excess_degrees) + "°.";
+    std::string text =
+        "Volume changes are changes of the number of voxels, relative to rest at the same spacing. Every label of " +
+        grouped(gates.least_voxels) + " voxels or more at rest is judged by its change: at most " +
+        number(gates.tissue_percent) + " %. Bones may deviate from a rigid motion by " +
+        mm(number(gates.bone_residual_mm)) + ", skin may lose " + number(gates.skin_share_percent) +
+        " % of its share of the surface, and joints may exceed their limits by " + number(gates.joint_excess_degrees) +
+        "°.";
     if (of_session_) return paragraph(text);
     text += study_.repeats > 1
                 ? " Each cell was computed " + std::to_string(study_.repeats) +

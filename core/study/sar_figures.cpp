@@ -44,7 +44,7 @@ SarFigures figures_of(const Json& json, const Study& study, const std::vector<Ce
     if (!sar.bodies.empty() && (body.cell->cell.spacing != sar.bodies.front().cell->cell.spacing ||
                                 body.cell->cell.technique != sar.bodies.front().cell->cell.technique))
       throw Error("SAR is reported for bodies of one spacing and technique",
-                  "sar.json, " + text_of(study, body.cell->cell), "write it again with sar_openems.py study");
+                  "sar.json, " + text_of(study, body.cell->cell), "write the file again with sar_openems.py study");
     sar.bodies.push_back(body);
   }
   std::sort(sar.bodies.begin(), sar.bodies.end(),

@@ -26,7 +26,7 @@ int whole_number(const std::string& text, int least, int most, const Path& path,
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || value < least || value > most)
-    refuse(path, line, std::string("the ") + name + " is wrong",
+    refuse(path, line, std::string("the ") + name + " is not valid",
            "write a whole number from " + std::to_string(least) + " to " + std::to_string(most));
   return value;
 }
@@ -41,12 +41,12 @@ void read_row(const std::vector<std::string>& fields, int line, RaterScores& rat
   if (rater.rater.empty()) rater.rater = name;
   if (rater.rater != name) refuse(path, line, "the file names two raters", "use one file for each rater");
   if (code.empty() || code.size() > kLongestName)
-    refuse(path, line, "the row names no picture", "keep the form's codes");
+    refuse(path, line, "the row names no picture", "keep the codes that rating.html wrote");
   if (fields[4].empty()) return;
   const RaterScores::Score score{whole_number(fields[2], 1, 1 << 20, path, line, "order"),
                                  whole_number(fields[4], kLeastScore, kMostScore, path, line, "score"), fields[5]};
   if (!rater.scores.emplace(code, score).second)
-    refuse(path, line, "the picture is scored twice", "leave one of both rows out");
+    refuse(path, line, "the picture is scored twice", "leave out one of the two rows");
   if (rater.scores.size() > kMostScores)
     refuse(path, line, "the file has too many scores", "use the file that rating.html saved");
 }
@@ -91,13 +91,14 @@ RatingResult rate(const Study& study, const std::vector<RatedPicture>& pictures,
   std::vector<std::vector<double>> of_technique(study.techniques.size());
   for (std::size_t r = 0; r < raters.size(); ++r) {
     if (std::count(result.raters.begin(), result.raters.end(), raters[r].rater))
-      throw Error("two files are of the rater " + raters[r].rater, raters[r].file.string(), "leave one of both out");
+      throw Error("two files are of the rater " + raters[r].rater, raters[r].file.string(),
+                  "leave out one of the two files");
     result.raters.push_back(raters[r].rater);
     for (const auto& [code, score] : raters[r].scores) {
       const auto found = index.find(code);
       if (found == index.end())
         throw Error("the picture " + code + " is not of this study", raters[r].file.string(),
-                    "take the study and the version of Limber that made the form");
+                    "use the study and the version of Limber that made the form");
       const StudyCell& cell = pictures[found->second].cell->cell;
       table[found->second][r] = score.score;
       of_technique[std::size_t(cell.technique)].push_back(score.score);

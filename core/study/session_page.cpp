@@ -109,7 +109,7 @@ std::string session_page(const SessionPage& session, const Path& scratch, const 
     try {
       cells.push_back(read_result(study, outcomes[i]));
     } catch (const Error&) {
-      throw Error("a result has no complete report", name, "resample it again, or delete it");
+      throw Error("a result has no complete report", name, "resample the pose again, or delete the result");
     }
   }
   const StudyFigures figures = make_figures(study, cells, start, progress);

@@ -67,10 +67,11 @@ void read_volumes(const Description& description, Study& study) {
   for (const Description& one : description.list("volumes")) {
     one.check_keys({"spacing_mm", "volume"});
     const auto spacing = one.number("spacing_mm", 1e-3, 1e3);
-    if (!spacing || !one.has("volume")) one.refuse("it needs a spacing and a file", "give both: spacing_mm and volume");
+    if (!spacing || !one.has("volume"))
+      one.refuse("an entry of \"volumes\" needs a spacing and a file", "give both: spacing_mm and volume");
     if (!study.phantom.empty()) one.refuse("a phantom has no volume files", "leave out \"volumes\"");
     if (!study.ready.emplace(*spacing, one.file("volume")).second)
-      one.refuse("the spacing occurs twice", "leave one of both out");
+      one.refuse("the spacing occurs twice", "leave out one of the two volumes");
   }
 }
 

@@ -65,7 +65,8 @@ std::string time_rows(const Study& study, const std::vector<CellResult>& cells, 
       "<thead><tr><th rowspan=\"2\">Spacing</th><th rowspan=\"2\" class=\"word\">Technique</th><th "
       "colspan=\"2\">Time<small>" +
       unit +
-      "</small></th><th colspan=\"2\">Times linear blend’s</th></tr><tr><th>median</th><th>range</th><th>median</th>"
+      "</small></th><th colspan=\"2\">Divided by linear blend’s "
+      "time</th></tr><tr><th>median</th><th>range</th><th>median</th>"
       "<th>range</th></tr></thead>";
   for (int s = 0; s < std::ssize(study.spacings); ++s) {
     rows += "<tbody>";

@@ -90,7 +90,8 @@ std::vector<int> media_of(const TissueTable& tissues, const CompositionTable& me
           (without.empty() ? "" : ", ") + (tissue.name.empty() ? "label " + text_of(tissue.file_value) : tissue.name);
   }
   if (!without.empty())
-    throw Error("no elements are known of: " + without, where, "name them, or give them a kind, with --tissues");
+    throw Error("no elements are known for: " + without, where,
+                "give these tissues other names or kinds with --tissues");
   return rows;
 }
 

@@ -60,7 +60,7 @@ void append(DielectricTable& table, const Path& path) {
     const auto fields = csv_fields(line);
     if (fields.size() != kNumbers + 4)
       throw Error("the row has " + std::to_string(fields.size()) + " fields", where,
-                  "write " + std::to_string(kNumbers + 4));
+                  "write this number of fields: " + std::to_string(kNumbers + 4));
     table.names.push_back(tissue_names_of(fields, where));
     table.parameters.push_back(parameters_of(fields, where));
     table.sources.push_back(fields.back());
@@ -72,8 +72,8 @@ void append(DielectricTable& table, const Path& path) {
 
 Dielectric dielectric_at(const ColeCole& tissue, double frequency) {
   if (!(frequency >= kLowestFrequency && frequency <= kHighestFrequency))
-    throw Error("the frequency " + text_of(frequency) + " Hz is outside of what the model of tissue holds for",
-                "--frequency", "choose 10 Hz to 100 GHz (1e11)");
+    throw Error("the frequency " + text_of(frequency) + " Hz is outside the range of the tissue model", "--frequency",
+                "use 10 Hz to 100 GHz (1e11)");
   const double w = 2 * std::numbers::pi * frequency;
   std::complex<double> epsilon = tissue.epsilon_infinity;
   for (const auto& [delta, tau, alpha] : tissue.dispersions)
@@ -170,7 +170,7 @@ std::string stand_ins_text(const std::vector<TissueMaterial>& materials) {
     if (!m.stand_in.empty() && named.insert(m.row).second)
       text += (text.empty() ? "" : "; ") + m.row + " as " + m.properties;
   if (text.empty()) return text;
-  return "tissues without published properties of their own take others': " + text +
+  return "tissues without published properties use those of other tissues: " + text +
          " (`limber tissues` says why, and lists every match)";
 }
 

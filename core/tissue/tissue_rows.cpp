@@ -67,7 +67,7 @@ std::vector<TissueShare> mixture_of(const TissueRows& table, const TissueRow& ro
   double sum = 0;
   for (const TissueShare& part : mixture) {
     if (!(part.volume > 0)) refuse("a part of the mixture has no share", where);
-    if (table.rows[part.row].dielectric.empty()) refuse("a mixture is made of rows that are none", where);
+    if (table.rows[part.row].dielectric.empty()) refuse("a part of the mixture has no dielectric properties", where);
     sum += part.volume;
   }
   if (!mixture.empty() && std::abs(sum - 1) > 1e-9)

@@ -108,14 +108,14 @@ bool is_bone(TissueKind kind) {
 
 MaterialSources material_sources(TissueKind kind) {
   constexpr std::string_view kChosen = "chosen by Limber";
-  MaterialSources sources{"of the tissue, by its name or kind",
+  MaterialSources sources{"found by the tissue's name or kind",
                           "chosen by Limber: published values spread over two decades", kChosen};
   if (kind == TissueKind::Skin || kind == TissueKind::Fat || kind == TissueKind::Muscle)
     sources.stiffness =
-        "3 times a shear modulus of 40 kPa for skin, 1 for fat, 4 for muscle; others take 8, 0.8 and 0.5: Int. Wound "
+        "3 times a shear modulus of 40 kPa for skin, 1 for fat, 4 for muscle; others use 8, 0.8 and 0.5: Int. Wound "
         "J. 15(3), 402-416, 2018";
   if (defaults_of(kind).poisson_ratio > 0.49) sources.poisson = "flesh is mostly water; lower ratios lose volume";
-  if (is_bone(kind)) sources.stiffness = sources.poisson = "a pose keeps bones rigid, whatever stands here";
+  if (is_bone(kind)) sources.stiffness = sources.poisson = "without effect: poses keep bones rigid";
   return sources;
 }
 

@@ -64,7 +64,7 @@ const Codec& loaded_codec() {
 const Codec& codec(const Path& path) {
   const Codec& loaded = loaded_codec();
   if (!loaded.elements || !loaded.pixels)
-    throw Error("DICOM cannot be read, limber_dicom.so is missing or damaged", path.string(),
+    throw Error("DICOM cannot be read, because limber_dicom.so is missing or damaged", path.string(),
                 "install Limber again, or give NRRD, MetaImage or NIfTI");
   return loaded;
 }
@@ -170,7 +170,8 @@ Slice read_slice_header(VolumeFiles& files, std::size_t index) {
                 "export it as a series of single images, or as NRRD or NIfTI");
   const auto type = type_of(elements.word(0x0028, 0x0100).value_or(0), elements.word(0x0028, 0x0103).value_or(0) == 1);
   if (!type)
-    throw Error("the DICOM image has voxels that are not of 8, 16 or 32 bits", path.string(), "export it with 16 bits");
+    throw Error("the DICOM image has voxels that are not of 8, 16 or 32 bits", path.string(),
+                "export the image with 16 bits");
   slice.type = *type;
   check_pixels_fit(file, path, slice.bytes());
 
@@ -207,7 +208,7 @@ std::vector<Slice> read_series(VolumeFiles& files) {
     for (const auto& [uid, slices] : by_series) counts += (counts.empty() ? "" : ", ") + std::to_string(slices.size());
     throw Error(
         "the folder holds " + std::to_string(by_series.size()) + " DICOM series (" + counts.substr(0, 60) + " images)",
-        folder.string(), "keep one series in it");
+        folder.string(), "keep one series in the folder");
   }
   std::vector<Slice> slices = std::move(by_series.begin()->second);
   const glm::dvec3 normal = slices.front().normal();
@@ -354,7 +355,7 @@ std::vector<Path> dicom_files(const Path& folder) {
     std::error_code error;
     if (!entry.is_regular_file(error) || !is_dicom_file(entry.path())) continue;
     if (files.size() == kMostFiles)
-      throw Error("the folder holds more than 100 000 DICOM files", folder.string(), "keep one series in it");
+      throw Error("the folder holds more than 100 000 DICOM files", folder.string(), "keep one series in the folder");
     files.push_back(entry.path());
   }
   if (files.empty())

@@ -43,7 +43,7 @@ std::vector<Number> numbers_in(const Fields& fields, std::initializer_list<std::
   const auto numbers = numbers_of<Number>(*text);
   if (!numbers || numbers->size() < count)
     throw Error(std::string(*names.begin()) + " is " + in_quotes(*text), where,
-                "this needs " + std::to_string(count) + " numbers; correct the header");
+                "this key needs " + std::to_string(count) + " numbers; correct the header");
   // Takes only the first `count` numbers: the header of a 2-D image may list a third one.
   return {numbers->begin(), numbers->begin() + static_cast<std::ptrdiff_t>(count)};
 }
@@ -61,7 +61,8 @@ void find_data(VolumeHeader& header, std::string_view value, std::string_view re
     while (!rest.empty() && header.data_names.size() <= 65536)
       if (const auto name = trimmed(take_line(rest)); !name.empty()) header.data_names.emplace_back(name);
     if (header.data_names.empty() || header.data_names.size() > 65536)
-      throw Error("ElementDataFile = LIST names no usable list of files", where, "list one file per slice below it");
+      throw Error("ElementDataFile = LIST names no usable list of files", where,
+                  "list one file per slice below this line");
   } else if (value.find('%') != std::string_view::npos && words.size() >= 3) {
     const auto from = number_of<std::int64_t>(words[1]), to = number_of<std::int64_t>(words[2]);
     const auto step = words.size() > 3 ? number_of<std::int64_t>(words[3]) : 1;
@@ -112,7 +113,7 @@ VolumeHeader parse_meta_header(std::string_view bytes, const std::string& where)
   }
   if (!found_data)
     throw Error("the header names no data (ElementDataFile)", where,
-                "the file is cut off or no MetaImage; export it again");
+                "the file is cut off or is not a MetaImage; export it again");
 
   // Checks the kind of image and reads the voxel type.
   if (const auto* type = field(fields, {"ObjectType"}); type && *type != "Image")

@@ -222,7 +222,7 @@ class NrrdReader {
     const auto* value = get(name);
     if (!value)
       throw Error("the header has no `" + std::string(name) + "`", where_,
-                  "the file is cut off or no NRRD; export it again");
+                  "the file is cut off or is not NRRD; export it again");
     return *value;
   }
   std::optional<std::vector<double>> per_axis(std::string_view name) const {
@@ -421,7 +421,7 @@ class NrrdReader {
     if (lower_case(words[0]) == "list") {
       header_.data_names = text_.data_list;
       if (header_.data_names.empty())
-        throw Error("`data file: LIST` lists no file", where_, "name one file per line below it");
+        throw Error("`data file: LIST` lists no file", where_, "name one file per line below this line");
     } else if (name->find('%') != std::string::npos && words.size() >= 4) {
       const auto first = number_of<std::int64_t>(words[1]), last = number_of<std::int64_t>(words[2]),
                  step = number_of<std::int64_t>(words[3]);
@@ -434,7 +434,9 @@ class NrrdReader {
   }
 
   void attached_line_skip() const {
-    if (header_.line_skip > 0) throw Error("`line skip` with attached data", where_, "use it only with a `data file`");
+    if (header_.line_skip > 0)
+      throw Error("`line skip` is given, but the data are in the header's file", where_,
+                  "use it only with a `data file`");
   }
 
   NrrdText text_;

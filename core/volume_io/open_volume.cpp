@@ -67,7 +67,7 @@ OpenedVolume open_as_can_be(const Path& path, Progress& progress, Holding holdin
   if (const auto program = find_own_program(kReaderName))
     return open_in_reader(location, holding, progress, {.program = *program});
   if (location.is_dicom)
-    throw Error("DICOM cannot be read, limber_reader is missing", path.string(),
+    throw Error("DICOM cannot be read, because limber_reader is missing", path.string(),
                 "install Limber again, or give NRRD, MetaImage or NIfTI");
   return open_volume_here(std::make_shared<LocalFiles>(std::move(location)), holding);
 }

@@ -261,7 +261,7 @@ void write_tissue_table(const TissueTable& table, const Path& path) {
   if (extension == ".json") return write_file_atomically(path, as_json(table));
   if (extension == ".ctbl") return write_file_atomically(path, as_ctbl(table));
   if (extension == ".txt" || extension == ".label") return write_file_atomically(path, as_label_descriptions(table));
-  throw Error("label tables cannot be written under this name", path.string(), "end it in .json, .ctbl or .txt");
+  throw Error("label tables cannot be written with this extension", path.string(), "use .json, .ctbl or .txt");
 }
 
 }  // namespace limber

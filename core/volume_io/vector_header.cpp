@@ -23,7 +23,7 @@ VolumeHeader header_of_one_number(std::string bytes, const std::string& where) {
   std::smatch match;
   const std::string lines = bytes.substr(0, end);
   if (!std::regex_search(lines, match, kSizes))
-    throw Error("the file does not hold three numbers a voxel", where, kWhatToDo);
+    throw Error("the file does not hold three numbers per voxel", where, kWhatToDo);
   bytes[static_cast<std::size_t>(match.position(0) + match.length(0)) - 2] = '1';
   return parse_nrrd_header(bytes, where);
 }

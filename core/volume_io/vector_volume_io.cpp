@@ -27,8 +27,8 @@ VectorVolume read_vector_volume(const Path& path) {
   const auto said = header.keys.find(kFieldDirectionKey);
   const bool to_rest = said != header.keys.end() && said->second == kToRest;
   if (said != header.keys.end() && !to_rest && said->second != kToPosed)
-    throw Error("the field points " + said->second.substr(0, 40), path.string(),
-                std::string("its key ") + kFieldDirectionKey + " says " + kToPosed + " or " + kToRest);
+    throw Error("the direction of the field is " + said->second.substr(0, 40), path.string(),
+                std::string("the key ") + kFieldDirectionKey + " must be " + kToPosed + " or " + kToRest);
   std::vector<glm::vec3> chunk(kChunk);
   for (std::size_t first = 0; first < count; first += kChunk) {
     const std::size_t some = std::min(kChunk, count - first);

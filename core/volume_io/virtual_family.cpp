@@ -108,7 +108,7 @@ VolumeHeader read_virtual_family(VolumeFiles& files, const PlainFile& text, cons
   if (!files.has_data(raw_name))
     throw Error("the voxel file " + in_quotes(raw_name) + " is missing", path.string(), "put it beside the .txt");
   if (text.size() > kLargestHeader)
-    throw Error("the text is too long for a header", path.string(), "export the volume again");
+    throw Error("the .txt file is too long for a header", path.string(), "export the volume again");
   const std::int64_t raw_bytes = files.open_data(raw_name).size();
   VolumeHeader header = parse_virtual_family(first_bytes(text, kLargestHeader), raw_bytes, path.string());
   header.data_names = {raw_name};

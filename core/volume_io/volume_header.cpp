@@ -57,7 +57,8 @@ Grid checked_grid(const RawGrid& raw, const std::string& where, std::vector<std:
                       std::to_string(size) + ")",
                   where, "export one 3-D volume");
     if (size > kMostVoxels || voxels > kMostVoxels / size)
-      throw Error("the size overflows", where, "the header promises more than 10^12 voxels; export the volume again");
+      throw Error("the volume is too large", where,
+                  "the header states more than 10^12 voxels; export the volume again");
     voxels *= size;
     if (size > std::numeric_limits<std::int32_t>::max())
       throw Error("axis " + std::to_string(axis + 1) + " has " + std::to_string(size) + " voxels", where,

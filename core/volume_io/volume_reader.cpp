@@ -181,7 +181,7 @@ class Conversation {
                   kHarmful);
     if (std::chrono::duration<double>(now - sign_).count() > settings_.silent_seconds)
       throw Error("the file's reader has not answered for " + seconds(settings_.silent_seconds), parsed_,
-                  "check the disk; if it has no fault, export or download the file again");
+                  "check the disk; if the disk has no fault, export or download the file again");
   }
 
   Error nonsense() const { return {"the file's reader gave an invalid answer", parsed_, kHarmful}; }

@@ -21,7 +21,7 @@ namespace limber {
 namespace {
 const VolumeFormat::Written& writer_of(const Path& path) {
   if (const VolumeFormat::Written* written = how_written(path)) return *written;
-  throw Error("volumes cannot be written under this name", path.string(), "end it in one of " + writable_endings());
+  throw Error("volumes cannot be written with this extension", path.string(), "use one of " + writable_endings());
 }
 
 void write(const Voxels& voxels, const Path& path) { writer_of(path).write(voxels, path); }

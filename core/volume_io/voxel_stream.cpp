@@ -380,7 +380,7 @@ VoxelStream::VoxelStream(std::shared_ptr<VolumeFiles> files, const VolumeHeader&
   const std::int64_t bytes = header.grid.voxel_count() * size_of(header.voxel_type), count = sources_->count();
   if (header.grid.voxel_count() % count != 0)
     throw Error("the voxels cannot be shared evenly by " + std::to_string(count) + " data files",
-                from.location().headers.front().string(), "list one file a slice");
+                from.location().headers.front().string(), "list one file per slice");
   sources_->bytes_each = bytes / count;
   sources_->open();
 }

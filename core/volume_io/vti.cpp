@@ -61,7 +61,7 @@ class VtiText {
       place_ += std::ssize(part);
     }
     if (header_.array.empty())
-      throw Error("the image holds no array of one value a voxel", where_, "export its labels");
+      throw Error("the image holds no array of one value per voxel", where_, "export the labels of the image");
     if (header_.data_at < 0)
       throw Error("the data of " + in_quotes(header_.array["Name"]) + " are missing", where_,
                   "export the volume again");
@@ -84,7 +84,7 @@ class VtiText {
     }
     if (name == "ImageData") header_.image = all(attributes);
     if (name == "Piece") {
-      if (!header_.piece.empty()) return fail("the image is in several pieces", "export it as one");
+      if (!header_.piece.empty()) return fail("the image is in several pieces", "export the image as one piece");
       header_.piece = all(attributes);
     }
     if (name == "PointData" || name == "CellData") {
@@ -168,7 +168,7 @@ std::vector<double> numbers_in(const Attributes& attributes, const char* name, s
 RawGrid grid_of(const VtiHeader& vti, const std::string& where) {
   const std::array<int, 6> whole = extent_of(vti.image, "WholeExtent", where);
   if (extent_of(vti.piece, "Extent", where) != whole)
-    throw Error("the image is in several pieces", where, "export it as one");
+    throw Error("the image is in several pieces", where, "export the image as one piece");
   const auto origin = numbers_in(vti.image, "Origin", {0, 0, 0}, where);
   const auto spacing = numbers_in(vti.image, "Spacing", {1, 1, 1}, where);
   const auto direction = numbers_in(vti.image, "Direction", {1, 0, 0, 0, 1, 0, 0, 0, 1}, where);
@@ -208,7 +208,7 @@ VolumeHeader read_vti_header(VolumeFiles& files, const PlainFile& file, const st
   header.big_endian = attribute(vti.file, "byte_order", "LittleEndian") == "BigEndian";
   const std::string compressor = attribute(vti.file, "compressor", "");
   if (!compressor.empty() && compressor != kZlib)
-    throw Error("the data are packed by " + in_quotes(compressor), where, "export them with zlib, or not packed");
+    throw Error("the data are compressed by " + in_quotes(compressor), where, "export with zlib or uncompressed");
   const std::string format = attribute(vti.array, "format", "ascii");
   const std::string in = format == "ascii" ? "text" : format == "binary" || vti.appended == "base64" ? "base64" : "raw";
   // `encoding` describes the data in terms that all formats share; the keys tell where they are in the file.

@@ -59,7 +59,7 @@ class Arrays(InFolder):
     def test_bad_arrays_are_refused_in_a_sentence(self):
         for labels, options, word in (
             (np.zeros((3, 3), np.uint8), {}, "three axes"),
-            (np.full((3, 3, 3), 0.5), {}, "no labels"),
+            (np.full((3, 3, 3), 0.5), {}, "not labels"),
             (np.zeros((3, 3, 3), complex), {}, "whole numbers"),
             (np.zeros((3, 3, 3), np.uint8), {"spacing": (1, 1, -1)}, "spacing"),
             (np.zeros((3, 3, 3), np.uint8), {"spacing": (1, 1)}, "three numbers"),

@@ -59,7 +59,7 @@ TEST_CASE("experiment: repeats give times with a range, and the form for raters 
   }
   std::string page = read_file(out / "report.html");
   CHECK(has(page, "the 3 repeats of each"));
-  CHECK(has(page, "Times linear blend’s"));
+  CHECK(has(page, "Divided by linear blend’s time"));
   CHECK_FALSE(has(page, "id=\"realism\""));
 
   const std::string form = read_file(out / "rating.html");
@@ -114,7 +114,7 @@ TEST_CASE("experiment: a bundle that is computed elsewhere gives the same digits
   const auto same = run_limber(again);
   INFO(same.err);
   CHECK(same.exit_code == 0);
-  CHECK(has(same.out, "the same digits: every voxel and every figure of 4 cells"));
+  CHECK(has(same.out, "the results are identical: every voxel and every figure of 4 cells"));
 
   json expected = json::parse(read_file(moved / "expected.json"));
   const json whole = expected;

@@ -59,7 +59,7 @@ void check_leaves(const std::vector<std::string>& names) {
   for (const char* name : {"v.xml", "v.gprmax.h5", "v.dat"}) {
     const auto run = run_limber({"convert", volume, folder / name, "--tissues", tissues, "--frequency", "900e6"});
     CHECK_MESSAGE(run.exit_code == 0, name, ": ", run.err);
-    CHECK_MESSAGE(run.err.find("known of") == run.err.npos, run.err);
+    CHECK_MESSAGE(run.err.find("known for") == run.err.npos, run.err);
   }
   CHECK(count(text_of(folder / "v.xml"), "<Material ") == names.size());
   CHECK(count(text_of(folder / "v_materials.txt"), "#material:") >= names.size());

@@ -170,7 +170,7 @@ TEST_CASE("vti: damage is told in a line") {
   CHECK(raw(bytes_of<std::uint32_t>({1, 12, 0, length}) + wrong, zlib).find("damaged") != std::string::npos);
   CHECK(raw(bytes_of<std::uint32_t>({1, 20, 0, length}) + a, zlib).find("not as long") != std::string::npos);
   CHECK(raw(bytes_of<std::uint32_t>({4000000000u, 12, 0}) + a, zlib).find("damaged") != std::string::npos);
-  CHECK(raw("", R"(compressor="vtkLZ4DataCompressor")").find("packed by") != std::string::npos);
+  CHECK(raw("", R"(compressor="vtkLZ4DataCompressor")").find("compressed by") != std::string::npos);
   CHECK(problem_of(file_with("pieces",
                              "<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"0 1 0 1 0 1\"><Piece "
                              "Extent=\"0 0 0 1 0 1\"/><Piece/></ImageData></VTKFile>"))
