@@ -329,10 +329,10 @@ LabelSet bone_labels(const LabelVolume& volume, const TissueTable& tissues, cons
   if (const auto guess = guess_bone_tissue(volume, tissues, long_bones)) {
     const Tissue* tissue = tissues.find(guess->label);
     char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "no tissue table marks bone: label %.0f is used as bone, because it lies along %.0f %% of the long bones",
-        tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
+    std::snprintf(text, sizeof text,
+                  "no tissue table says which labels are bone: label %.0f is used, because it lies along %.0f %% of "
+                  "the long bones",
+                  tissue ? tissue->file_value : double(guess->label), 100 * guess->share_of_rig);
     warnings.push_back(text);
     labels[guess->label] = 1;
   }

@@ -20,7 +20,7 @@ void read_weights(const Description& value, DescribedBody& body) {
   const std::vector<std::string> words = binding_words();
   if (std::find(words.begin(), words.end(), body.weights) != words.end()) return;
   if (body.spacing)
-    value.refuse("weights from a file belong to the volume's own voxels", "weights",
+    value.refuse("weights from a file fit only the volume's own voxel size", "weights",
                  "leave out \"weights\" or \"spacing_mm\"");
   if (!body.phantom.empty()) value.refuse("a phantom's weights are always computed", "weights", "leave out the file");
   body.weights_file = value.file("weights");

@@ -19,10 +19,10 @@ void guess_bones(Body& body, const std::string& volume) {
   body.tissues = with_bones(std::move(body.tissues), {value});
   char text[200];
   std::snprintf(text, sizeof text,
-                ": label %.0f is used as bone, because it lies along %.0f %% of the long bones; name others with "
-                "--bones or --tissues",
+                ": label %.0f is used as bone, because it lies along %.0f %% of the rig's long bones; name other "
+                "labels with --bones or --tissues",
                 value, 100 * guess->share_of_rig);
-  body.warnings.push_back("no tissue table marks bone: " + volume + text);
+  body.warnings.push_back("no tissue table says which labels are bone: " + volume + text);
 }
 
 void take_skin(Body& body, const std::string& volume) {
@@ -33,9 +33,9 @@ void take_skin(Body& body, const std::string& volume) {
   char text[200];
   std::snprintf(text, sizeof text,
                 ": label %.0f is used as skin, because it is a thin sheet over %.0f %% of the surface; name another "
-                "with --tissues",
+                "label with --tissues",
                 value, 100 * guess->share_of_surface);
-  body.warnings.push_back("no tissue table marks skin: " + volume + text);
+  body.warnings.push_back("no tissue table says which label is skin: " + volume + text);
 }
 
 }  // namespace

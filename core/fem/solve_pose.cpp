@@ -35,21 +35,21 @@ Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector
 
 void check(const FemModel& model, const Eigen::MatrixX3d* start) {
   const auto wrong = [](const char* what) {
-    throw Error("the lists of a finite element model differ in length", what, "give one entry for each");
+    throw Error("a list of the finite element model does not fit its mesh", what, "give one valid entry for each");
   };
-  if (std::ssize(model.material) != model.mesh.T.rows()) wrong("materials and tets");
-  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("holding bones and nodes");
+  if (std::ssize(model.material) != model.mesh.T.rows()) wrong("material of each tet");
+  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("bone that holds each node");
   if (std::any_of(model.waiting.begin(), model.waiting.end(), [&](const FemModel::Waiting& each) {
         return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 ||
                model.held_by[each.node] >= 0;
       }))
-    wrong("waiting nodes and free nodes");
-  if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences and nodes");
+    wrong("nodes that wait for a bone");
+  if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences of each node");
   for (const FemModel::Sliding& each : model.sliding)
     if (each.node < 0 || each.node >= std::ssize(model.held_by) || model.held_by[each.node] >= 0 || each.bone < 0 ||
         each.bone >= std::ssize(model.bone_surface) || !model.bone_surface[each.bone])
-      wrong("sliding nodes and surfaces of bones");
-  if (start && start->rows() != model.mesh.V.rows()) wrong("start positions and nodes");
+      wrong("bone surface of each sliding node");
+  if (start && start->rows() != model.mesh.V.rows()) wrong("start position of each node");
   if (count_inverted(model.mesh.T, model.mesh.V))
     throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
   if (start && count_inverted(model.mesh.T, *start))

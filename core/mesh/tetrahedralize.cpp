@@ -180,7 +180,7 @@ std::string find_regions(const Eigen::MatrixX4i& T, const std::vector<Row>& tria
     for (int face = 0; face < 4; ++face) {
       const int other = neighbours[tet][face];
       if (other < 0 || wall[tet][face]) continue;
-      if (known[other] >= 0 && known[other] != known[tet]) return "a region leaks into another";
+      if (known[other] >= 0 && known[other] != known[tet]) return "the surface does not separate two regions";
       if (known[other] < 0) known[other] = known[tet], front.push_back(other);
     }
   }

@@ -323,7 +323,7 @@ double body_threshold(const GreyLevels& image) {
 CtLabels labels_of_body(const GreyLevels& image, double threshold, double skin_mm, Progress& progress) {
   char range[80];
   std::snprintf(range, sizeof range, "values from %g to %g", image.least, image.most());
-  if (!(skin_mm >= 0)) throw Error("the skin has no thickness", "labels of the body", "give 0 mm or more");
+  if (!(skin_mm >= 0)) throw Error("the thickness of the skin is negative", "labels of the body", "give 0 mm or more");
   if (image.least >= threshold)
     throw Error("no value is below the threshold of the body", range, "raise the threshold");
   progress.update("body", 0);

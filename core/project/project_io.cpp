@@ -101,7 +101,8 @@ SaveMark mark_in(Store& store, const Path& path) {
 
 void check_editor_bytes(const Project& project, const Path& path) {
   if (project.editor.size() > kMostEditorBytes || project.thumbnail.size() > kMostEditorBytes)
-    throw Error("the editor's state or picture is larger than 16 MB", path.string(), "save without it");
+    throw Error("the editor's state or picture is larger than 16 MB", path.string(),
+                "save the project without the state and the picture");
 }
 
 SaveMark fill(Store& store, const Project& project, DocumentWriter& writer, Packing packing, Progress& progress) {

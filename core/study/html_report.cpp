@@ -198,12 +198,12 @@ class Page {
       rows += "<td>" + grouped(overlap) + "</td><td>" + fixed(seconds / count, 1) + "</td><td>" + fixed(memory, 0) +
               "</td><td>" + std::to_string(pass) + " of " + std::to_string(all) + "</td></tr>";
     }
-    table(rows + "</tbody>", "Each technique at " + finest() +
-                                 ": the largest change over all poses with the pose that has it, the largest number of "
-                                 "voxels covered by two parts of the body, mean " +
-                                 time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") +
-                                 ". Tissues of fewer than " + grouped(study_.gates.least_voxels) +
-                                 " voxels at rest are left out.");
+    table(rows + "</tbody>",
+          "Each technique at " + finest() +
+              ": the largest change over all poses and the pose with this change, the largest number of "
+              "voxels covered by two parts of the body, mean " +
+              time_word() + " and largest memory of a " + (facts_.of_session ? "result" : "cell") +
+              ". Tissues of fewer than " + grouped(study_.gates.least_voxels) + " voxels at rest are left out.");
   }
 
   void time() {

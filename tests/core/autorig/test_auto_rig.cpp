@@ -211,7 +211,7 @@ TEST_CASE("auto-fit: bones drawn as rods are followed along their axes, and foun
   CHECK(found[found.size() / 2].first < 12);
   CHECK(fitted.joints[require_bone(truth, "LeftLeg")].how == JointFit::How::BoneAxis);
   CHECK(fitted.check.whole > share_in_tissue(file.volume, truth) - 0.005);
-  CHECK(fitted.warnings[0].starts_with("no tissue table marks bone: label 4"));
+  CHECK(fitted.warnings[0].starts_with("no tissue table says which labels are bone: label 4"));
 }
 
 TEST_CASE(

@@ -84,7 +84,7 @@ TEST_CASE("batch: a description that is wrong is refused in one line that names 
            {R"({"bodies": [{"phantom": "arm", "weights": "w.nrrd"}], )" + pose + "}", "weights"},
            {R"({"bodies": [{"volume": "v.nrrd", "rig": "r.json", "weights": "w.nrrd", "spacing_mm": 2}], )" + pose +
                 "}",
-            "own voxels"},
+            "own voxel size"},
            {R"({"bodies": [{"volume": "v.nrrd", "rig": "r.json", "weights": "none.nrrd"}], )" + pose + "}",
             "none.nrrd"},
            {R"({"bodies": [{"volume": "v.nrrd", "rig": "r.json", "colour": "red"}], )" + pose + "}", "colour"},
