@@ -114,9 +114,10 @@ std::optional<std::string> doubt_about_place(const LabelVolume& volume, const Ar
           volume, moved(armature, [&](const glm::dvec3& p) { return glm::dvec3(twice_middle.x - p.x, p.y, p.z); })));
   char text[240];
   const char* advice = std::max(turned, mirrored) < inside + kFitsMuchBetter
-                           ? "fit it with `limber fit-rig`, or give the rig of this body"
-                       : turned >= mirrored ? "negate its x and y: it seems to be in RAS axes, and Limber's are LPS"
-                                            : "mirror the rig along x: it fits the other side of the body";
+                           ? "fit the rig with `limber fit-rig`, or give the rig of this body"
+                       : turned >= mirrored
+                           ? "negate the rig's x and y: the rig seems to be in RAS axes, and Limber's axes are LPS"
+                           : "mirror the rig along x: it fits the other side of the body";
   std::snprintf(text, sizeof text, "the rig lies outside the body: only %.0f %% of its length is in tissue; %s",
                 100 * inside, advice);
   return text;

@@ -79,7 +79,7 @@ Json describe_weights(const Path& path) {
   const WeightsSummary weights = summarize_weights(path);
   const Json bones = Json::parse(checked_json(weights.bones, path.string()), nullptr, false);
   if (!bones.is_array())
-    throw Error("the weights name no bones", path.string(), "compute them again with `limber weights`");
+    throw Error("the weights name no bones", path.string(), "compute the weights again with `limber weights`");
   return {{"kind", "weights"}, {"bones", bones}, {"voxels", weights.voxels}};
 }
 

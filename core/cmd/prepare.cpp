@@ -168,7 +168,8 @@ VolumeFile labels_of(const PrepareOptions& options, Progress& progress) {
   }
   const GreyVolume ct = read_grey_volume(options.in, progress);
   CtLabels labels = labels_of_ct(grey_levels(ct.grid, ct.voxels), thresholds, progress);
-  print("labels: made from densities; contrast agent and metal count as bone, and bones that touch are one\n");
+  print(
+      "labels: made from densities; contrast agent and metal count as bone, and bones that touch are not separated\n");
   return {std::move(labels.volume), std::move(labels.tissues), {"NRRD", "uint8", true}, ct.warnings};
 }
 

@@ -81,11 +81,11 @@ Document read_parts(const ProjectOptions& options, Progress& progress) {
   require(options.part.empty() ? options.tissues.empty() && options.weights.empty() : true,
           "tissues and weights need a volume", options.file, "name the volume's file after create");
   require(options.rig.empty() ? options.weights.empty() && options.pose.empty() && options.body.empty() : true,
-          "weights and poses need a rig", options.file, "name it with --rig");
+          "weights and poses need a rig", options.file, "name the rig with --rig");
   require(options.part.empty() ? options.seams.empty() && options.bone_map.empty() : true,
           "seams and bone maps need a volume", options.file, "name the volume's file after create");
   require(options.rig.empty() ? options.bone_map.empty() : true, "a bone map needs a rig", options.file,
-          "name it with --rig");
+          "name the rig with --rig");
   if (!options.part.empty()) read_body_parts(options, document, progress);
   if (!options.rig.empty()) {
     ArmatureFile rig = read_armature_file(options.rig);
@@ -190,7 +190,7 @@ Project read_or_carve(const ProjectOptions& options, std::unique_ptr<CarvedChunk
 }
 
 void recover(const ProjectOptions& options) {
-  require(!options.output.empty(), "recover needs a file to write", options.file, "name it with -o OUT.limber");
+  require(!options.output.empty(), "recover needs a file to write", options.file, "name the file with -o OUT.limber");
   require_new(options.output, options.replace);
   CommandProgress progress(options.progress);
   Project project;

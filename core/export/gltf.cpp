@@ -156,7 +156,7 @@ Json animation_of(Glb& glb, const std::shared_ptr<const Clip>& clip, const std::
   const ClipOnRig on_rig(clip, armature);
   if (!on_rig.problem().empty())
     throw Error("the clip \"" + clip->name + "\" does not move this rig: " + on_rig.problem(), "glTF export",
-                "match its joints, or delete the clip");
+                "match the clip's joints, or delete the clip");
   const int frames = std::max(0, clip->range_end - clip->range_start) + 1;
   const std::size_t count = armature->bones.size();
   std::vector<float> times;

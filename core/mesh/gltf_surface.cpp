@@ -196,7 +196,7 @@ class GltfSurface {
         file.is_relative() && buffer.uri.find(':') == buffer.uri.npos && file.native().find('\0') == std::string::npos;
     for (const Path& part : file) is_below &= part != "..";
     if (!is_below)
-      soup_.refuse("a buffer is in the file " + in_quotes(buffer.uri) + ", which is not read from there",
+      soup_.refuse("a buffer is in the file " + in_quotes(buffer.uri) + ", which cannot be read from this place",
                    "put the file beside the .gltf, or export a .glb");
     return read_file(folder_ / file, kMostSurfaceBytes - std::min(loaded_bytes_, kMostSurfaceBytes));
   }

@@ -45,7 +45,7 @@ void cut_open(TissueMesh& result, const LatticeNet& net, const VoxelRegions& vox
     if (!result.warning.empty()) result.warning += "; ";
     result.warning +=
         std::to_string(removed) + (removed == 1 ? " tet" : " tets") +
-        " at seams left out, since surfaces would cross there: the tissue in them moves with the nearest tets";
+        " at seams left out, because surfaces would cross there: the tissue in these tets moves with the nearest tets";
   }
   for (std::uint16_t& region : mesh.region) {
     mesh.side.push_back(voxels.side_of(region));

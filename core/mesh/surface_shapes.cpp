@@ -22,7 +22,7 @@ constexpr int kLeastSides = 32;
 void check_extent(const char* what, double extent) {
   if (!(extent >= kLeastExtent && extent <= kMostExtent))
     throw Error(std::string("the ") + what + " of an obstacle is " + text_of(extent) + " mm", "obstacle",
-                "take a value from 0.001 mm to 1 000 000 mm");
+                "use a value from 0.001 mm to 1 000 000 mm");
 }
 
 // A shape's surface is divided into squares, at least approximately, and each square into two triangles. Returns the

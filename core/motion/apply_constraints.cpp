@@ -14,7 +14,7 @@ Clip with_constraints_as_keys(const std::shared_ptr<const Clip>& clip, const std
   const ClipOnRig on_rig(clip, armature);
   if (!on_rig.constraints()) throw Error("the clip has no constraints", clip->name, "add a constraint first");
   if (!on_rig.problem().empty())
-    throw Error("the clip does not move this rig", clip->name, "match its joints: " + on_rig.problem());
+    throw Error("the clip does not move this rig", clip->name, "match the clip's joints: " + on_rig.problem());
   std::set<int> turned;
   for (const std::size_t index : on_rig.constraints()->order())
     if (clip->constraints->list[index].on)

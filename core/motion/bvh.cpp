@@ -194,7 +194,7 @@ void make_names_unique(Motion& motion) {
     joint.name = name;
   }
   if (renamed)
-    motion.warnings.push_back(std::to_string(renamed) + " joints without a name of their own got one (" + example +
+    motion.warnings.push_back(std::to_string(renamed) + " joints without a name of their own were renamed (" + example +
                               ")");
 }
 

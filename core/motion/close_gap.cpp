@@ -10,7 +10,7 @@ std::vector<Pose> with_gap_closed(std::vector<Pose> poses, int first, int last) 
   const int before = first - 1, after = last + 1;
   if (first > last || before < 1 || after + 1 >= std::ssize(poses))
     throw Error("the gap cannot be closed", "frames " + std::to_string(first) + " to " + std::to_string(last),
-                "leave at least two frames before it and two after it");
+                "leave at least two frames before the gap and two after it");
   const double frames = after - before;
   const Pose &a = poses[before], &b = poses[after], &a_earlier = poses[before - 1], &b_later = poses[after + 1];
   for (int frame = first; frame <= last; ++frame) {

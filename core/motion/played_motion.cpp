@@ -13,7 +13,7 @@ Motion played_motion(const std::shared_ptr<const Clip>& clip, const std::shared_
   const ClipOnRig on_rig(clip, armature);
   if (!on_rig.problem().empty())
     throw Error("the clip \"" + clip->name + "\" does not move this rig: " + on_rig.problem(), "motion",
-                "match its joints, or delete the clip");
+                "match the clip's joints, or delete the clip");
   const int frames = std::max(0, clip->range_end - clip->range_start) + 1;
   return motion_of_poses(*armature, frames, clip->rate, [&](int frame) {
     progress.update("frames", double(frame) / frames);

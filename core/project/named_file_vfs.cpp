@@ -88,7 +88,7 @@ bool refuse_journal(State& state, sqlite3_file* file) {
     state.refuse("the journal beside the project names another file, which no journal of Limber's does", state.journal,
                  move_away);
   else if (is_no_journal(file))
-    state.refuse("the file beside the project is not a journal of it", state.journal, move_away);
+    state.refuse("the file beside the project is not the project's journal", state.journal, move_away);
   else return false;
   return true;
 }

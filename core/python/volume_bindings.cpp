@@ -261,7 +261,7 @@ tissues    names and kinds of the labels.)")
   module.def("read_tissues", &read_tissue_table, py::arg("path"),
              "Reads a tissue table: JSON, Slicer .ctbl or ITK-SNAP.");
   module.def("compare", &compare_volumes, py::arg("before"), py::arg("after"),
-             "Returns what changed between two volumes of a body, as the reports of the command line state it.");
+             "Returns what changed between two volumes of a body, as `limber report` states it.");
 }
 
 }  // namespace limber::python

@@ -186,7 +186,7 @@ void judge_bands(const Json& report, const QualityLimits&, QualityGate& gate) {
   if (!bands.is_array()) return not_checked(gate, "where the posed tissue lay at rest, or the rig, is not known.");
   if (bands.empty())
     return decide(gate, true, "0",
-                  "No tissue is stretched to more than twice its length away from the joint that moves it.");
+                  "Away from the joint that moves it, no tissue is stretched to more than twice its length.");
   const Json& worst = bands[0];
   const Json& between = part(worst, "between");
   const auto end = [&](std::size_t i) {

@@ -183,7 +183,7 @@ class MethodsWriter {
   }
   std::string blend(const std::string& word) {
     if (word == "lbs")
-      return "Linear blend adds the bones’ motions of each point by its weights" + cite("linear") + ".";
+      return "Linear blend moves each point by the weighted mean of the bones’ motions" + cite("linear") + ".";
     if (word == "dqs") return "Dual quaternions blend the motions as screw motions" + cite("dual") + ".";
     if (word == "mix")
       return "The mixed blend lies between linear blend" + cite("linear") + " and dual quaternions" + cite("dual") +

@@ -171,8 +171,12 @@ TEST_CASE("hostile journal: a new project takes a name beside which a cut-off sa
     CHECK_FALSE(fs::exists(journal));
   }
   put_bytes(journal, "notes on the journal");
-  CHECK(message_of([&] { read_project(project); }).starts_with("the file beside the project is not a journal of it"));
-  CHECK(message_of([&] { make_project(project); }).starts_with("the file beside the project is not a journal of it"));
+  CHECK(message_of([&] {
+          read_project(project);
+        }).starts_with("the file beside the project is not the project's journal"));
+  CHECK(message_of([&] {
+          make_project(project);
+        }).starts_with("the file beside the project is not the project's journal"));
   fs::remove(project);
   CHECK(message_of([&] { make_project(project); }).starts_with("another file has the name of the project's journal"));
   CHECK(read_file(journal) == "notes on the journal");
