@@ -103,7 +103,7 @@ TEST_CASE("heat: nothing flows through air, and an island in the air is named") 
   const SkinWeights weights = diffuse_heat(wide, body.tissues, body.armature, {}, no_progress(), &report);
   REQUIRE(report.warnings.size() == 1);
   CHECK(report.warnings[0].find("75 voxels of label 1") != std::string::npos);
-  CHECK(report.warnings[0].find("given to Lower") != std::string::npos);
+  CHECK(report.warnings[0].find("assigned to Lower") != std::string::npos);
   CHECK(at(weights, tissue, {11, 5, 15}) == rigid_influence(1));
 
   // The warning uses the tissue's name if the table has one, and writes "1 voxel" in the singular.

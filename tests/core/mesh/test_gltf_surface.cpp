@@ -140,17 +140,18 @@ TEST_CASE("gltf surface: what is damaged, compressed or too large is refused") {
   check_refused(replaced(kGltf, "\"byteLength\": 48", "\"byteStride\": 9007199254740992, \"byteLength\": 48"),
                 "outside its data");
   check_refused(replaced(kGltf, "\"byteOffset\": 48", "\"byteOffset\": 9007199254740992"), "outside its data");
-  check_refused(replaced(kGltf, "\"count\": 4", "\"count\": 3"), "vertex 3 of 3");
+  check_refused(replaced(kGltf, "\"count\": 4", "\"count\": 3"), "vertex 3, which is not one of the 3 vertices");
   check_refused(replaced(kGltf, "\"componentType\": 5126", "\"componentType\": 5122"), "three floats");
   check_refused(replaced(kGltf, "\"componentType\": 5121", "\"componentType\": 5120"), "unsigned whole numbers");
   check_refused(replaced(kGltf, "\"bufferView\": 0, ", ""), "without compression");
   check_refused(replaced(kGltf, "\"bufferView\": 0", "\"sparse\": {}, \"bufferView\": 0"), "sparse");
-  check_refused(replaced(kGltf, "\"bufferView\": 0", "\"bufferView\": 2"), "number 2 of 2 bufferViews");
-  check_refused(replaced(kGltf, "[{\"buffer\": 0", "[{\"buffer\": 1"), "number 1 of 1 buffers");
-  check_refused(replaced(kGltf, "{\"mesh\": 0}", "{\"mesh\": 1}"), "number 1 of 1 meshes");
-  check_refused(replaced(kGltf, "[{\"nodes\": [0]}]", "[{\"nodes\": [1]}]"), "number 1 of 1 nodes");
+  check_refused(replaced(kGltf, "\"bufferView\": 0", "\"bufferView\": 2"),
+                "number 2, but there are only 2 bufferViews");
+  check_refused(replaced(kGltf, "[{\"buffer\": 0", "[{\"buffer\": 1"), "number 1, but there are only 1 buffers");
+  check_refused(replaced(kGltf, "{\"mesh\": 0}", "{\"mesh\": 1}"), "number 1, but there are only 1 meshes");
+  check_refused(replaced(kGltf, "[{\"nodes\": [0]}]", "[{\"nodes\": [1]}]"), "number 1, but there are only 1 nodes");
   check_refused(replaced(kGltf, "{\"mesh\": 0}", "{\"mesh\": 0, \"scale\": [1e300, 1e300, 1e300]}"), "kilometre");
-  check_refused(replaced(kGltf, "base64,AA", "base64,!!"), "a buffer has 0 of 60 bytes");
+  check_refused(replaced(kGltf, "base64,AA", "base64,!!"), "a buffer has only 0 of its 60 bytes");
   // Tries half a million nodes that show one mesh of four triangles, and a list of two million indices of one vertex.
   std::string nodes = "{\"mesh\": 0}", roots = "0";
   for (int i = 1; i < 500'001; ++i) nodes += ",{\"mesh\":0}", roots += "," + std::to_string(i);

@@ -220,7 +220,7 @@ TEST_CASE("surface file: damaged STL is refused with its place") {
   const std::string& ascii = files.at("ascii.stl");
   check_refused("", "a.stl", "too short");
   check_refused(binary.substr(0, 200), "a.stl", "states 4 triangles, but the file has only 2");
-  check_refused(binary.substr(0, 80) + "\xff\xff\xff\xff" + binary.substr(84), "a.stl", "says 4294967295 triangles");
+  check_refused(binary.substr(0, 80) + "\xff\xff\xff\xff" + binary.substr(84), "a.stl", "states 4294967295 triangles");
   check_refused(ascii.substr(0, ascii.find("vertex")), "a.stl", "ends before");
   check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 0"), "a.stl", "does not have three numbers");
   check_refused(replaced(ascii, "vertex 10 0 0", "vertex 10 O 0"), "a.stl", "\"O\" was found where a vertex needs");
@@ -240,7 +240,7 @@ TEST_CASE("surface file: damaged OBJ is refused with its line") {
   check_refused("\nv 0 0 1e999\n", "a.obj", "line 2");
   check_refused("v 0 0 inf\n", "a.obj", "finite");
   check_refused("v 0 0 2e6\n", "a.obj", "kilometre");
-  check_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "a.obj", "vertex 4 of 3");
+  check_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n", "a.obj", "vertex 4, which is not one of the 3 vertices");
   check_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n", "a.obj", "fewer than three");
   for (const char* corner : {"0", "-4", "x", "9999999999999999999", "/1"})
     check_refused("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 " + std::string(corner) + "\n", "a.obj", "line 4");
