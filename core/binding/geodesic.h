@@ -10,7 +10,7 @@
 namespace limber {
 
 struct GeodesicBinding {
-  double falloff = 0.5;  // alpha of the paper, [0, 1]; 1 gives the sharpest blends
+  double falloff = 0.5;  // the falloff in the formula above, [0, 1]; 1 gives the sharpest blends
   BlendStiffness stiffness;
 };
 

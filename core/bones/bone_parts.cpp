@@ -224,8 +224,8 @@ class Pieces {
   // A basin does not follow a collarbone if more than this share of the basin's voxels is before the head of the
   // collarbone's rig bone, measured along this rig bone.
   static constexpr double kMostlyBefore = 0.7;
-  // A basin does not follow a collarbone if more than this share of the basin's voxels is on the other side of the
-  // body. In such a basin the collarbone has grown together with the breastbone.
+  // A basin of the watershed does not follow a collarbone if more than this share of the basin's voxels is on the
+  // opposite side of the body from that collarbone. Such a basin also contains the breastbone: the labels join the two.
   static constexpr double kAcross = 0.35;
   // Limits for a piece, relative to the own piece of the same rig bone. A piece is far if its distance from the bone is
   // more than kFar times the own piece's. It is small if it has less than 1 / kSmall of the own piece's voxels.

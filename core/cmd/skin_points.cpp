@@ -98,7 +98,8 @@ class CaseReader {
     double last = 0;
     for (double offset : offsets) {
       if (!(offset >= last && offset <= double(bones.size())))
-        fail("the numbers of \"influence_offsets\" do not ascend", "correct the list");
+        fail("the numbers of \"influence_offsets\" do not ascend, or exceed the number of influences",
+             "correct the list");
       skin.offsets.push_back(static_cast<std::int64_t>(offset));
       last = offset;
     }

@@ -206,7 +206,7 @@ class Sides {
   const PreviewLattice& lattice_;
   glm::ivec3 cell_;
   std::vector<const CellPiece*> pieces_;
-  std::vector<int> side_;  // for each piece, the first piece of its side
+  std::vector<int> side_;  // #pieces: index of the first piece on the same side, which names the side
 };
 
 // Returns true if the vertices of the cell and of the 26 cells around it do not all follow the same bone, so that a

@@ -261,8 +261,9 @@ class ElasticForm::PatchSum {
   std::span<double> matrix_;
   std::int64_t patch_ = 0;
   bool is_stiff_ = false;
-  std::vector<Block> block_;            // blocks of the patch's node pairs (lower triangle, row by row)
-  std::vector<Eigen::Vector3d> slope_;  // one per node of the patch: the vector G of PatchStiffness
+  std::vector<Block> block_;  // blocks of the patch's node pairs (lower triangle, row by row)
+  std::vector<Eigen::Vector3d>
+      slope_;  // for each node of the patch, G (see PatchStiffness): the weighted derivative of det F
 };
 
 void ElasticForm::add_derivatives(const NodePositions& x, std::span<const double> pressure,

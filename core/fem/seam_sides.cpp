@@ -94,7 +94,7 @@ void join_islands(const TissueVoxels& tissue, const std::vector<char>& has_bone,
   };
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
     if (is_cut || side[first] != side[second]) return;
-    const auto [low, high] = std::minmax(root(first), root(second));
+    const auto [low, high] = std::minmax({root(first), root(second)});
     parent[high] = low;
   });
   struct Island {

@@ -33,8 +33,8 @@ SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by,
   for (Eigen::Index t = 0; t < T.rows(); ++t)
     if (!held_by_one(held_by, T.row(t)))
       for (const int v : T.row(t)) in_flesh[v] = 1;
-  // The force between an object and a node that nothing can move would grow without limit. So springs also hold the
-  // nodes of bone at the surface.
+  // The force between an object and a fixed node would grow without limit. So nodes of bone at the surface are not
+  // fixed: they count as nodes in flesh, and springs hold them.
   if (!model.objects.empty()) {
     const Eigen::MatrixX3i surface = boundary_of(model.mesh);
     for (const int v : surface.reshaped()) in_flesh[v] = 1;

@@ -277,7 +277,7 @@ void hold_loose_parts(FemModel& fem) {
   };
   for (const auto& tet : fem.mesh.T.rowwise())
     for (int i = 1; i < 4; ++i) {
-      const auto [low, high] = std::minmax(root(tet[0]), root(tet[i]));
+      const auto [low, high] = std::minmax({root(tet[0]), root(tet[i])});
       part[high] = low;
     }
   std::vector<char> is_held(part.size(), 0);

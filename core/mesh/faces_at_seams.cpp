@@ -82,7 +82,7 @@ std::vector<int> groups_of(const std::vector<Attached>& triangles) {
       const auto [a, b] = std::minmax(triangles[t].nodes[i], triangles[t].nodes[(i + 1) % 3]);
       const auto [known, is_new] = first_at.emplace(std::pair{a, b}, t);
       if (is_new) continue;
-      const auto [low, high] = std::minmax(root(t), root(known->second));
+      const auto [low, high] = std::minmax({root(t), root(known->second)});
       group[high] = low;
     }
   for (int t = 0; t < std::ssize(triangles); ++t) group[t] = root(t);

@@ -420,11 +420,12 @@ class Page {
                  fixed(figures_.bodies.width_mm, 0) + " mm wide" + view_words() + shown,
              "grid");
     else
-      html_ += "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " +
-               (facts_.of_session ? ""
-                                  : "Run the same command again with a program that can draw pictures; the finished "
-                                    "cells are not computed again.") +
-               "</p>\n";
+      html_ +=
+          "<p class=\"note\"><b>No pictures in 3D:</b> " + escaped(figures_.no_bodies) + ". " +
+          (facts_.of_session ? ""
+                             : "Run the same command again with a build of Limber that can draw in 3D; the finished "
+                               "cells are not computed again.") +
+          "</p>\n";
     figure(grid(figures_.slices, figures_.poses, "Slice") + html_of(figures_.slices.legend),
            "The same cut " + where() + ", with unsmoothed voxels. Each picture is " +
                fixed(figures_.slices.width_mm, 0) + " mm wide; the bar is 50 mm." + shown,
@@ -436,7 +437,7 @@ class Page {
   std::string where() const {
     return figures_.joint.empty()
                ? "through the middle"
-               : "through the head of " + escaped(figures_.joint) + ", across the axis that it turns about";
+               : "through the joint of " + escaped(figures_.joint) + ", perpendicular to the axis about which it turns";
   }
 
   void worst() {

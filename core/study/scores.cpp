@@ -41,7 +41,8 @@ void read_row(const std::vector<std::string>& fields, int line, RaterScores& rat
   if (rater.rater.empty()) rater.rater = name;
   if (rater.rater != name) refuse(path, line, "the file names two raters", "use one file for each rater");
   if (code.empty() || code.size() > kLongestName)
-    refuse(path, line, "the row names no picture", "keep the codes that rating.html wrote");
+    refuse(path, line, "the row has no code of a picture, or one that is too long",
+           "keep the codes that rating.html wrote");
   if (fields[4].empty()) return;
   const RaterScores::Score score{whole_number(fields[2], 1, 1 << 20, path, line, "order"),
                                  whole_number(fields[4], kLeastScore, kMostScore, path, line, "score"), fields[5]};

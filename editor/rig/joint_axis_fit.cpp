@@ -175,8 +175,8 @@ void draw_proposed_joint(Context& context, const Rect& view) {
   side("rig.joint_fit_after", "After", left + half + look.px(1), proposed->shows_after);
   y += look.px(kRow + 8);
   operator_button(context, "rig.leave_joint_fit",
-                  {{right - look.px(190), y}, {right - look.px(104), y + look.px(kRow)}}, "Keep axis");
-  operator_button(context, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Move axis",
+                  {{right - look.px(190), y}, {right - look.px(104), y + look.px(kRow)}}, "Keep old axis");
+  operator_button(context, "rig.take_joint_fit", {{right - look.px(96), y}, {right, y + look.px(kRow)}}, "Use fit",
                   ButtonStyle::Primary);
 }
 

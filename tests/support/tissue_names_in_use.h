@@ -9,7 +9,7 @@
 
 namespace limber::test {
 
-// A row's name, and the tissue names for which the row must be found.
+// The name of a row of the table of tissue properties, and the names of labels that must get the row's properties.
 using NamesOfRow = std::pair<std::string, std::vector<std::string>>;
 
 // Adds TotalSegmentator's 77 classes of teeth: the teeth, numbered by the FDI notation, and their pulps.
