@@ -82,64 +82,84 @@ std::vector<std::uint16_t> sides_of_bones(const TissueVoxels& tissue, const std:
   return side;
 }
 
-// Gives small islands to the side around them. An island is connected tissue of one side, without bone, that is not the
-// largest of its side: it would lie loose once the sides are cut apart.
-//   has_bone  #tissue voxels: 1 for voxels of bone tissue
-void join_islands(const TissueVoxels& tissue, const std::vector<char>& has_bone, std::vector<std::uint16_t>& side) {
-  std::vector<std::int32_t> parent(tissue.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](std::int64_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+// Groups of numbered things.
+class Groups {
+ public:
+  explicit Groups(std::int64_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
+  // Returns the smallest number in the group of `i`.
+  std::int32_t of(std::int64_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return static_cast<std::int32_t>(i);
-  };
+  }
+  void unite(std::int64_t a, std::int64_t b) {
+    const auto [low, high] = std::minmax({of(a), of(b)});
+    parent_[high] = low;
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+// Lets islands follow the bone around them that has most faces with them. Returns their voxels with the new bone.
+//   has_bone  #tissue voxels: 1 for voxels of bone tissue
+//   bone      #tissue voxels: the bone that each follows; changed for islands
+std::vector<VoxelSides::Stray> join_islands(const TissueVoxels& tissue, const std::vector<char>& has_bone,
+                                            const std::vector<std::uint16_t>& side_of_bone,
+                                            std::vector<std::uint16_t>& bone) {
+  const auto side = [&](std::int64_t place) { return side_of_bone[bone[place]]; };
+  Groups groups(tissue.size());
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
-    if (is_cut || side[first] != side[second]) return;
-    const auto [low, high] = std::minmax({root(first), root(second)});
-    parent[high] = low;
+    if (!is_cut && side(first) == side(second)) groups.unite(first, second);
   });
   struct Island {
     std::int64_t voxels = 0;
     bool holds_bone = false;
-    std::map<std::uint16_t, std::int64_t> faces;  // numbers of uncut faces to each other side
+    std::map<std::uint16_t, std::int64_t> faces;  // number of uncut faces to tissue of each bone of other sides
   };
   std::map<std::int32_t, Island> islands;
   for (std::int64_t i = 0; i < tissue.size(); ++i) {
-    Island& island = islands[root(i)];
+    Island& island = islands[groups.of(i)];
     ++island.voxels;
     island.holds_bone |= has_bone[i] != 0;
   }
-  std::map<std::uint16_t, std::pair<std::int64_t, std::int32_t>> largest;  // of each side: (voxels, root)
-  for (const auto& [at, island] : islands) {
-    auto& known = largest[side[at]];
-    if (island.voxels > known.first) known = {island.voxels, at};
-  }
+  std::map<std::uint16_t, std::pair<std::int64_t, std::int32_t>> largest;  // for each side: (voxels, group)
+  for (const auto& [at, island] : islands)
+    if (auto& known = largest[side(at)]; island.voxels > known.first) known = {island.voxels, at};
   std::erase_if(islands, [&](const auto& each) {
-    return each.second.holds_bone || largest[side[each.first]].second == each.first;
+    return each.second.holds_bone || largest[side(each.first)].second == each.first;
   });
-  if (islands.empty()) return;
+  if (islands.empty()) return {};
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
-    if (is_cut || side[first] == side[second]) return;
+    if (is_cut || side(first) == side(second)) return;
     for (const auto& [of, next] : {std::pair{first, second}, std::pair{second, first}})
-      if (const auto island = islands.find(root(of)); island != islands.end()) ++island->second.faces[side[next]];
+      if (const auto island = islands.find(groups.of(of)); island != islands.end()) ++island->second.faces[bone[next]];
   });
-  std::map<std::int32_t, std::uint16_t> becomes;
-  for (const auto& [at, island] : islands) {
-    const auto most = std::max_element(island.faces.begin(), island.faces.end(),
-                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most != island.faces.end()) becomes[at] = most->first;
+  std::vector<VoxelSides::Stray> strays;
+  for (std::int64_t i = 0; i < tissue.size(); ++i) {
+    const auto island = islands.find(groups.of(i));
+    if (island == islands.end() || island->second.faces.empty()) continue;
+    const auto& faces = island->second.faces;
+    const auto most =
+        std::max_element(faces.begin(), faces.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+    strays.push_back({i, most->first});
   }
-  for (std::int64_t i = 0; i < tissue.size(); ++i)
-    if (const auto to = becomes.find(root(i)); to != becomes.end()) side[i] = to->second;
+  for (const auto& [place, follows] : strays) bone[place] = follows;
+  return strays;
 }
 
-// Returns the joints at which a bone and the nearest of its ancestors that has tissue lie on different sides.
-std::vector<SeamSides::Joint> joints_of(const Armature& armature, const SkinWeights& weights,
-                                        const std::vector<std::uint16_t>& side_of_bone,
-                                        const std::vector<char>& has_tissue) {
+// A joint of the rig whose two bones lie on different sides.
+struct SideJoint {
+  glm::dvec3 place;             // position at rest, world, mm
+  std::uint16_t first, second;  // the two sides
+};
+
+// Returns the joints between each bone and the nearest of its ancestors that has tissue, if their sides differ.
+std::vector<SideJoint> joints_of(const Armature& armature, const SkinWeights& weights,
+                                 const std::vector<std::uint16_t>& side_of_bone, const std::vector<char>& has_tissue) {
   std::vector<int> column(armature.bones.size(), -1);  // index of each bone of the rig in `weights`
   for (int i = 0; i < std::ssize(weights.bones()); ++i)
     if (const auto bone = armature.find(weights.bones()[i]); bone && has_tissue[i]) column[*bone] = i;
-  std::vector<SeamSides::Joint> joints;
+  std::vector<SideJoint> joints;
   for (std::size_t b = 0; b < armature.bones.size(); ++b) {
     if (column[b] < 0) continue;
     int above = armature.bones[b].parent;
@@ -151,25 +171,89 @@ std::vector<SeamSides::Joint> joints_of(const Armature& armature, const SkinWeig
   return joints;
 }
 
+// A voxel face between two sides that no seam cuts.
+struct OpenFace {
+  std::int64_t first, second;  // places of the two voxels in brick order
+  glm::ivec3 lower;            // the lower of the two voxels
+  int axis;
+};
+
+// Returns the body's seams, with all open faces between two sides cut that hold no limb (sides_of_seams()).
+//   side  #tissue voxels
+std::shared_ptr<const Seams> close_gaps(const TissueVoxels& tissue, const Grid& grid,
+                                        const std::vector<std::uint16_t>& side, const std::vector<SideJoint>& joints) {
+  const Seams& seams = *tissue.seams();
+  std::vector<OpenFace> open;
+  std::vector<char> is_at_face(tissue.size(), 0);
+  tissue.for_each([&](std::int64_t place, const glm::ivec3& v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::ivec3 next = v;
+      if (++next[axis] >= grid.size[axis]) continue;
+      const std::int64_t there = tissue.index_of(next);
+      if (there < 0 || side[there] == side[place] || seams.is_cut(v, axis)) continue;
+      open.push_back({place, there, v, axis});
+      is_at_face[place] = is_at_face[there] = 1;
+    }
+  });
+  // Open faces are in one group if a path between them leads over voxels with open faces.
+  Groups groups(tissue.size());
+  for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
+    if (!is_cut && is_at_face[first] && is_at_face[second]) groups.unite(first, second);
+  });
+  std::vector<char> holds(tissue.size(), 0);  // 1: the group with this number holds a limb
+  const AffineTransform world = world_from_voxel(grid);
+  for (const SideJoint& joint : joints) {
+    double distance = INFINITY;
+    std::int64_t nearest = -1;
+    for (const OpenFace& face : open) {
+      if (std::minmax(side[face.first], side[face.second]) != std::minmax(joint.first, joint.second)) continue;
+      const double here = glm::distance(world * glm::dvec3(face.lower), joint.place);
+      if (here < distance) distance = here, nearest = face.first;
+    }
+    if (nearest >= 0) holds[groups.of(nearest)] = 1;
+  }
+  auto closed = std::make_shared<Seams>(seams);
+  for (const OpenFace& face : open)
+    if (!holds[groups.of(face.first)]) closed->cut(face.lower, face.axis);
+  return closed;
+}
+
 }  // namespace
 
-SeamSides sides_of_seams(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                         const SkinWeights& weights, const Armature& armature, const std::vector<int>& moves_as) {
-  SeamSides sides;
-  if (!tissue.seams()) return sides;
-  std::vector<std::uint16_t> of_voxel = bone_of_voxels(tissue, weights, moves_as);
-  sides.of_bone = sides_of_bones(tissue, of_voxel, moves_as);
-  if (sides.of_bone.empty()) return sides;
+VoxelSides sides_of_seams(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
+                          const SkinWeights& weights, const Armature& armature, const std::vector<int>& moves_as) {
+  VoxelSides result;
+  if (!tissue.seams()) return result;
+  std::vector<std::uint16_t> bone = bone_of_voxels(tissue, weights, moves_as);
+  std::vector<std::uint16_t> side_of_bone = sides_of_bones(tissue, bone, moves_as);
+  if (side_of_bone.empty()) return result;
 
   std::vector<char> moves_tissue(moves_as.size(), 0), has_tissue(moves_as.size(), 0);
-  for (std::uint16_t& each : of_voxel) moves_tissue[each] = 1, each = sides.of_bone[each];
+  for (const std::uint16_t each : bone) moves_tissue[each] = 1;
   for (std::size_t b = 0; b < moves_as.size(); ++b) has_tissue[b] = moves_tissue[moves_as[b]];
   std::vector<char> has_bone(tissue.size(), 0);
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { has_bone[place] = is_bone[volume.at(v)] != 0; });
-  join_islands(tissue, has_bone, of_voxel);
-  sides.of_voxel = std::move(of_voxel);
-  sides.joints = joints_of(armature, weights, sides.of_bone, has_tissue);
-  return sides;
+  result.strays = join_islands(tissue, has_bone, side_of_bone, bone);
+  for (const std::uint16_t each : bone) result.of_voxel.push_back(side_of_bone[each]);
+  result.sides.seams =
+      close_gaps(tissue, volume.grid, result.of_voxel, joints_of(armature, weights, side_of_bone, has_tissue));
+  result.sides.of_bone = std::move(side_of_bone);
+  return result;
+}
+
+SkinWeights without_strays(SkinWeights weights, const TissueVoxels& tissue,
+                           const std::vector<VoxelSides::Stray>& strays) {
+  for (std::size_t i = 0; i < strays.size();) {
+    const auto brick = std::upper_bound(tissue.bricks().begin(), tissue.bricks().end(), strays[i].place,
+                                        [](std::int64_t place, const auto& each) { return place < each.first; }) -
+                       tissue.bricks().begin() - 1;
+    SkinWeights::Influences chunk = weights.chunk(brick);
+    const std::int64_t first = tissue.bricks()[brick].first;
+    for (; i < strays.size() && strays[i].place < first + std::ssize(chunk); ++i)
+      chunk[strays[i].place - first] = rigid_influence(strays[i].bone);
+    weights.set_chunk(brick, std::move(chunk));
+  }
+  return weights;
 }
 
 }  // namespace limber

@@ -365,7 +365,7 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
 }  // namespace
 
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const DeformingRegion& moving, const SeamSides& sides) {
+                            const SkinWeights& weights, const DeformingRegion& moving, const VoxelSides& sides) {
   LabelVolume regions{volume.grid, ZeroedVector<Label>(volume.grid.voxel_count())};
   for (std::int64_t brick = 0; brick < std::ssize(tissue.bricks()); ++brick) {
     auto influence = weights.chunk(brick).begin();

@@ -23,8 +23,8 @@
 
 #include "core/base/rigid_transform.h"
 #include "core/fem/deforming_region.h"
+#include "core/fem/seam_sides.h"
 #include "core/fem/sliding_nodes.h"
-#include "core/mesh/lattice_net.h"
 #include "core/tissue/tissue_table.h"
 
 namespace limber {
@@ -37,7 +37,7 @@ struct TissueModelSettings {
   double closing_mm = 8;  // nodes of bone that are closer to another bone in one of the motions belong to a joint
   // Where loose tissue slides over bone. tissue_model() sets its motions and distances from the members above.
   SlidingSettings sliding = {};
-  const SeamSides* sides = nullptr;  // the sides of seams, if the mesh is cut along seams; null: it is not
+  const VoxelSides* sides = nullptr;  // the sides of seams, if the mesh is cut along seams; null: it is not
   TetMaterial joint{.shear_modulus = 1, .poisson_ratio = 0.3};   // material of joints; shear modulus in kPa
   double stiffest = 360;                                         // stiffer soft tissue gets this shear modulus, kPa
   TetMaterial bone{.shear_modulus = 100, .poisson_ratio = 0.3};  // material of tets of bone; shear modulus in kPa
@@ -59,7 +59,7 @@ struct TissueModel {
 // side s > 0 of seams gets the label 1 + soft_region(s) instead.
 //   sides  the sides of seams (sides_of_seams()); without any, all tissue lies on side 0
 LabelVolume regions_to_mesh(const LabelVolume& volume, const TissueVoxels& tissue, const LabelSet& is_bone,
-                            const SkinWeights& weights, const DeformingRegion& moving, const SeamSides& sides = {});
+                            const SkinWeights& weights, const DeformingRegion& moving, const VoxelSides& sides = {});
 
 // Builds the model of the meshed tissue.
 //   weights  each voxel of bone tissue must follow one bone with weight 1

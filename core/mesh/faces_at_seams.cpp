@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace limber {
@@ -62,65 +61,17 @@ class Contacts {
   std::map<std::pair<std::int64_t, Pair>, Count> counts_;
 };
 
-// A triangle of the net between tissue of two sides that no seam separates.
-struct Attached {
-  std::array<int, 3> nodes;
-  Pair sides;
-};
-
-// Returns the group of each triangle: triangles that share an edge are in one group, whatever their sides.
-std::vector<int> groups_of(const std::vector<Attached>& triangles) {
-  std::vector<int> group(triangles.size());
-  std::iota(group.begin(), group.end(), 0);
-  const auto root = [&](int i) {
-    while (group[i] != i) i = group[i] = group[group[i]];
-    return i;
-  };
-  std::map<std::pair<int, int>, int> first_at;  // a triangle at each edge
-  for (int t = 0; t < std::ssize(triangles); ++t)
-    for (int i = 0; i < 3; ++i) {
-      const auto [a, b] = std::minmax(triangles[t].nodes[i], triangles[t].nodes[(i + 1) % 3]);
-      const auto [known, is_new] = first_at.emplace(std::pair{a, b}, t);
-      if (is_new) continue;
-      const auto [low, high] = std::minmax({root(t), root(known->second)});
-      group[high] = low;
-    }
-  for (int t = 0; t < std::ssize(triangles); ++t) group[t] = root(t);
-  return group;
-}
-
 }  // namespace
 
 std::vector<std::array<int, 3>> faces_at_seams(const VoxelRegions& voxels, const SampleLattice& lattice,
                                                const SurfaceNet& net) {
   const Contacts contacts(voxels, lattice);
   std::vector<std::array<int, 3>> cut;
-  std::vector<Attached> attached;
   net.for_each_triangle([&](int a, int b, int c, const SurfaceNet::Edge& edge) {
     if (edge.first == kAir || edge.second == kAir) return;
     const Pair sides = pair_of(voxels.side_of(edge.first), voxels.side_of(edge.second));
-    if (sides.first == sides.second) return;
-    if (contacts.is_apart(edge, sides)) cut.push_back({a, b, c});
-    else attached.push_back({{a, b, c}, sides});
+    if (sides.first != sides.second && contacts.is_apart(edge, sides)) cut.push_back({a, b, c});
   });
-
-  // Of the triangles between the two sides of a joint, the nearest one tells which group holds the sides together.
-  const std::vector<int> group = groups_of(attached);
-  std::vector<char> holds(attached.size(), 0);
-  for (const SeamSides::Joint& joint : voxels.sides->joints) {
-    int nearest = -1;
-    double distance = INFINITY;
-    for (int t = 0; t < std::ssize(attached); ++t) {
-      if (attached[t].sides != pair_of(joint.first, joint.second)) continue;
-      glm::dvec3 middle(0);
-      for (const int node : attached[t].nodes) middle += net.nodes()[node].place / 3.0;
-      const double here = glm::distance(lattice.world_from_lattice * (lattice.step * middle), joint.place);
-      if (here < distance) distance = here, nearest = t;
-    }
-    if (nearest >= 0) holds[group[nearest]] = 1;
-  }
-  for (std::size_t t = 0; t < attached.size(); ++t)
-    if (!holds[group[t]]) cut.push_back(attached[t].nodes);
   return cut;
 }
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Finds where the mesh of a solve must be cut open along seams (seam sides: lattice_net.h).
 //
-// The cells of the lattice are far larger than voxels, so the voxel faces around a lattice edge vote whether a seam
-// separates the tissue of two sides there. Seams have gaps: there the voxels of a hand and a thigh, say, touch
-// without a seam, and tets across the gap would be drawn out to strands. So faces without a seam are grouped, and only
-// the groups around joints between the two sides stay uncut.
+// The cells of the lattice are far larger than voxels, so the faces between voxels around an edge of the lattice vote
+// whether a seam separates the tissue of two sides there.
 #pragma once
 
 #include <array>

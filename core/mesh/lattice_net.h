@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -33,17 +34,11 @@ inline bool is_soft_region(std::uint16_t region) {
   return region == TetMesh::kSoft || (region > kSide && region != RegionSurface::kAir);
 }
 
-// On which side of seams each part of a body lies, and where two sides are attached to each other.
+// On which side of seams each part of a body lies.
 struct SeamSides {
-  struct Joint {
-    glm::dvec3 place;             // position of the joint at rest, world, mm
-    std::uint16_t first, second;  // the sides of its two bones
-  };
-  std::vector<std::uint16_t> of_bone;   // side of each rig bone, from 0; empty: no seam separates tissue
-  std::vector<std::uint16_t> of_voxel;  // side of each of the body's tissue voxels, in brick order; empty: as of_bone
-  // The joints whose two bones lie on different sides. Only around a joint is the tissue of two sides attached:
-  // wherever else the two touch, the seam has a gap.
-  std::vector<Joint> joints;
+  std::vector<std::uint16_t> of_bone;  // side of each rig bone, from 0; empty: no seam separates tissue
+  // The seams along which tissue of different sides is cut apart. Null: no seam separates tissue.
+  std::shared_ptr<const Seams> seams;
 };
 
 // The region of each tissue voxel: that of soft tissue, or 1 + the index of the rig bone to which the voxel belongs.

@@ -87,13 +87,12 @@ TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings,
 }
 
 TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings, Progress& progress,
-                       const SeamCut& cut) {
+                       const SeamSides& sides) {
   TissueVoxels tissue(regions);
-  tissue.set_seams(cut.seams);
+  tissue.set_seams(sides.seams);
   std::vector<std::uint16_t> region(tissue.size());
   tissue.for_each([&](std::int64_t place, const glm::ivec3& v) { region[place] = regions.at(v) - 1; });
-  return mesh_tissue({regions.grid, tissue, region, cut.sides.of_bone.empty() ? nullptr : &cut.sides}, settings,
-                     progress);
+  return mesh_tissue({regions.grid, tissue, region, sides.of_bone.empty() ? nullptr : &sides}, settings, progress);
 }
 
 }  // namespace limber

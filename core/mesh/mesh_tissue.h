@@ -44,15 +44,10 @@ struct TissueMesh {
 TissueMesh mesh_tissue(const VoxelRegions& voxels, const MeshSettings& settings = {},
                        Progress& progress = no_progress());
 
-// The seams at which the mesh is cut open: the two sides get nodes of their own, with a narrow gap between them.
-struct SeamCut {
-  std::shared_ptr<const Seams> seams;
-  SeamSides sides;  // no side of any bone: the mesh is not cut
-};
-
-// Meshes a volume whose labels are regions: 0 is not meshed, 1 is soft tissue, 2 + i is bone i. With `cut`, soft tissue
-// on side s has the label 1 + soft_region(s).
+// Meshes a volume whose labels are regions: 0 is not meshed, 1 is soft tissue, 2 + i is bone i. With `sides`, soft
+// tissue on side s has the label 1 + soft_region(s), and the mesh is cut open along the seams: the two sides get nodes
+// of their own, with a narrow gap between them.
 TissueMesh mesh_tissue(const LabelVolume& regions, const MeshSettings& settings = {},
-                       Progress& progress = no_progress(), const SeamCut& cut = {});
+                       Progress& progress = no_progress(), const SeamSides& sides = {});
 
 }  // namespace limber

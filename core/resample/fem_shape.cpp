@@ -290,10 +290,11 @@ FemSequence::FemSequence(const LabelVolume& volume, const TissueVoxels& tissue, 
   // The size of the limb for which tets of this size are right. Differences due to rounding alone are ignored below.
   const double of_tets = reach_ / (fem_.quality == FemQuality::Draft ? kDraft : kUsual);
   solver_size_ = (!fem_.spacing_mm || fem_.reach_mm) && of_tets > 1.001 * size_ ? of_tets : size_;
-  const SeamCut cut{tissue.shared_seams(), sides_of_seams(volume, tissue, is_bone, weights, armature, moving.moves_as)};
-  if (!cut.sides.of_bone.empty()) last_.sides = std::make_shared<SeamSides>(cut.sides);
+  const auto sides =
+      std::make_shared<VoxelSides>(sides_of_seams(volume, tissue, is_bone, weights, armature, moving.moves_as));
+  if (sides->sides.seams) last_.sides = sides;
   TissueMesh meshed =
-      mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving, cut.sides), settings, progress, cut);
+      mesh_tissue(regions_to_mesh(volume, tissue, is_bone, weights, moving, *sides), settings, progress, sides->sides);
   if (!meshed.warning.empty()) last_.mesh.fallback += (last_.mesh.fallback.empty() ? "" : "; ") + meshed.warning;
   sliding.tet_mm = finest_;
   last_.model = tissue_model(volume, tissue, tissues, weights, moving, std::move(meshed.mesh),

@@ -18,9 +18,9 @@ struct FemShape {
   TissueModel model;
   Eigen::MatrixX3d V;  // #V posed nodes, world, mm
   DeformingRegion moving;
-  std::shared_ptr<const SeamSides> sides;  // the sides of seams along which the mesh is cut; null: it is not cut
-  double reached = 1;                      // share of the way to the pose that was reached, [0, 1]
-  Pose pose;                               // the pose that was reached
+  std::shared_ptr<const VoxelSides> sides;  // the sides of seams along which the mesh is cut; null: it is not cut
+  double reached = 1;                       // share of the way to the pose that was reached, [0, 1]
+  Pose pose;                                // the pose that was reached
   MeshReport mesh;
   SolveReport solve;
   double seconds_mesh = 0, seconds_solve = 0;

@@ -95,6 +95,12 @@ struct RigidBody {
   }
 };
 
+// Returns the weights of tissue that does not move with the mesh.
+SkinWeights weights_beside_mesh(const RigidBody& body, const FemShape& shape) {
+  SkinWeights weights = with_rigid_rest(body.weights, body.tissue, shape.moving);
+  return shape.sides ? without_strays(std::move(weights), body.tissue, shape.sides->strays) : weights;
+}
+
 // Poses the body. Returns its labels in tiles, or nothing if the labels are already in posed.volume (write_voxels).
 //   shape  the mesh that finite elements have solved for the pose; null: skinning
 std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, std::shared_ptr<const FemShape> shape,
@@ -105,7 +111,9 @@ std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, 
   const LabelSets& labels = body.labels;
   const glm::dvec3 ratio = settings.spacing ? spacing_ratio(volume.grid, *settings.spacing) : glm::dvec3(1);
   const auto motions = bone_motions(body.weights.bones(), body.armature, shape ? shape->pose : pose);
-  const SkinWeights weights = shape ? with_rigid_rest(body.weights, body.tissue, shape->moving) : body.weights;
+  const SkinWeights weights = shape ? weights_beside_mesh(body, *shape) : body.weights;
+  std::optional<TissueVoxels> cut;  // the tissue with the seams along which the mesh is cut
+  if (shape && shape->sides) cut.emplace(body.tissue).set_seams(shape->sides->sides.seams);
   posed.shape = std::move(shape);
   DeformReport& report = posed.report;
   if (posed.shape) tell(*posed.shape, report);
@@ -118,7 +126,8 @@ std::optional<TiledLabels> deform_body(const RigidBody& body, const Pose& pose, 
   report.baked = report_of_baked(settings.baked, body.armature, pose);
   const FleshShifts* shifts = baked.empty() ? nullptr : &baked;
   if (settled) shifts = &*settled;
-  const PosedLattice lattice(volume, body.tissue, weights, motions, blend_of(method), ratio, progress, shifts);
+  const PosedLattice lattice(volume, cut ? *cut : body.tissue, weights, motions, blend_of(method), ratio, progress,
+                             shifts);
   const RigidBones bones(lattice, weights, labels.bone, motions);
   std::optional<PosedTets> tets;
   if (posed.shape)

@@ -50,8 +50,13 @@ SkinWeights halves(const TissueVoxels& tissue) {
   return weights;
 }
 
+const LabelSet kNoBone(65536, 0);
+
 // Position of the joint between the bones of the two bars: in the middle of their common foot, mm.
 const glm::dvec3 kJoint(kVoxel*(kWide - 0.5), 0.5 * kVoxel * kDeep, 0.5 * kVoxel * kFoot);
+
+// Returns the rig of the two bars.
+Armature rig() { return {{{"left", -1, {0, 0, 0}, {0, 0, 9}}, {"right", 0, kJoint, {60, 0, 90}}}}; }
 
 constexpr double kTop = kVoxel * (kLong - 3);  // mm: the tops of the bars, which the bones hold
 
@@ -80,10 +85,8 @@ double stretch_of(const TetMesh& mesh, SolvedPose& solved) {
   return largest;
 }
 
-// Returns the cut along seams with the joint of the two bars.
-SeamCut cut_at(std::shared_ptr<const Seams> seams) {
-  return {std::move(seams), {.of_bone = {0, 1}, .joints = {{kJoint, 1, 0}}}};
-}
+// Returns the sides of the two bars with the given seams.
+SeamSides cut_at(std::shared_ptr<const Seams> seams) { return {{0, 1}, std::move(seams)}; }
 
 // Returns true if tets of both sides share a node.
 bool has_tet_across(const TetMesh& mesh) {
@@ -98,61 +101,67 @@ bool has_tet_across(const TetMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("seam sides: the bones on both sides of a seam differ, and meet at the joint between them") {
+TEST_CASE("seam sides: the bones on both sides of a seam differ") {
   const LabelVolume volume = bars(false);
   TissueVoxels tissue(volume);
   const SkinWeights weights = halves(tissue);
-  const LabelSet no_bone(65536, 0);
-  Armature rig;
-  rig.bones = {{"left", -1, {0, 0, 0}, {0, 0, 9}}, {"right", 0, kJoint, {60, 0, 90}}};
   const auto sides = [&](const std::vector<int>& moves_as) {
-    return sides_of_seams(volume, tissue, no_bone, weights, rig, moves_as);
+    return sides_of_seams(volume, tissue, kNoBone, weights, rig(), moves_as);
   };
-  CHECK(sides({0, 1}).of_bone.empty());
+  CHECK(sides({0, 1}).sides.of_bone.empty());
   tissue.set_seams(seam(volume));
-  const SeamSides found = sides({0, 1});
-  CHECK(found.of_bone == std::vector<std::uint16_t>{0, 1});
-  REQUIRE(found.joints.size() == 1);
-  CHECK(found.joints[0].place == kJoint);
+  const VoxelSides found = sides({0, 1});
+  CHECK(found.sides.of_bone == std::vector<std::uint16_t>{0, 1});
   REQUIRE(std::ssize(found.of_voxel) == tissue.size());
-  CHECK(sides({0, 0}).of_bone.empty());  // both halves have the same motion
+  CHECK(found.strays.empty());
+  CHECK(*found.sides.seams == *seam(volume));  // the foot, where the joint is, stays one
+  CHECK(!sides({0, 0}).sides.seams);           // both halves have the same motion
 }
 
-TEST_CASE("seam sides: an island without bone belongs to the side around it, one with bone does not") {
+TEST_CASE("seam sides: gaps of a seam are closed, except around the joint that attaches the sides") {
+  const LabelVolume volume = bars(false);
+  auto with_gaps = std::make_shared<Seams>(*seam(volume));
+  for (int z = 22; z < 31; ++z)
+    for (int y = 2; y < 10; ++y) with_gaps->join({kWide - 1, y, z}, 0);
+  TissueVoxels tissue(volume);
+  tissue.set_seams(with_gaps);
+  CHECK(*sides_of_seams(volume, tissue, kNoBone, halves(tissue), rig(), {0, 1}).sides.seams == *seam(volume));
+}
+
+TEST_CASE("seam sides: an island without bone follows the bone around it, one with bone does not") {
   const LabelVolume volume = bars(false);
   TissueVoxels tissue(volume);
   tissue.set_seams(seam(volume));
   const glm::ivec3 island(3, 5, 30);  // two voxels of the left bar that follow the right bone
   SkinWeights weights = halves(tissue);
+  std::vector<std::int64_t> places;
   for (const glm::ivec3& v : {island, island + glm::ivec3(0, 0, 1)}) {
     const int brick = tissue.brick_at(v);
     SkinWeights::Influences chunk = weights.chunk(brick);
-    chunk[tissue.index_of(v) - tissue.bricks()[brick].first] = rigid_influence(1);
+    places.push_back(tissue.index_of(v));
+    chunk[places.back() - tissue.bricks()[brick].first] = rigid_influence(1);
     weights.set_chunk(brick, std::move(chunk));
   }
-  Armature rig;
-  rig.bones = {{"left", -1, {0, 0, 0}, {0, 0, 9}}, {"right", 0, kJoint, {60, 0, 90}}};
-  const auto side_of_island = [&](bool is_bone) {
+  const auto sides_with = [&](bool is_bone) {
     LabelVolume labels = volume;
     if (is_bone) labels.at(island) = 2;
-    LabelSet bones(65536, 0);
+    LabelSet bones = kNoBone;
     bones[2] = 1;
-    return sides_of_seams(labels, tissue, bones, weights, rig, {0, 1}).of_voxel[tissue.index_of(island)];
+    return sides_of_seams(labels, tissue, bones, weights, rig(), {0, 1});
   };
-  CHECK(side_of_island(false) == 0);
-  CHECK(side_of_island(true) == 1);
-}
-
-TEST_CASE("seam sides: gaps of a seam away from the joint do not hold the sides together") {
-  const LabelVolume whole = bars(false), sided = bars(true);
-  const MeshSettings settings{.spacing_mm = 9};
-  auto with_gaps = std::make_shared<Seams>(*seam(whole));
-  for (int z = 22; z < 31; ++z)
-    for (int y = 2; y < 10; ++y) with_gaps->join({kWide - 1, y, z}, 0);
-  const TetMesh open = mesh_tissue(sided, settings, no_progress(), cut_at(with_gaps)).mesh;
-  const TetMesh full = mesh_tissue(sided, settings, no_progress(), cut_at(seam(whole))).mesh;
-  CHECK(open.T == full.T);
-  CHECK(open.V == full.V);
+  const VoxelSides soft = sides_with(false), bony = sides_with(true);
+  CHECK(soft.of_voxel[places[0]] == 0);
+  CHECK(soft.strays.size() == 2);
+  CHECK(bony.of_voxel[places[0]] == 1);
+  CHECK(bony.strays.empty());
+  const SkinWeights joined = without_strays(weights, tissue, soft.strays);
+  for (std::int64_t brick = 0; brick < joined.chunk_count(); ++brick) {
+    auto influence = joined.chunk(brick).begin();
+    bool same = true;
+    tissue.for_each(brick, brick + 1,
+                    [&](std::int64_t, const glm::ivec3& v) { same &= *influence++ == rigid_influence(v.x >= kWide); });
+    CHECK(same);
+  }
 }
 
 TEST_CASE("seam sides: a mesh cut at a seam opens without tearing tissue") {
