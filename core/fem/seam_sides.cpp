@@ -200,7 +200,8 @@ std::shared_ptr<const Seams> close_gaps(const TissueVoxels& tissue, const Grid& 
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
     if (!is_cut && is_at_face[first] && is_at_face[second]) groups.unite(first, second);
   });
-  std::vector<char> holds(tissue.size(), 0);  // 1: the group with this number holds a limb
+  // For each group around joints: the sides that these joints attach to each other, as groups of sides.
+  std::map<std::int32_t, Groups> attached;
   const AffineTransform world = world_from_voxel(grid);
   for (const SideJoint& joint : joints) {
     double distance = INFINITY;
@@ -210,11 +211,17 @@ std::shared_ptr<const Seams> close_gaps(const TissueVoxels& tissue, const Grid& 
       const double here = glm::distance(world * glm::dvec3(face.lower), joint.place);
       if (here < distance) distance = here, nearest = face.first;
     }
-    if (nearest >= 0) holds[groups.of(nearest)] = 1;
+    if (nearest < 0) continue;
+    Groups& sides =
+        attached.try_emplace(groups.of(nearest), 1 + *std::max_element(side.begin(), side.end())).first->second;
+    sides.unite(joint.first, joint.second);
   }
   auto closed = std::make_shared<Seams>(seams);
-  for (const OpenFace& face : open)
-    if (!holds[groups.of(face.first)]) closed->cut(face.lower, face.axis);
+  for (const OpenFace& face : open) {
+    const auto sides = attached.find(groups.of(face.first));
+    if (sides == attached.end() || sides->second.of(side[face.first]) != sides->second.of(side[face.second]))
+      closed->cut(face.lower, face.axis);
+  }
   return closed;
 }
 

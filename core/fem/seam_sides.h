@@ -26,8 +26,9 @@ struct VoxelSides {
 // first, except where that would put both sides of a seam on one side.
 //
 // Seams have gaps: a hand and a thigh that touch over a large area are found to touch at most faces, not at all. Tissue
-// in a gap would be drawn out from one side to the other. So uncut faces between two sides are grouped, and only the
-// groups around a joint of the rig between the two sides, where a limb is attached, stay uncut.
+// in a gap would be drawn out from one side to the other. So uncut faces between sides are grouped, and a face stays
+// uncut only if joints of the rig inside its group attach its two sides to each other, as a shoulder attaches an arm to
+// the trunk.
 //
 // Islands are connected tissue of one side, without bone, that is not the largest of its side. They would lie loose, so
 // they belong to the side around them.

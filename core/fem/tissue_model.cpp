@@ -266,8 +266,62 @@ std::vector<int> sides_of_nodes(const TetMesh& mesh) {
   return sides;
 }
 
-// Holds the parts of the mesh that no bone holds, such as flakes that were cut off at seams: nothing would determine
-// their position. Each moves rigidly with the bone that most of its nodes follow.
+// Frees the nodes of soft tissue near places where two sides of seams touch in the mesh. The mesh is coarser than the
+// body: around the voxels at a seam it may also close gaps of air between tissue that moves rigidly. There the two
+// sides would interlock.
+//   side     side of seams of each node
+//   is_held  is_held(node, mm) returns true if the node must stay held because there is tissue within this distance
+//            that is not meshed
+template <class IsHeld>
+void free_nodes_at_seams(FemModel& fem, const std::vector<int>& side, const IsHeld& is_held) {
+  constexpr int kRings = 2;  // number of tets between the two sides and the nodes that stay held
+  const TetMesh& mesh = fem.mesh;
+  if (mesh.side.empty()) return;
+  std::vector<double> edge(mesh.V.rows(), 0);  // length of each node's longest edge
+  for (const auto& tet : mesh.T.rowwise())
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < a; ++b) {
+        const double length = (mesh.V.row(tet[a]) - mesh.V.row(tet[b])).norm();
+        for (const int node : {tet[a], tet[b]}) edge[node] = std::max(edge[node], length);
+      }
+  std::vector<int> at_border;
+  std::vector<VoxelRange> boxes;
+  std::vector<char> is_at_border(mesh.V.rows(), 0), is_near(mesh.V.rows(), 0);
+  const Eigen::MatrixX3i border = boundary_of(mesh);
+  for (const int node : border.reshaped()) is_at_border[node] = 1;
+  for (int i = 0; i < mesh.V.rows(); ++i) {
+    if (!is_at_border[i] || side[i] < 0) continue;
+    const glm::ivec3 cell(glm::floor(glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2))));
+    at_border.push_back(i), boxes.push_back({cell, cell});
+  }
+  const BoxBins bins(boxes, 16);
+  std::vector<int> near;
+  for (std::size_t k = 0; k < at_border.size(); ++k) {
+    const int node = at_border[k], reach = static_cast<int>(std::ceil(edge[node]));
+    bins.meeting({boxes[k].low - reach, boxes[k].high + reach}, near);
+    is_near[node] = std::any_of(near.begin(), near.end(), [&](int n) {
+      const int other = at_border[n];
+      return side[other] != side[node] && (mesh.V.row(other) - mesh.V.row(node)).norm() < edge[node];
+    });
+  }
+  for (int ring = 0; ring < kRings; ++ring) {
+    const std::vector<char> inner = is_near;
+    for (const auto& tet : mesh.T.rowwise())
+      if (std::any_of(tet.begin(), tet.end(), [&](int node) { return inner[node]; }))
+        for (const int node : tet) is_near[node] = 1;
+  }
+  std::vector<char> in_bone(mesh.V.rows(), 0);
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    if (mesh.region[t] != TetMesh::kSoft)
+      for (const int node : mesh.T.row(t)) in_bone[node] = 1;
+  for (int i = 0; i < mesh.V.rows(); ++i) is_near[i] = is_near[i] && !in_bone[i] && !is_held(i, edge[i]);
+  for (int i = 0; i < mesh.V.rows(); ++i)
+    if (is_near[i]) fem.held_by[i] = kNone;
+  std::erase_if(fem.waiting, [&](const FemModel::Waiting& each) { return is_near[each.node]; });
+}
+
+// Holds the parts of the mesh that no bone ever holds, such as flakes that were cut off at seams: nothing would
+// determine their position. Each moves rigidly with the bone that most of its nodes follow.
 void hold_loose_parts(FemModel& fem) {
   std::vector<int> part(fem.mesh.V.rows());
   std::iota(part.begin(), part.end(), 0);
@@ -283,6 +337,7 @@ void hold_loose_parts(FemModel& fem) {
   std::vector<char> is_held(part.size(), 0);
   for (std::size_t i = 0; i < part.size(); ++i)
     if (fem.held_by[i] >= 0) is_held[root(static_cast<int>(i))] = 1;
+  for (const FemModel::Waiting& each : fem.waiting) is_held[root(each.node)] = 1;
   std::map<int, std::map<int, double>> follows;  // for each loose part, the sum of its nodes' weights by bone
   for (std::size_t i = 0; i < part.size(); ++i)
     if (const int of = root(static_cast<int>(i)); !is_held[of])
@@ -297,7 +352,6 @@ void hold_loose_parts(FemModel& fem) {
       fem.held_by[i] = of->second;
       fem.influences[i] = {{of->second, 1.0}};
     }
-  std::erase_if(fem.waiting, [&](const FemModel::Waiting& each) { return !is_held[root(each.node)]; });
 }
 
 // Selects the bone that holds each node: the bone of the bone tets around the node or, in soft tissue that moves
@@ -358,6 +412,13 @@ std::vector<std::uint8_t> choose_holders(TissueModel& model, const LabelVolume& 
     else model.fem.influences.push_back({{std::max(holder, 0), 1.0}});
     if (holder >= 0) model.fem.influences.back() = {{holder, 1.0}};
   }
+  free_nodes_at_seams(model.fem, side, [&](int node, double mm) {
+    glm::ivec3 voxel;
+    const auto is_beyond = [&](const glm::ivec3& v) { return !is_in(moving.meshed, tissue, v); };
+    if (!around.nearest(mesh.V.row(node), is_beyond, voxel)) return false;
+    const glm::dvec3 place = world_from_voxel(volume.grid) * glm::dvec3(voxel);
+    return (mesh.V.row(node) - Eigen::RowVector3d(place.x, place.y, place.z)).norm() < mm;
+  });
   hold_loose_parts(model.fem);
   return slides;
 }

@@ -75,4 +75,36 @@ std::vector<std::array<int, 3>> faces_at_seams(const VoxelRegions& voxels, const
   return cut;
 }
 
+void smooth_seams(LatticeNet& net) {
+  constexpr int kRounds = 10;
+  std::vector<int> other(net.low.rows(), 0);  // number of triangles at each node along which the mesh is not cut
+  for (const int node : net.surface.F.reshaped()) ++other[node];
+  std::map<int, std::vector<int>> neighbours;  // of each node of a cut; inner neighbours occur twice
+  for (const auto& [a, b, c] : net.cut)
+    for (const auto& [node, next, last] : {std::array{a, b, c}, std::array{b, c, a}, std::array{c, a, b}}) {
+      --other[node];
+      neighbours[node].insert(neighbours[node].end(), {next, last});
+    }
+  std::erase_if(neighbours, [&](const auto& each) { return other[each.first] > 0; });
+
+  const glm::dmat3 back = glm::inverse(net.world_from_lattice.linear);
+  const AffineTransform lattice{back, -(back * net.world_from_lattice.offset)};
+  const auto at = [&](const AffineTransform& transform, const Eigen::RowVector3d& p) {
+    const glm::dvec3 moved = transform * glm::dvec3(p[0], p[1], p[2]);
+    return Eigen::RowVector3d(moved.x, moved.y, moved.z);
+  };
+  Eigen::MatrixX3d V(net.low.rows(), 3);  // positions in the lattice's axes, mm
+  for (Eigen::Index i = 0; i < V.rows(); ++i) V.row(i) = at(lattice, net.mesh.V.row(i));
+  for (int round = 0; round < kRounds; ++round) {
+    const Eigen::MatrixX3d before = V;
+    for (const auto& [node, around] : neighbours) {
+      Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+      for (const int next : around) sum += before.row(next);
+      V.row(node) = (sum / double(around.size())).cwiseMax(net.low.row(node)).cwiseMin(net.high.row(node));
+    }
+  }
+  for (const auto& [node, around] : neighbours)
+    net.mesh.V.row(node) = net.surface.V.row(node) = at(net.world_from_lattice, V.row(node));
+}
+
 }  // namespace limber

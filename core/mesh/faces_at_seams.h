@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds where the mesh of a solve must be cut open along seams (seam sides: lattice_net.h).
+// Finds and smooths the triangles along which the mesh of a solve is cut open at seams (SeamSides: lattice_net.h).
 //
 // The cells of the lattice are far larger than voxels, so the faces between voxels around an edge of the lattice vote
 // whether a seam separates the tissue of two sides there.
@@ -16,5 +16,10 @@ namespace limber {
 //   voxels  with sides
 std::vector<std::array<int, 3>> faces_at_seams(const VoxelRegions& voxels, const SampleLattice& lattice,
                                                const SurfaceNet& net);
+
+// Smooths the triangles of the net along which the mesh is cut (LatticeNet::cut). The steps of voxels and slices would
+// interlock like teeth, and the two sides could not slide along each other. Nodes stay in their boxes; nodes that also
+// belong to other triangles, such as those of the skin, stay where they are.
+void smooth_seams(LatticeNet& net);
 
 }  // namespace limber

@@ -194,7 +194,10 @@ LatticeNet finished(const SurfaceNet& net, const SampleLattice& lattice, const V
   result.surface.F.resize(triangles.size(), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     result.surface.F.row(i) << triangles[i][0], triangles[i][1], triangles[i][2];
-  if (voxels.sides) result.cut = faces_at_seams(voxels, lattice, net);
+  if (voxels.sides) {
+    result.cut = faces_at_seams(voxels, lattice, net);
+    smooth_seams(result);
+  }
   return result;
 }
 

@@ -34,12 +34,24 @@ std::string fill_by_tetgen(TissueMesh& result, const LatticeNet& net, const Mesh
   return {};
 }
 
+// Returns the nodes at which tets of several sides of seams meet.
+std::vector<int> nodes_of_several_sides(const TetMesh& mesh, const VoxelRegions& voxels) {
+  std::vector<int> side(mesh.V.rows(), -1), nodes;
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    for (const int node : mesh.T.row(t)) {
+      const int here = voxels.side_of(mesh.region[t]);
+      if (side[node] >= 0 && side[node] != here) nodes.push_back(node);
+      side[node] = here;
+    }
+  return nodes;
+}
+
 // Cuts the mesh open where seams separate tissue, and gives all soft tissue the region kSoft.
 void cut_open(TissueMesh& result, const LatticeNet& net, const VoxelRegions& voxels) {
   if (!voxels.sides) return;
   TetMesh& mesh = result.mesh;
   const Eigen::MatrixX4i before = mesh.T;
-  split_at_faces(mesh, net.cut);
+  split_at_faces(mesh, net.cut, nodes_of_several_sides(mesh, voxels));
   open_faces(mesh, net.cut, before, kOpen * net.spacing_mm);
   if (const std::int64_t removed = remove_crossing(mesh); removed > 0) {
     if (!result.warning.empty()) result.warning += "; ";

@@ -28,14 +28,16 @@ struct Corner {
 
 }  // namespace
 
-std::vector<int> split_at_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces) {
+std::vector<int> split_at_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces,
+                                const std::vector<int>& nodes) {
   std::set<std::array<int, 3>> cut;
   std::vector<std::uint8_t> is_at_cut(mesh.V.rows(), 0);
-  int end = 0;  // above the index of every node of a face
+  for (const int node : nodes) is_at_cut[node] = 1;
   for (const auto& [a, b, c] : faces) {
     cut.insert(sorted_face(a, b, c));
-    for (const int node : {a, b, c}) is_at_cut[node] = 1, end = std::max(end, node + 1);
+    for (const int node : {a, b, c}) is_at_cut[node] = 1;
   }
+  const auto end = std::find(is_at_cut.rbegin(), is_at_cut.rend(), 1).base() - is_at_cut.begin();
   std::vector<std::vector<Corner>> corners(end);
   for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
     for (int i = 0; i < 4; ++i)
@@ -118,6 +120,15 @@ Eigen::MatrixX3d ways_inwards(const TetMesh& mesh, const std::vector<std::array<
       for (const int corner : {i, j, k})
         if (is_split[mesh.T(t, corner)]) normals[mesh.T(t, corner)].push_back(b.cross(c).normalized());
     }
+  // Where only an edge or a node connected the sides, no face was cut: the node moves into its own tets.
+  std::map<int, std::vector<Eigen::RowVector3d>> of_border;
+  const Eigen::MatrixX3i border = boundary_of(mesh.T);
+  for (const auto& face : border.rowwise()) {
+    const Eigen::RowVector3d a = mesh.V.row(face[0]), b = mesh.V.row(face[1]) - a, c = mesh.V.row(face[2]) - a;
+    for (const int node : face)
+      if (is_split[node] && !normals.contains(node)) of_border[node].push_back(b.cross(c).normalized());
+  }
+  normals.merge(of_border);
   Eigen::MatrixX3d ways = Eigen::MatrixX3d::Zero(mesh.V.rows(), 3);
   for (const auto& [node, of_node] : normals) ways.row(node) = away_from(of_node);
   return ways;

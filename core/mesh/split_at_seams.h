@@ -14,7 +14,9 @@ namespace limber {
 // Gives the nodes of the given faces copies, as split_at_seams() does. Returns the nodes of which the new nodes at the
 // end of mesh.V are copies.
 //   faces  faces between two tets, each as its three nodes
-std::vector<int> split_at_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces);
+//   nodes  further nodes to split: those at which only an edge or the node itself connects tets
+std::vector<int> split_at_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces,
+                                const std::vector<int>& nodes = {});
 
 // Moves the two sides of the faces apart after split_at_faces(): every node that was split moves into its own side, by
 // `mm` or by less where a tet would lose more than half of its volume. So contact can keep the sides apart.

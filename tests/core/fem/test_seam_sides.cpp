@@ -9,8 +9,11 @@
 #include <glm/gtc/constants.hpp>
 
 #include "core/fem/solve_pose.h"
+#include "core/fem/tissue_model.h"
 #include "core/mesh/crossings.h"
 #include "core/mesh/mesh_tissue.h"
+#include "core/mesh/split_at_seams.h"
+#include "tests/support/bent_tube.h"
 
 using namespace limber;
 
@@ -186,4 +189,85 @@ TEST_CASE("seam sides: a mesh cut at a seam opens without tearing tissue") {
   CHECK(solved.inverted == 0);
   CHECK(crossing_pairs(solved.V, boundary_of(open)).empty());
   CHECK(stretch_of(welded, torn) > 2.5);  // the bones tear tissue that nothing separates
+}
+
+TEST_CASE("seam sides: sides that only a node connects are split there, and moved apart") {
+  TetMesh mesh;
+  mesh.V.resize(7, 3);
+  mesh.V << 0, 0, 0, 9, 0, 0, 0, 9, 0, 0, 0, 9, -9, 0, 0, 0, -9, 0, 0, 0, -9;
+  mesh.T.resize(2, 4);
+  mesh.T << 0, 1, 2, 3, 0, 5, 4, 6;  // two tets that share node 0
+  for (const auto& tet : mesh.T.rowwise()) REQUIRE(signed_volume(mesh.V, tet) > 0);
+  mesh.region = {TetMesh::kSoft, soft_region(1)};
+  const Eigen::MatrixX4i before = mesh.T;
+  CHECK(split_at_faces(mesh, {}).empty());
+  CHECK(split_at_faces(mesh, {}, {0}) == std::vector<int>{0});
+  CHECK(mesh.T(1, 0) == 7);
+  open_faces(mesh, {}, before, 0.5);
+  CHECK(mesh.V.row(0).minCoeff() > 0.1);   // into the tet that keeps the node
+  CHECK(mesh.V.row(7).maxCoeff() < -0.1);  // into the other tet
+}
+
+TEST_CASE("seam sides: a seam with teeth becomes smooth in the mesh, so that its sides can slide") {
+  // The seam jumps by 4 voxels every 4 voxels along z.
+  LabelVolume sided = bars(false);
+  auto teeth = std::make_shared<Seams>(sided.grid.size);
+  const auto border = [](int z) { return kWide + (z / 4 % 2 ? 2 : -2); };
+  glm::ivec3 v;
+  for (v.z = 0; v.z < kLong; ++v.z)
+    for (v.y = 0; v.y < kDeep; ++v.y)
+      for (v.x = 0; v.x < 2 * kWide; ++v.x) {
+        if (v.x >= border(v.z)) sided.at(v) = static_cast<Label>(1 + soft_region(1));
+        if (v.x == border(v.z) - 1) teeth->cut(v, 0);
+        if (v.z + 1 < kLong && (v.x >= border(v.z)) != (v.x >= border(v.z + 1))) teeth->cut(v, 2);
+      }
+  const TetMesh mesh = mesh_tissue(sided, {.spacing_mm = 6}, no_progress(), cut_at(teeth)).mesh;
+  double furthest = 0;  // distance of nodes at the seam, away from the skin, from the seam's middle plane, mm
+  const double middle = kVoxel * (kWide - 0.5);
+  const Eigen::MatrixX3i surface = boundary_of(mesh);
+  for (const int node : surface.reshaped()) {
+    const auto at = mesh.V.row(node);
+    const bool is_inside = at[1] > 9 && at[1] < kVoxel * kDeep - 12 && at[2] > 15 && at[2] < kVoxel * kLong - 18;
+    if (is_inside && std::abs(at[0] - middle) < 12) furthest = std::max(furthest, std::abs(at[0] - middle));
+  }
+  CHECK(furthest > 0);
+  CHECK(furthest < 4);  // the teeth reach out by 6 mm
+}
+
+TEST_CASE("seam sides: nodes are free where only the mesh brings two rigid sides together") {
+  // The bars are 2 voxels of air apart, less than an edge of a coarse tet. The pose itself deforms nothing.
+  LabelVolume volume = bars(false), sided = bars(true);
+  glm::ivec3 v;
+  for (v.z = 0; v.z < kLong; ++v.z)
+    for (v.y = 0; v.y < kDeep; ++v.y)
+      for (v.x = kWide - 1; v.x <= kWide; ++v.x) volume.at(v) = sided.at(v) = 0;
+  const TissueVoxels tissue(volume);
+  VoxelSides sides;
+  sides.sides = cut_at(std::make_shared<Seams>(volume.grid.size));
+  tissue.for_each([&](std::int64_t, const glm::ivec3& at) { sides.of_voxel.push_back(at.x >= kWide); });
+  DeformingRegion moving;
+  moving.moves_as = {0, 1};
+  for (const TissueVoxels::Brick& brick : tissue.bricks()) {
+    moving.meshed.push_back(brick.mask);
+    moving.free.push_back({});
+    moving.free_from.emplace_back().fill(INFINITY);
+  }
+  const auto model = [&](double spacing_mm) {
+    return tissue_model(volume, tissue, test::tube_tissues(), halves(tissue), moving,
+                        mesh_tissue(sided, {.spacing_mm = spacing_mm}, no_progress(), sides.sides).mesh,
+                        {.sides = &sides});
+  };
+  const TissueModel coarse = model(7);
+  const FemModel& fem = coarse.fem;
+  std::int64_t free = 0, held = 0;
+  const double middle = kVoxel * (kWide - 0.5);
+  for (Eigen::Index i = 0; i < fem.mesh.V.rows(); ++i) {
+    const double off = std::abs(fem.mesh.V(i, 0) - middle);
+    (fem.held_by[i] < 0 ? free : held) += 1;
+    if (off < 4) CHECK(fem.held_by[i] < 0);
+  }
+  CHECK(free > 0);
+  CHECK(held > 0);
+  CHECK(fem.mesh.side.size() > 0);
+  for (const int holder : model(3).fem.held_by) CHECK(holder >= 0);  // a fine mesh keeps the air
 }
