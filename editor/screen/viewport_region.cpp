@@ -292,39 +292,6 @@ void draw_view_title(Ui& ui, const Rect& rect, const std::string& title, const s
   put_rimmed_text(ui, look.fonts.small, look.theme.view_text2, corner + glm::vec2(0, look.px(18)), state);
 }
 
-void draw_scale_bar(Context& context, const Rect& rect, double millimetres_per_pixel) {
-  if (!context.views->scale_bar || millimetres_per_pixel <= 0) return;
-  const Look& look = context.ui->look;
-  // Find a round length whose bar is 60 to 120 px long: 1, 2, 4, 5, 10, 15 or 20 mm, cm or m, or 1 to 400 micrometres.
-  const double low = look.px(60) * millimetres_per_pixel, high = look.px(120) * millimetres_per_pixel;
-  constexpr std::pair<double, const char*> kUnits[] = {{0.001, "\u00b5m"}, {1, "mm"}, {10, "cm"}, {1000, "m"}};
-  double length = 0, number = 0;
-  const char* unit = "";
-  for (const auto& [millimetres, name] : kUnits)
-    for (const double count : {1.0, 2.0, 4.0, 5.0, 10.0, 15.0, 20.0, 40.0, 50.0, 100.0, 200.0, 400.0})
-      if (length == 0 && (count <= 20 || millimetres == 0.001) && count * millimetres >= low &&
-          count * millimetres <= high) {
-        length = count * millimetres;
-        number = count;
-        unit = name;
-      }
-  if (length == 0) return;
-  const float pixels = std::round(static_cast<float>(length / millimetres_per_pixel)),
-              right = rect.high.x - look.px(28), y = rect.high.y - look.px(26);
-  if (rect.width() < pixels + look.px(120)) return;
-  const Rect plate{{right - pixels - look.px(6), y - look.px(20)}, {right + look.px(6), y + look.px(8)}};
-  fill(plate, with_alpha(look.theme.view_plate, 0.5f), look.px(4));
-  register_widget(context.ui, "scale bar", plate);
-  const float line = look.line(), tick = look.px(5);
-  for (const Rect& stroke : {Rect{{right - pixels, y}, {right, y + 2 * line}},
-                             Rect{{right - pixels, y - tick}, {right - pixels + 2 * line, y}},
-                             Rect{{right - 2 * line, y - tick}, {right, y}}})
-    fill(stroke, look.theme.view_text);
-  put_text(context.ui, look.fonts.small, look.theme.view_text,
-           Rect{{right - pixels, y - look.px(20)}, {right, y - look.px(2)}},
-           std::to_string(static_cast<int>(number)) + " " + unit, Align::Centre);
-}
-
 void draw_empty_view(Context& context, const Rect& rect) {
   const Operator* open = find_operator(context.operators, "file.open");
   if (!open) {
