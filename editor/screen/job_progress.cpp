@@ -11,6 +11,7 @@
 #include "editor/context/context.h"
 #include "editor/context/panels.h"
 #include "editor/context/preferences.h"
+#include "editor/context/resampling_settings.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/ui/icons.h"
 
@@ -126,9 +127,10 @@ void draw_running(Context& context, Column& column) {
   if (queued > 0) count += ", " + std::to_string(queued) + " queued";
   if (column.begin_section("Running", count)) {
     if (jobs.empty()) {
-      const Rect row = column.row(30);
+      // As high as the row of the job that "Resample this pose" starts, so that the sections below do not move then.
+      const Rect row = column.row(context.resampling->method == kFiniteElements ? kSolveRowHeight : kRowHeight);
       put_text(context.ui, context.ui->look.fonts.regular, context.ui->look.theme.text2,
-               Rect{{row.low.x + context.ui->look.px(14), row.low.y}, row.high}, "Nothing is running");
+               Rect{{row.low.x + context.ui->look.px(10), row.low.y}, row.high}, "Nothing is running");
     }
     for (const JobStatus& job : jobs) draw_job_row(context, job, column.row(row_height(context.fem, job)));
   }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Draws toasts, which are short messages at the bottom right of the 3D view, or left of or above what is drawn over the
-// view there: the gizmo, legends, the scale bar, the tour's bubble, the fields of the last operation. Infos stay 4 s,
-// warnings 8 s, errors until the user closes them. At most three toasts are visible, or one if only slices are shown; a
-// line above the toasts tells how many older messages there are. While the pointer is over a toast, no toast disappears
-// and no new toast appears.
+// view there: the gizmo, legends, the scale bar, the tour's bubble, the fields of the last operation. They leave the
+// limbs free, too, if there is room beside them. Infos stay 4 s, warnings 8 s, errors until the user closes them. At
+// most three toasts are visible, or one if only slices are shown or if more would cover a limb; a line above the toasts
+// tells how many older messages there are. While the pointer is over a toast, no toast disappears and no new toast
+// appears.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -18,6 +19,7 @@
 #include "editor/context/preferences.h"
 #include "editor/context/screen.h"
 #include "editor/context/view_projection.h"
+#include "editor/context/views.h"
 #include "editor/selection/transform_gizmo.h"
 #include "editor/ui/icons.h"
 #include "editor/ui/severity_style.h"
@@ -29,6 +31,9 @@ namespace {
 constexpr std::size_t kMost = 3;
 constexpr float kWidth = 332, kLeast = 52, kGap = 8, kLeastPlace = 240;
 constexpr int kLines = 2, kDetailLines = 3;
+// The flesh around a bone is assumed to be this fraction of the bone's length thick, and at least kThinnest px at scale
+// 1. A bone is covered by squares whose centres are at most kStep px at scale 1 apart.
+constexpr float kFlesh = 0.2f, kThinnest = 10, kStep = 24;
 constexpr double kFadeIn = 0.12, kFadeOut = 0.2;  // durations in which a toast fades in and out, s
 
 double life_of(Severity severity) {
@@ -152,11 +157,34 @@ bool points_at_toasts(const Ui& ui) {
 }
 
 // The rectangles that toasts should not cover. If there is no free room outside all of them, toasts stay clear of only
-// the first `needed` rectangles, which contain controls that the user may need meanwhile.
+// `rects`, and if this is impossible, too, of only the first `needed` of them, which contain controls that the user may
+// need meanwhile.
 struct Kept {
   std::vector<Rect> rects;
   std::size_t needed = 0;
+  std::vector<Rect> limbs;  // squares that cover the bones of the 3D view and the flesh around them
 };
+
+void add_limbs(const Context& context, const ViewProjection& view, std::vector<Rect>& limbs) {
+  const render::Scene& scene = context.views->scene;
+  if (!scene.armature) return;
+  const Look& look = context.ui->look;
+  for (std::size_t b = 0; b < scene.armature->bones.size(); ++b) {
+    const Bone& bone = scene.armature->bones[b];
+    const RigidTransform posed = b < scene.posed_from_rest.size() ? scene.posed_from_rest[b] : RigidTransform{};
+    const auto head = view.pixel_of(posed * bone.head), tail = view.pixel_of(posed * bone.tail);
+    if (!head || !tail) continue;
+    const auto length = static_cast<float>(glm::distance(*head, *tail));
+    const float thickness = std::max(kFlesh * length, look.px(kThinnest));
+    const int steps = std::clamp(static_cast<int>(std::ceil(length / look.px(kStep))), 1, 64);
+    for (int i = 0; i <= steps; ++i) {
+      const glm::vec2 centre = glm::mix(*head, *tail, static_cast<double>(i) / steps);
+      const Rect square = Rect{centre, centre}.grown(thickness);
+      if (square.overlaps(view.place.rect)) limbs.push_back(square);
+    }
+  }
+}
+
 Kept kept_rects(const Context& context) {
   Kept kept;
   const float gap = context.ui->look.px(kGap);
@@ -170,9 +198,11 @@ Kept kept_rects(const Context& context) {
     return name.ends_with("/legend") || name.ends_with("/scale bar") || name.starts_with("3D view/axis ");
   });
   for (const ViewPlace& place : context.screen->layout.view_places)
-    if (place.id == ViewId::Body && !place.side_a)
-      if (const auto gizmo = gizmo_rect(context, ViewProjection(context, place)))
-        kept.rects.push_back(gizmo->grown(gap));
+    if (place.id == ViewId::Body && !place.side_a) {
+      const ViewProjection view(context, place);
+      if (const auto gizmo = gizmo_rect(context, view)) kept.rects.push_back(gizmo->grown(gap));
+      add_limbs(context, view, kept.limbs);
+    }
   return kept;
 }
 
@@ -209,6 +239,9 @@ Rect place_of_lowest(const Ui& ui, const Rect& area, const glm::vec2& size, cons
         rect.high.x == area.high.x || rect.low.x == area.low.x || std::abs(rect.centre().x - area.centre().x) < 1;
     if (held || (is_column && area.contains(rect) && is_free(rect, kept.rects))) return rect;
   }
+  std::vector<Rect> all = kept.rects;
+  all.insert(all.end(), kept.limbs.begin(), kept.limbs.end());
+  if (const auto rect = free_rect(area, size, all)) return *rect;
   if (const auto rect = free_rect(area, size, kept.rects)) return *rect;
   return free_rect(area, size, std::span(kept.rects).first(kept.needed)).value_or(Rect{area.high - size, area.high});
 }
@@ -245,7 +278,7 @@ void draw_toasts(Context& context) {
     const Shape shape = shape_of(context, toast, width);
     Rect rect{{right - width, bottom - shape.height}, {right, bottom}};
     if (shown == 0) rect = place_of_lowest(context.ui, area, rect.size(), kept, held);
-    else if (!is_free(rect, kept.rects)) break;
+    else if (!is_free(rect, kept.rects) || !is_free(rect, kept.limbs)) break;
     const std::size_t count = toasts.size();
     const bool closes = draw_toast(context, toast, shape, rect, static_cast<int>(shown));
     // Stop drawing, because the toast's button has changed the list.

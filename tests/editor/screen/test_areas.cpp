@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Keys go to the area under the pointer, and the widget under the pointer does not move.
+#include <future>
+
+#include "editor/context/background_task.h"
 #include "editor/context/interaction.h"
 #include "editor/context/screen.h"
 #include "editor/context/selection.h"
@@ -141,9 +144,9 @@ TEST_CASE("areas: messages stand over the 3D view and leave the slices free, and
       "have");
   test.play("wait 10");
   CHECK(place_of(*test.editor, "toast 0/box") == before);
-  CHECK(test.fact("text:One more") == "absent");
+  CHECK(test.fact("text:And a long one") == "absent");
   test.play("move \"Axial/view\"");
-  CHECK(test.fact("text:One more") == "shown");
+  CHECK(test.fact("text:And a long one") == "shown");
 }
 
 TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale bar") {
@@ -188,6 +191,62 @@ TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale 
   CHECK(covered(test) == "");
   test.play("key Ctrl+Alt+Q\nwait-idle");
   CHECK(covered(test) == "");
+}
+
+TEST_CASE("areas: messages leave limbs free, and are fewer where more would cover one") {
+  LimbEditor test({1024, 640});
+  Editor& editor = *test.editor;
+  test.play("key Ctrl+2\nwait-idle");
+  const ViewPlace body = editor.screen->layout.view_places.front();
+  REQUIRE(body.id == ViewId::Body);
+  // Moves the limb sideways, to this position between the view's left edge, 0, and its right edge, 1. Then counts the
+  // toasts of three messages, and those of them that cover a point of a bone.
+  const auto toasts = [&](float position) {
+    const ViewProjection view(editor, body);
+    const glm::vec2 to(glm::mix(body.rect.low.x, body.rect.high.x, position), body.rect.centre().y);
+    const auto point = view.in_plane(to, glm::dvec3(0), view.direction_to_eye(glm::dvec3(0)));
+    REQUIRE(point);
+    editor.views->body.camera.centre -= *point;
+    editor.messages->toasts.clear();
+    test.play("wait-idle");
+    for (int i = 0; i < 3; ++i) editor.messages->toast_error("It failed " + std::to_string(i));
+    test.player.settle();
+    const ViewProjection moved(editor, body);
+    int count = 0, covering = 0;
+    for (const Widget& widget : editor.ui->widgets.widgets()) {
+      if (widget.region != Region::Toast || !widget.name.ends_with("/box")) continue;
+      ++count;
+      bool covers = false;
+      for (double z = -36; z <= 36; ++z)
+        if (const auto pixel = moved.pixel_of(glm::dvec3(0, 0, z))) covers |= widget.rect.contains(glm::vec2(*pixel));
+      covering += covers;
+    }
+    return std::pair(count, covering);
+  };
+  CHECK(toasts(0.2f) == std::pair(3, 0));
+  CHECK(test.fact("text:+2 more") == "absent");
+  CHECK(toasts(0.85f).second == 0);
+  CHECK(toasts(0.5f).first == 1);  // no place beside the limb is wide enough for three messages
+  CHECK(test.fact("text:+2 more") == "shown");
+}
+
+TEST_CASE("areas: a job that begins to run moves no section of the sidebar") {
+  LimbEditor test;
+  test.play("key Ctrl+4\nwait-idle\nmove \"3D view/view\"");
+  const glm::vec2 before = place_of(*test.editor, "Resample/fold");
+  std::promise<void> stop;
+  test.editor->jobs->start("Long job", [wait = stop.get_future().share()](Progress&) -> Edit {
+    wait.wait();
+    return [](const Document& now) { return now; };
+  });
+  test.player.step();
+  test.player.step();
+  CHECK(test.fact("text:1 job") == "shown");
+  CHECK(place_of(*test.editor, "Resample/fold") == before);
+  stop.set_value();
+  test.play("wait-job");
+  CHECK(test.fact("text:Nothing is running") == "shown");
+  CHECK(place_of(*test.editor, "Resample/fold") == before);
 }
 
 TEST_CASE("areas: the status bar's hints are those of the timeline while the pointer is over it") {
