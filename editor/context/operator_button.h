@@ -18,8 +18,14 @@ struct Operator;
 bool operator_button(Context& context, std::string_view id, const Rect& rect, const std::string& label,
                      ButtonStyle style = ButtonStyle::Plain);
 
+// Returns the operator's label as it reads outside its menu: "Export volume..." for the entry "Volume..." of the
+// submenu "Export".
+std::string full_label(const Operator& op);
+
 // Draws an operator's row in a popup menu.
-void operator_menu_item(Context& context, std::string_view id);
+//   submenu  title of the submenu that the row belongs to; "": none. The row shows the full label unless the submenu's
+//            title completes it.
+void operator_menu_item(Context& context, std::string_view id, std::string_view submenu = "");
 
 // Draws a check box for an operator that switches something on and off.
 void operator_box(Context& context, std::string_view id, const Rect& rect, const std::string& label);

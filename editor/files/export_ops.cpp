@@ -54,7 +54,7 @@ Operator export_operator(const ExportFacts& facts) {
   return {facts.id,
           facts.label,
           icon::kExport,
-          "File",
+          "Export",
           facts.description,
           [facts](Context& c) {
             browse(c, {.purpose = "export",
@@ -76,7 +76,7 @@ Operator picture_operator(const char* id, const char* label, const char* descrip
   return {id,
           label,
           icon::kCamera,
-          "File",
+          "Export",
           description,
           [label, name, filters, act](Context& c) {
             browse(c, {.purpose = "picture",
@@ -196,7 +196,7 @@ std::vector<Operator> export_operators() {
                            formats_of(*chosen_result(c)), export_result);
        },
        needs_result},
-      {"file.export_image", "Posed image...", icon::kExport, "File",
+      {"file.export_image", "Posed image...", icon::kExport, "Export",
        "Export the grey image (CT, MR) that was posed together with the selected result.",
        [](Context& c) {
          browse_for_result(c, "Export posed image", "posed image", stem_of(c) + "-image", writable_volumes(),
@@ -214,7 +214,7 @@ std::vector<Operator> export_operators() {
        needs_result},
       picture_operator("view.screenshot", "Picture...", "Export the active view as a PNG picture.", stem_of,
                        {{"PNG pictures", {".png"}}}, export_picture),
-      {"file.export_figure", "Figure...", icon::kCamera, "File",
+      {"file.export_figure", "Figure...", icon::kCamera, "Export",
        "Export the active view for a publication: its size in mm, with a scale bar, a legend and a title, as PNG, TIFF "
        "or SVG.",
        [last = std::make_shared<FigureOptions>()](Context& c) { ask_for_figure(c.dialogs, last); }, needs_volume},

@@ -407,7 +407,7 @@ std::vector<Operator> rig_operators() {
       edit_operator("rig.flip_direction", "Flip direction", "",
                     "Swap head and tail of the selected bones. A chain then runs the other way.", "Flip direction of",
                     with_flipped_direction),
-      {"rig.mirror", "Mirror", icon::kMirror, "Bone",
+      {"rig.mirror", "Mirror bones", icon::kMirror, "Bone",
        "Move the selected bones to the other side of the body, with their weights and keys.",
        [](Context& c) { mirror_bones(c, bones_chosen_last(c), naming_chosen(c, "Mirror")); }, needs_rig_bone},
       {"rig.symmetrize", "Symmetrize", icon::kMirror, "Bone",

@@ -63,7 +63,11 @@ void draw_error_message(Context& context) {
       begin_dialog(context, "Message", kWidth, (words + plate) / look.scale + 36 + 18 + 10 + kButton + 18, close_first);
 
   const Rect whole{{rect.low.x - look.px(18), rect.low.y - look.px(54)}, rect.high + look.px(18)};
-  fill({whole.low + glm::vec2(look.px(6), 0), {whole.high.x - look.px(6), whole.low.y + look.px(3)}}, look.theme.error);
+  // The line at the top follows the dialog's round corners.
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  canvas.PushClipRect(im(whole.low), {whole.high.x, whole.low.y + look.px(3)}, true);
+  fill(whole, look.theme.error, look.px(8));
+  canvas.PopClipRect();
   put_icon(look.fonts.icons, look.theme.error, Rect{rect.low, rect.low + look.px(20)}, icon::kError);
   const float left = rect.low.x + look.px(30);
   float y = rect.low.y;

@@ -49,20 +49,21 @@ bool any_operator(const OperatorRegistry& operators, Entry begin, Entry end) {
   return std::any_of(begin, end, [&](const std::string& id) { return find_operator(operators, id) != nullptr; });
 }
 
-void draw_entries(Context& context, Entry begin, Entry end) {
+//   submenu  title of the submenu that the entries belong to; "": none
+void draw_entries(Context& context, Entry begin, Entry end, const std::string& submenu = "") {
   bool line_wanted = false, any = false;
   for (Entry entry = begin; entry != end; ++entry) {
     if (*entry == "-") {
       line_wanted = any;
       continue;
     }
-    const bool submenu = entry->starts_with("> ");
-    const Entry last = submenu ? end_of(entry, end) : entry + 1;
+    const bool opens = entry->starts_with("> ");
+    const Entry last = opens ? end_of(entry, end) : entry + 1;
     if (any_operator(context.operators, entry, last)) {
       if (line_wanted) ImGui::Separator();
       line_wanted = false;
       any = true;
-      if (!submenu) operator_menu_item(context, *entry);
+      if (!opens) operator_menu_item(context, *entry, submenu);
       else {
         const std::string title = entry->substr(2);
         // Give the row that opens a submenu the same height as the other rows: 22 px plus the spacing between rows.
@@ -78,13 +79,13 @@ void draw_entries(Context& context, Entry begin, Entry end) {
           register_widget(context.ui, title, {from_im(ImGui::GetItemRectMin()), from_im(ImGui::GetItemRectMax())});
         if (open) {
           push_path(context.ui, title);
-          draw_entries(context, entry + 1, last);
+          draw_entries(context, entry + 1, last, title);
           pop_path(context.ui);
           ImGui::EndMenu();
         }
       }
     }
-    entry = submenu ? last : entry;
+    entry = opens ? last : entry;
   }
 }
 

@@ -30,6 +30,7 @@
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
 #include "editor/ui/icons.h"
+#include "editor/ui/messages.h"
 #include "editor/volume/shown_image.h"
 #include "editor/volume/tissue_edits.h"
 #include "editor/volume/volume_change.h"
@@ -73,7 +74,7 @@ std::vector<KeyHint> hints(const Context& context) {
   if (context.interaction->modal) return context.interaction->modal->hints(context);
   if (context.interaction->drag) return {{{"Esc"}, "Cancel the drag"}};
   if (context.views->preview_visibility) return {{{"Ctrl"}, "Snap"}, {{"Esc"}, "Cancel the drag"}};
-  if (context.dialogs->shown) return {{{"Esc"}, "Close"}};
+  if (context.dialogs->shown || !context.messages->errors.empty()) return {{{"Esc"}, "Close"}};
   if (!(context.ui->input.modifiers() == Modifiers{})) return held_hints(context);
   std::vector<std::pair<const char*, const char*>> operators;
   const ViewPlace* view = hovered_view(context);

@@ -109,7 +109,8 @@ Step resample_step(const Document& document) {
   return step;
 }
 
-constexpr float kRow = 40, kMore = 26;
+// Heights of a step and of a row of small buttons; width of a step's number with the gap after it; px at scale 1.
+constexpr float kRow = 40, kMore = 26, kNumber = 16;
 
 struct Sign {
   const char* icon;
@@ -141,9 +142,11 @@ void draw_step(Context& context, Column& column, const Step& step, int number) {
                    {row.high.x - look.px(10), row.high.y - look.px(7)}};
   const float left = row.low.x + look.px(34), right = width > 0 ? place.low.x - look.px(8) : row.high.x - look.px(10),
               middle = row.centre().y;
-  put_text(context.ui, next ? look.fonts.semibold : look.fonts.regular,
-           step.state == StepState::Later ? look.theme.text2 : look.theme.text,
-           Rect{{left, middle - look.px(18)}, {right, middle}}, std::to_string(number) + "  " + step.title);
+  ImFont* font = next ? look.fonts.semibold : look.fonts.regular;
+  const Colour colour = step.state == StepState::Later ? look.theme.text2 : look.theme.text;
+  const float title = left + look.px(kNumber);
+  put_text(context.ui, font, colour, Rect{{left, middle - look.px(18)}, {title, middle}}, std::to_string(number));
+  put_text(context.ui, font, colour, Rect{{title, middle - look.px(18)}, {right, middle}}, step.title);
   put_text(context.ui, look.fonts.small, step.state == StepState::Warning ? look.theme.warn : look.theme.text2,
            Rect{{left, middle}, {right, middle + look.px(16)}}, step.line);
   if (width <= 0) return;
@@ -164,14 +167,14 @@ void draw_more(Context& context, Column& column, const Step& step) {
     const Operator* op = find_operator(context.operators, id);
     if (!op) continue;
     const bool on = op->checked && op->checked(context);
-    const float width = text_size(look.fonts.regular, op->label).x + look.px(14);
+    const float width = text_size(look.fonts.regular, full_label(*op)).x + look.px(14);
     if (x + width > row.high.x - look.px(10)) {
       row = column.row(kMore);
       x = row.low.x + look.px(34);
     }
     const Rect place{{x, row.low.y + look.px(1)}, {x + width, row.high.y - look.px(1)}};
     const bool enabled = disabled_reason(context, *op).empty();
-    if (button(context.ui, id, place, {"", op->label, on ? ButtonStyle::Soft : ButtonStyle::Plain, enabled}))
+    if (button(context.ui, id, place, {"", full_label(*op), on ? ButtonStyle::Soft : ButtonStyle::Plain, enabled}))
       run(context, *op);
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) operator_tooltip(context, *op, place);
     x += width + look.px(4);

@@ -289,6 +289,22 @@ TEST_CASE("areas: below an open dialog the status bar tells how to close it, not
   ask(*test.editor, {.title = "A question", .answers = {{"Yes", {}, true}}});
   test.play("wait-idle\nexpect dialog yes\nexpect text:Turn absent\nexpect text:Esc shown\nkey Escape\nwait-idle");
   test.play("expect dialog no\nexpect text:Turn shown");
+  test.editor->messages->show_error("it failed: here: try again");
+  test.play("wait-idle\nexpect text:Turn absent\nexpect text:Esc shown\nkey Escape\nwait-idle\nexpect text:Turn shown");
+}
+
+TEST_CASE("areas: context menus say whether a file is imported or exported") {
+  LimbEditor test;
+  test.play(R"(
+    right-click Outliner/volume/name
+    expect "text:Export volume..." shown
+    expect "text:Export tissues..." shown
+    key Escape
+    right-click Outliner/armature/name
+    expect "text:Import rig..." shown
+    expect "text:Export rig..." shown
+    key Escape
+  )");
 }
 
 TEST_CASE("areas: the status bar tells a tissue's label once, and the Prepare step the number of tissues") {
