@@ -67,7 +67,8 @@ void draw_path(Context& context, const ViewProjection& view, const MotionPaths& 
     const auto pixel = view.pixel_of(paths.tips[k][number]);
     if (!pixel) continue;
     if (has_key(*paths.clip, name, frame)) draw_diamond(canvas, glm::vec2(*pixel), 5 * scale, kKey);
-    if (frame == now) canvas.AddCircle(im(glm::vec2(*pixel)), 5 * scale, context.ui->look.theme.text, 0, 1.5f * scale);
+    if (frame == now)
+      canvas.AddCircle(im(glm::vec2(*pixel)), 5 * scale, context.ui->look.theme.view_text, 0, 1.5f * scale);
   }
 }
 

@@ -17,6 +17,7 @@
 #include "editor/shown/test_pose.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
+#include "editor/viewport/gizmo_draw.h"
 #include "editor/volume/tissue_edits.h"
 #include "render/scene/weight_colormap.h"
 
@@ -190,7 +191,7 @@ void draw_weights_at_pointer(Context& context) {
   const bool whole = std::abs(sum - 1) < 0.5f / kFullWeight;
   put_text(context.ui, look.fonts.regular, ground,
            Rect{{box.low.x + look.px(12), y}, {box.high.x - look.px(62), y + row}}, "Sum");
-  put_text(context.ui, look.fonts.mono, whole ? look.theme.ok : look.theme.error,
+  put_text(context.ui, look.fonts.mono, whole ? kViewOk : kViewError,
            Rect{{box.high.x - look.px(62), y}, {box.high.x - look.px(12), y + row}}, three_digits(sum), Align::Right);
   y += row - look.px(2);
   put_text(context.ui, look.fonts.small, ground, Rect{{box.low.x + look.px(12), y}, {box.high.x - look.px(8), y + row}},

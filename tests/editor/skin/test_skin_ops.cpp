@@ -2,10 +2,14 @@
 // Tests the operators that show skin weights, select their bones, and lock them.
 #include "core/skin/skin_weights.h"
 #include "editor/context/menu_state.h"
+#include "editor/context/operator.h"
+#include "editor/context/screen.h"
 #include "editor/context/views.h"
 #include "editor/files/project_session.h"
 #include "editor/skin/painting.h"
 #include "editor/skin/weight_display.h"
+#include "editor/ui/ui.h"
+#include "editor/viewport/gizmo_draw.h"
 #include "tests/editor/operator_proofs.h"
 
 namespace limber::test {
@@ -208,6 +212,31 @@ TEST_CASE("skin: the weights under the pointer stand beside it with their sum, t
   CHECK(test.fact("text:mm deep") == "shown");
   test.play("move \"Bones/Fore/name\"\n wait-idle");
   CHECK(test.fact("text:Sum") == "absent");
+}
+
+TEST_CASE("skin: the sum of the weights beside the pointer is as bright in the light theme as in the dark one") {
+  SkinEditor test;
+  test.play("move \"3D view/view\"\n wait-idle");
+  const Rect view = *test.editor->screen->layout.place_of(ViewId::Body);
+  const auto bright = [&] {
+    const render::Image picture = test.host->picture();
+    int count = 0;
+    for (int y = int(view.low.y); y < int(view.high.y); ++y)
+      for (int x = int(view.low.x); x < int(view.high.x); ++x) {
+        const std::uint8_t* pixel = &picture.rgba[4 * (std::size_t(y) * picture.size.x + x)];
+        const Colour ok = kViewOk;
+        count += std::abs(pixel[0] - int(ok & 255)) + std::abs(pixel[1] - int(ok >> 8 & 255)) +
+                     std::abs(pixel[2] - int(ok >> 16 & 255)) <
+                 40;
+      }
+    return count;
+  };
+  const int in_dark = bright();
+  CHECK(in_dark > 5);
+  run(*test.editor, "edit.other_theme");
+  test.play("wait-idle");
+  CHECK(test.editor->ui->look.theme.name == "Light");
+  CHECK(bright() > in_dark / 2);
 }
 
 TEST_CASE("skin: depth is the distance to the nearest air, as a search over all voxels finds it") {
