@@ -46,8 +46,8 @@ void put_cells(Ui& ui, const Rect& row, const Cells& cells, const std::array<Col
 //   known  whether the numbers belong to the shown pose; numbers of an earlier pose are grey
 void put_change(Ui& ui, const Rect& row, const PoseMetrics::Row& tissue, ImFont* font, bool known, float indent) {
   const Look& look = ui.look;
-  char volume[24];
-  std::snprintf(volume, sizeof volume, "%.1f", tissue.mm3_after / 1000);
+  const auto tenths = static_cast<std::int64_t>(std::llround(tissue.mm3_after / 100));  // tenths of a cm^3
+  const std::string volume = grouped(tenths / 10) + "." + std::to_string(tenths % 10);
   const Colour grey = look.theme.text3;
   put_cells(ui, row, {tissue.name, volume, percent(tissue.change_percent())},
             {look.theme.text, known ? look.theme.text2 : grey,

@@ -155,7 +155,7 @@ void draw_posed_bone(Context& context, Column& column) {
     }
     draw_quaternion(context, column, label, index, pose.rotation[index]);
     if (bone.parent < 0)
-      draw_three(context, column, "Offset, mm", "Move body", pose.root_translation, kFar,
+      draw_three(context, column, "Shift, mm", "Move body", pose.root_translation, kFar,
                  [](Pose& next, int axis, double place) { next.root_translation[axis] = place; });
     draw_ik(context, column);
     const std::string beyond = excess_text(bone, pose.rotation[index], at_rest);

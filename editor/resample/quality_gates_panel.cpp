@@ -93,7 +93,7 @@ void draw_gates(Context& context, Column& column) {
     column.space(4);
     if (!result) {
       const Rect row = column.row(26);
-      put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high},
+      put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(10), row.low.y}, row.high},
                "No result yet");
     } else {
       // Failed gates come first.

@@ -483,7 +483,7 @@ void draw_outliner(Context& context, Column& column) {
     if (!context.ui->input.down(MouseButton::Left)) drag = {};
     if (rows.empty() && context.outliner->search.empty()) {
       const Rect row = column.row(30);
-      put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(14), row.low.y}, row.high},
+      put_text(context.ui, look.fonts.regular, look.theme.text2, Rect{{row.low.x + look.px(10), row.low.y}, row.high},
                "No project is open");
     } else if (rows.empty() &&
                empty_state(context.ui, column.row(72),

@@ -70,7 +70,7 @@ void draw_row(Context& context, Column& column, int index, const Tissue& tissue)
   fill(swatch, rgb(tissue.colour.r, tissue.colour.g, tissue.colour.b), look.px(3));
   outline(swatch, look.theme.line2, look.px(3), look.line());
 
-  const Rect name{{x + side, rect.low.y}, {rect.high.x - look.px(70), rect.high.y}};
+  const Rect name{{x + side, rect.low.y}, {rect.high.x - look.px(72), rect.high.y}};
   if (renaming) {
     std::string accepted = tissue.name;
     if (rename_field(
@@ -97,7 +97,7 @@ void draw_row(Context& context, Column& column, int index, const Tissue& tissue)
     if (!chosen) select_tissue(context, tissue.label, false);
     context.menus->open_popup = "Tissue";
   }
-  draw_opacity(context, {{rect.high.x - look.px(64), rect.low.y}, {rect.high.x - look.px(8), rect.high.y}}, tissue,
+  draw_opacity(context, {{rect.high.x - look.px(66), rect.low.y}, {rect.high.x - look.px(10), rect.high.y}}, tissue,
                shown);
 }
 
@@ -131,7 +131,7 @@ void draw_tissues(Context& context, Column& column) {
     if (!tissues) {
       const Rect rect = column.row(30);
       put_text(context.ui, look.fonts.regular, look.theme.text2,
-               Rect{{rect.low.x + look.px(14), rect.low.y}, rect.high}, "Open a volume to see its tissues");
+               Rect{{rect.low.x + look.px(10), rect.low.y}, rect.high}, "Open a volume to see its tissues");
     } else {
       if (tissues->tissues.size() > 16) {
         const Rect rect = column.row(32);
@@ -145,7 +145,7 @@ void draw_tissues(Context& context, Column& column) {
       if (tissues->tissues.empty()) {
         const Rect rect = column.row(30);
         put_text(context.ui, look.fonts.regular, look.theme.text2,
-                 Rect{{rect.low.x + look.px(14), rect.low.y}, rect.high},
+                 Rect{{rect.low.x + look.px(10), rect.low.y}, rect.high},
                  context.views->image ? "No labels yet" : "No tissue: the volume is all air");
       } else if (rows.empty() &&
                  empty_state(context.ui, column.row(72), "No tissue named '" + context.outliner->tissue_search + "'",

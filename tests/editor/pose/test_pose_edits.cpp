@@ -256,7 +256,7 @@ TEST_CASE(
   type("Bone/Rotation, \u00b0 Y", "30");
   const Bone& upper = test.editor->document().armature->bones[0];
   CHECK(test.degrees(0, rest_axes(upper)[1]) == doctest::Approx(30));
-  type("Bone/Offset, mm Z", "-7");
+  type("Bone/Shift, mm Z", "-7");
   CHECK(test.pose().root_translation.z == doctest::Approx(-7));
   CHECK(test.last_edit() == "Move body");
 
