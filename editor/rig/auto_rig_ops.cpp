@@ -15,6 +15,13 @@ namespace limber::editor {
 
 namespace {
 
+// A skeleton is fitted to tissue, which a bare CT or MR lacks until it has labels.
+std::string needs_labels(const Context& context) {
+  if (const std::string why = needs_volume(context); !why.empty()) return why;
+  const auto& tissues = context.document().tissues;
+  return tissues && tissues->tissues.empty() ? "The volume has no labels: make or paint labels first" : "";
+}
+
 std::string needs_joint_in_tissue(const Context& context) {
   if (context.workspace() != Workspace::Rig) return "Switch to the Rig workspace first";
   if (const std::string why = needs_bone(context); !why.empty()) return why;
@@ -44,9 +51,9 @@ std::vector<Operator> rig_fit_operators() {
   return {
       {"rig.auto_fit", "Auto-fit skeleton...", kAutoFitIcon, "Rig",
        "Fit a skeleton to the volume automatically. Its joints are found from the bones or the body's shape.",
-       ask_auto_fit, needs_volume},
+       ask_auto_fit, needs_labels},
       {"rig.templates", "Templates...", icon::kRig, "Rig", "Add a ready-made skeleton, scaled to the tissue.",
-       ask_template, needs_volume},
+       ask_template, needs_labels},
       {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig",
        "Find the hinge axis about which the selected bone turns with the fewest collisions of bones, and show where "
        "bones still collide.",

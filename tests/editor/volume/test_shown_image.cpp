@@ -157,6 +157,10 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   CHECK(sitting.editor().views->display == render::Display::Image);
   CHECK(sitting.editor().document().tissues->tissues.empty());
   const Document bare = sitting.editor().document();
+  const auto why_no_rig = [&] {
+    return disabled_reason(sitting.editor(), *find_operator(sitting.editor().operators, "rig.auto_fit"));
+  };
+  CHECK(why_no_rig().starts_with("The volume has no labels"));
   sitting.play(
       "expect \"text:No labels yet\"\n click Steps/Prepare/Labels...\n wait-idle\n click \"Make "
       "labels\"\n "
@@ -164,6 +168,7 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
   sitting.play("expect error none\n expect unsaved yes");
   const Document labelled = sitting.editor().document();
   REQUIRE(labelled.tissues->find(6));
+  CHECK(why_no_rig() == "");
   CHECK(labelled.volume->grid == scan().grid);
   CHECK(labelled.volume->at({20, 20, 20}) == 6);
   CHECK(sitting.editor().views->image);
