@@ -34,6 +34,14 @@ struct Part {
   std::string text;
 };
 
+// Draws the line at the top of the message, which follows the round corners of its dialog.
+void draw_top_line(const Look& look, const Rect& dialog) {
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  canvas.PushClipRect(im(dialog.low), {dialog.high.x, dialog.low.y + look.px(3)}, true);
+  fill(dialog, look.theme.error, look.px(8));
+  canvas.PopClipRect();
+}
+
 }  // namespace
 
 void draw_error_message(Context& context) {
@@ -63,11 +71,7 @@ void draw_error_message(Context& context) {
       begin_dialog(context, "Message", kWidth, (words + plate) / look.scale + 36 + 18 + 10 + kButton + 18, close_first);
 
   const Rect whole{{rect.low.x - look.px(18), rect.low.y - look.px(54)}, rect.high + look.px(18)};
-  // The line at the top follows the dialog's round corners.
-  ImDrawList& canvas = *ImGui::GetWindowDrawList();
-  canvas.PushClipRect(im(whole.low), {whole.high.x, whole.low.y + look.px(3)}, true);
-  fill(whole, look.theme.error, look.px(8));
-  canvas.PopClipRect();
+  draw_top_line(look, whole);
   put_icon(look.fonts.icons, look.theme.error, Rect{rect.low, rect.low + look.px(20)}, icon::kError);
   const float left = rect.low.x + look.px(30);
   float y = rect.low.y;
