@@ -450,7 +450,7 @@ void draw_timeline(Context& context, const Rect& rect) {
   follow_head(context);
   // The switch beside the ruler selects the rows, the graph editor or the strips.
   const bool wide = timeline.shows_graph || timeline.shows_strips;
-  const glm::vec2 corner = rows.low + glm::vec2(look.px(4), look.px(1));
+  const glm::vec2 corner = rows.low + glm::vec2(look.px(wide ? 12 : 2), look.px(1));
   draw_face_switch(context, {corner, corner + glm::vec2(look.px(wide ? 64 : 53), look.px(kRulerHeight - 2))});
   if (!shown_clip(context.document())) return;
   if (timeline.shows_graph) return draw_graph(context, rows);
