@@ -4,7 +4,7 @@
 // tissue of different sides (mesh/faces_at_seams.h).
 #pragma once
 
-#include "core/mesh/lattice_net.h"
+#include "core/mesh/voxel_regions.h"
 #include "core/rig/armature.h"
 #include "core/skin/skin_weights.h"
 

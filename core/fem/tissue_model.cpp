@@ -323,6 +323,7 @@ void free_nodes_at_seams(FemModel& fem, const std::vector<int>& side, const IsHe
 // Holds the parts of the mesh that no bone ever holds, such as flakes that were cut off at seams: nothing would
 // determine their position. Each moves rigidly with the bone that most of its nodes follow.
 void hold_loose_parts(FemModel& fem) {
+  if (fem.mesh.side.empty()) return;
   std::vector<int> part(fem.mesh.V.rows());
   std::iota(part.begin(), part.end(), 0);
   const auto root = [&](int i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds and smooths the triangles along which the mesh of a solve is cut open at seams (SeamSides: lattice_net.h).
+// Finds and smooths the triangles along which the mesh of a solve is cut open at seams (SeamSides: voxel_regions.h).
 //
 // The cells of the lattice are far larger than voxels, so the faces between voxels around an edge of the lattice vote
 // whether a seam separates the tissue of two sides there.
@@ -8,6 +8,7 @@
 #include <array>
 #include <vector>
 
+#include "core/mesh/lattice_net.h"
 #include "core/mesh/surface_net.h"
 
 namespace limber {

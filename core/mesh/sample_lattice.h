@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh/lattice_net.h"
+#include "core/mesh/voxel_regions.h"
 
 namespace limber {
 

@@ -136,7 +136,7 @@ TEST_CASE(
   std::string header = read_file(folder / "rest.nhdr");
   header.replace(header.find(":=to-rest"), 9, ":=sidewise");
   write_file_atomically(folder / "rest.nhdr", header);
-  CHECK_THROWS_WITH(read_vector_volume(folder / "rest.nhdr"), doctest::Contains("points sidewise"));
+  CHECK_THROWS_WITH(read_vector_volume(folder / "rest.nhdr"), doctest::Contains("direction of the field is sidewise"));
   // A NIfTI header has room for a short description only.
   write_displacement_field(grid, field, FieldDirection::ToRest, folder / "rest.nii");
   CHECK(read_file(folder / "rest.nii").substr(148, 79).starts_with("displacement, mm, LPS: rest minus posed"));

@@ -56,7 +56,7 @@ TEST_CASE("repair-joint command: the written weights keep more volume by the rep
       run_limber({"repair-joint", arm.volume, "--rig", arm.rig, "--tissues", arm.tissues, "--weights", arm.weights,
                   "--bone", "Forearm", "--range", "0,90", "--method", "dqs", "-o", arm.repaired});
   REQUIRE(run.exit_code == 0);
-  CHECK(run.out.find("The joint of Forearm: skin, fat and muscle change by") != std::string::npos);
+  CHECK(run.out.find("The joint of Forearm: the volumes of skin, fat and muscle change by") != std::string::npos);
   double before = 0, after = 0;
   for (const char* degrees : {"35", "60", "85"}) {
     before += arm.sum_by_report(arm.weights, degrees);
