@@ -124,11 +124,13 @@ void add_report(CLI::App& app) {
   command->add_option("BEFORE", options->before, "label volume")->required();
   command->add_option("AFTER", options->after, "label volume")->required();
   command->add_option("--tissues", options->tissues, "tissue table: names, kinds, densities");
-  auto* field = command
-                    ->add_option("--field", options->field,
-                                 "the displacement at each voxel of AFTER, as `limber resample --field` writes it, in "
-                                 "either direction; adds a check for deep tissue that is now at the surface")
-                    ->type_name("F.nrrd");
+  auto* field =
+      command
+          ->add_option("--field", options->field,
+                       "the displacement at each voxel of AFTER, from rest to posed or from posed to rest, as "
+                       "`limber resample --field` writes it; adds a check for deep tissue that is now at "
+                       "the surface")
+          ->type_name("F.nrrd");
   auto* rig = command
                   ->add_option("--rig", options->rig,
                                "with --field: the rig; adds checks of bones, limbs and bands (tissue stretched between "

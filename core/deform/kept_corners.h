@@ -44,7 +44,7 @@ class KeptCorners {
   static constexpr std::int64_t kGroup = 32;  // number of bricks whose memory is freed together
 
   std::vector<std::int32_t> slot_;         // for each brick: its index among the stored bricks (slot); -1: not stored
-  std::vector<std::int32_t> top_;          // for each slot: highest output voxel along z that its corners reach
+  std::vector<std::int32_t> top_;          // for each slot: largest z of the output voxels that its posed corners reach
   std::vector<std::uint8_t> is_kept_;      // for each slot: 1 if its corners are stored
   ZeroedVector<std::uint64_t> distances_;  // packed corners of each slot
 };

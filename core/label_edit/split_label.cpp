@@ -10,7 +10,8 @@ namespace limber {
 
 namespace {
 
-// The plane of a cut and the extent of its strip, in world coordinates.
+// The plane of a cut, which contains the drawn line and the direction of sight, and the strip of the plane that cuts:
+// the part between the ends of the line. World coordinates.
 class Knife {
  public:
   explicit Knife(const LabelCut& cut) : from_(cut.from), length_(glm::distance(cut.from, cut.to)) {

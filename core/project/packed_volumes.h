@@ -44,7 +44,7 @@ class PackedVolumes {
   std::int64_t bytes() const;  // size of the stored changes
 
  private:
-  // The difference between the volume of a step and that of the step before.
+  // The difference between the label volume after a step of the undo history and the one after the previous step.
   struct Link {
     bool same = false;
     std::shared_ptr<const LabelChange> change;

@@ -228,8 +228,8 @@ class SeamFinder {
     });
   }
 
-  // Lists the voxels that share a face with a voxel of another bone, sorted by their index among the tissue voxels. The
-  // cuts change bones later, so find_band() checks each listed voxel again.
+  // Lists the voxels that share a face with a voxel of another bone, sorted by their index among the tissue voxels.
+  // Later some voxels are given to another bone, so find_band() checks each listed voxel again.
   void find_borders() {
     if (limbs_.empty()) return;
     const auto bricks = std::ssize(tissue_.bricks());

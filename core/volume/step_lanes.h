@@ -20,7 +20,7 @@ using EightSteps = std::uint16_t __attribute__((vector_size(16)));
 template <std::size_t kEights>
 using StepLanes = std::array<EightSteps, kEights>;
 
-// Returns eight sums, each of a number of `steps` and `rise`. A sum above 65 535 becomes 65 535.
+// Adds `rise` to each of the eight numbers of `steps`. A sum above 65 535 becomes 65 535.
 inline EightSteps raised(const EightSteps& steps, std::uint16_t rise) {
 #ifdef __SSE2__
   return reinterpret_cast<EightSteps>(

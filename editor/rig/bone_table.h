@@ -44,7 +44,8 @@ std::string why_no_bone_table(const Document& document);
 void map_label(Context& context, Label label, std::optional<BodySide> side, std::optional<int> bone);
 void clear_bone_map(Context& context);
 
-// Colours bone tissue in the scene of this frame by the table's rig bones when the user has switched this on.
+// In the picture that is being drawn, gives bone tissue the colour of the rig bone to which the table maps its label,
+// if the user has switched this on.
 void show_bone_table(Context& context);
 
 }  // namespace limber::editor

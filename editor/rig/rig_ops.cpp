@@ -182,7 +182,7 @@ void symmetrize(Context& context) {
   const std::vector<int> chosen = bones_chosen_last(context);
   if (std::none_of(chosen.begin(), chosen.end(), [&](int bone) { return mirrored_name(all[bone].name).has_value(); }))
     throw Error("the bone's name has no side", all[chosen.back()].name,
-                "give it a name with a side first, such as Arm.L or LeftArm");
+                "first give it a name that contains a side, such as Arm.L or LeftArm");
   act_and_allow_redo(context,
                      {choice_of("From side", "The side that is copied to the other side as its mirror image.",
                                 {"Selected", "Not selected"})},
