@@ -270,4 +270,7 @@ TEST_CASE("seam sides: nodes are free where only the mesh brings two rigid sides
   CHECK(held > 0);
   CHECK(fem.mesh.side.size() > 0);
   for (const int holder : model(3).fem.held_by) CHECK(holder >= 0);  // a fine mesh keeps the air
+
+  // Where all nodes of a bar are near the other side, the bar would lie loose: a bone holds it.
+  for (const int holder : model(16).fem.held_by) CHECK(holder >= 0);
 }
