@@ -75,15 +75,15 @@ bool ContactForm::has_object(const ContactPair& pair) const {
   return std::any_of(pair.node.begin(), pair.node.end(), [&](int node) { return node >= settings_.skin_nodes; });
 }
 
-void ContactForm::add_push(const NodePositions& step, NodePositions& gradient) const {
+void ContactForm::add_push(const NodePositions& step, std::span<const int> unknown, NodePositions& gradient) const {
   for (const Touch& touch : touching_) {
-    if (!has_object(touch.pair)) continue;
     double nearer = 0;
     for (int a = 0; a < 4; ++a)
-      if (const int node = touch.pair.node[a]; node >= settings_.skin_nodes)
+      if (const int node = touch.pair.node[a]; unknown[node] < 0)
         nearer += step.row(node).dot(touch.way.col(a).transpose());
+    if (nearer == 0) continue;
     for (int a = 0; a < 4; ++a)
-      if (const int node = touch.pair.node[a]; node < settings_.skin_nodes)
+      if (const int node = touch.pair.node[a]; unknown[node] >= 0)
         gradient.row(node) += touch.curvature * nearer * touch.way.col(a).transpose();
   }
 }

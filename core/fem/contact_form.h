@@ -76,9 +76,11 @@ class ContactForm {
   void update_active_pairs(const NodePositions& x);
   void add_gradient(NodePositions& gradient) const;
   void add_curvature(std::span<double> values) const;
-  // Adds the change of the gradient at the skin's nodes that a motion of the objects causes, to first order.
-  //   step  #nodes: motion of each node; the motion of the skin's nodes is ignored
-  void add_push(const NodePositions& step, NodePositions& gradient) const;
+  // Adds the change of the gradient at the unknown nodes that the motion of the other nodes causes, to first order:
+  // flesh yields to objects and to rigid parts of the body that move against it.
+  //   step     #nodes: motion of each node; the motion of unknown nodes is ignored
+  //   unknown  #nodes: -1 for nodes whose motion is prescribed
+  void add_push(const NodePositions& step, std::span<const int> unknown, NodePositions& gradient) const;
   // The forces between skin and objects: the force on each node, mN, and for each node of the skin the index of the
   // object's node that presses it most; -1: none.
   struct ObjectForces {

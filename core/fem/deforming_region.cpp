@@ -14,6 +14,10 @@ namespace {
 constexpr int kCell = 4;  // edge of a cell (cube of voxels that deform or move rigidly together), voxels
 // A voxel counts as moving rigidly if bones with one common motion have at least this share of its weight.
 constexpr double kWhole = 0.98;
+// Contact is tested at no more than this many positions between two given positions of the path.
+constexpr int kMostBetween = 32;
+// Number of straight pieces by which the length of a cell's way between two given positions is estimated.
+constexpr int kChords = 8;
 // An object that is still not clear of the body when it is this far from its target position counts as blocked, mm.
 constexpr double kLongestWay = 1000;
 
@@ -132,6 +136,44 @@ class Cells {
       visit(k, near);
       for (std::size_t at = 0; at < near.size(); ++at) before[at] |= near[at];
     }
+  }
+
+  // Returns the positions on the path at which contact is tested: the given `places`, and as many between them that no
+  // cell moves further than near_mm from one to the next. Otherwise parts could pass each other unnoticed.
+  std::vector<double> tested_places(const BonePath& path, const std::vector<double>& places, double near_mm) const {
+    std::unordered_map<int, std::pair<glm::dvec3, glm::dvec3>>
+        boxes;  // bounding box of each motion's cells at rest, mm
+    const AffineTransform world = world_from_voxel(grid_);
+    for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
+      if (motion_[at] == kAir) return;
+      const glm::dvec3 rest = world * ((glm::dvec3(cell) + 0.5) * double(kCell) - 0.5);
+      auto& [low, high] = boxes.try_emplace(motion_[at], rest, rest).first->second;
+      low = glm::min(low, rest);
+      high = glm::max(high, rest);
+    });
+    std::vector<double> tested;
+    double from = 0;
+    for (const double to : places) {
+      double mm = 0;  // length of the longest way of a cell from one place to the next
+      auto before = path(from);
+      for (int chord = 1; chord <= kChords; ++chord) {
+        auto after = path(from + (to - from) * chord / kChords);
+        double furthest = 0;
+        for (const auto& [motion, box] : boxes)
+          for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 p(corner & 1 ? box.first.x : box.second.x, corner & 2 ? box.first.y : box.second.y,
+                               corner & 4 ? box.first.z : box.second.z);
+            furthest = std::max(furthest, glm::distance(before[motion] * p, after[motion] * p));
+          }
+        mm += furthest;
+        before.swap(after);
+      }
+      const int parts = std::clamp(int(std::ceil(mm / near_mm)), 1, kMostBetween);
+      for (int part = 1; part < parts; ++part) tested.push_back(from + (to - from) * part / parts);
+      tested.push_back(to);
+      from = to;
+    }
+    return tested;
   }
 
   // Finds the direction in which an object leaves the body after the shortest distance. The body is posed by `motions`.
@@ -284,15 +326,15 @@ DeformingRegion moving_tissue(const LabelVolume& volume, const TissueVoxels& tis
   for (std::size_t at = 0; at < free_from.size(); ++at)
     if (to_bending[at] <= squared(settings.margin_mm)) free_from[at] = 0;
   if (settings.contact && has_any(cells.mixed())) {
-    cells.brought_near(path, settings.places, settings.near_mm,
-                       [&](std::size_t k, const std::vector<std::uint8_t>& near) {
-                         const std::vector<float> distance = cells.squared_distance_to(near, progress);
-                         for (std::size_t at = 0; at < distance.size(); ++at) {
-                           to_near[at] = std::min(to_near[at], distance[at]);
-                           if (distance[at] <= squared(settings.give_mm))
-                             free_from[at] = std::min(free_from[at], k ? float(settings.places[k - 1]) : 0.0f);
-                         }
-                       });
+    const std::vector<double> places = cells.tested_places(path, settings.places, settings.near_mm);
+    cells.brought_near(path, places, settings.near_mm, [&](std::size_t k, const std::vector<std::uint8_t>& near) {
+      const std::vector<float> distance = cells.squared_distance_to(near, progress);
+      for (std::size_t at = 0; at < distance.size(); ++at) {
+        to_near[at] = std::min(to_near[at], distance[at]);
+        if (distance[at] <= squared(settings.give_mm))
+          free_from[at] = std::min(free_from[at], k ? float(places[k - 1]) : 0.0f);
+      }
+    });
   }
   for (const ObjectSweep& sweep : settings.sweeps)
     for (std::size_t k = 0; k < settings.pressed_at.size(); ++k) {

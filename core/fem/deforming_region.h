@@ -42,7 +42,9 @@ struct MovingSettings {
   bool contact = false;   // true: contact between parts of the body may deform them
   double near_mm = 16;    // parts of the body that the pose brings closer than this may touch
   double give_mm = 24;    // largest distance from parts that may touch at which tissue may deform
-  std::vector<double> places{0.25, 0.5, 0.75, 1};  // positions on the path at which contact is tested, [0, 1]
+  // Positions on the path, [0, 1], in ascending order. Contact is tested at these positions and, where parts of the
+  // body move further than near_mm from one position to the next, also between them.
+  std::vector<double> places{0.25, 0.5, 0.75, 1};
   // Objects that move to the body, and the path positions at which they may press on it. Tissue that they meet may
   // deform.
   std::vector<ObjectSweep> sweeps;

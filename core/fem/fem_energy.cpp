@@ -187,7 +187,7 @@ bool FemEnergy::newton_step(const NodePositions& x, HessianKind curvature, NodeP
   assemble(x, curvature, gradient);
   step.setZero(node_count_, 3);
   for (std::size_t k = 0; k < carried_.size(); ++k) step.row(carried_[k]) = carried_target_.row(k) - x.row(carried_[k]);
-  contact_.add_push(step, gradient);
+  contact_.add_push(step, unknown_, gradient);
   right_side_.resize(3 * node_of_.size());
   for (int k = 0; k < int(node_of_.size()); ++k) {
     const Cholesky::Place own = matrix_->place(k, k);

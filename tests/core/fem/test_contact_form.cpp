@@ -295,3 +295,48 @@ TEST_CASE("contact: a step that would press one fold shut yields there, and is t
   std::vector<char> fixed(boxes.rest.rows(), 1);
   CHECK(energy.limit_step(boxes.rest, step, fixed) == step);
 }
+
+TEST_CASE("contact: flesh yields at once to a rigid part that is moved against it") {
+  const TwoBoxes boxes(0.3);
+  const Eigen::Index n = boxes.rest.rows() / 2;
+  const NodePositions x = boxes.rest + boxes.upper_by({0, 0, -0.2});
+  std::vector<int> upper;
+  for (Eigen::Index v = n; v < 2 * n; ++v) upper.push_back(int(v));
+
+  // The predicted change of the force on the lower box is the difference of the forces before and after.
+  ContactForm form(boxes.F, boxes.rest, boxes.free());
+  const auto forces = [&](const NodePositions& at) {
+    NodePositions gradient = NodePositions::Zero(2 * n, 3);
+    form.build_broad_phase(at, NodePositions::Zero(2 * n, 3), 0);
+    form.update_active_pairs(at);
+    form.add_gradient(gradient);
+    return gradient;
+  };
+  const double e = 1e-5;
+  const NodePositions down = boxes.upper_by({0, 0, -e}), difference = forces(x + 0.5 * down) - forces(x - 0.5 * down);
+  forces(x);
+  std::vector<int> unknown(2 * n, -1);
+  for (Eigen::Index v = 0; v < n; ++v) unknown[v] = int(v);
+  NodePositions push = NodePositions::Zero(2 * n, 3);
+  form.add_push(down, unknown, push);
+  CHECK(push.bottomRows(n).norm() == 0);
+  REQUIRE(push.norm() > 0);
+  CHECK((push - difference).topRows(n).norm() < 0.02 * push.norm());
+
+  // The upper box moves down by several times the gap that is left, and the lower box makes room for it.
+  FemEnergy energy(boxes.rest, boxes.mesh.T, std::vector<TetMaterial>(boxes.mesh.T.rows(), {4, 0.3}), 0);
+  energy.set_contact(ContactForm(boxes.F, boxes.rest, boxes.free()));
+  PinForm pins;
+  for (Eigen::Index v = 0; v < n; ++v)
+    if (boxes.rest(v, 2) == 0) pins.node.push_back(int(v));
+  pins.stiffness.setConstant(pins.node.size(), 3, 1e4);
+  pins.target = boxes.rest(pins.node, Eigen::all);
+  const NodePositions target = x.bottomRows(n).rowwise() + Eigen::RowVector3d(0, 0, -0.4);
+  energy.set_constraints(std::move(pins), upper, target);
+  energy.build_broad_phase(x);
+  NodePositions step;
+  double slope = 0;
+  REQUIRE(energy.newton_step(x, HessianKind::Projected, step, slope));
+  CHECK(step.bottomRows(n).col(2).maxCoeff() == doctest::Approx(-0.4));
+  CHECK(energy.largest_step(x, step, 1).length > 0.9);
+}

@@ -120,6 +120,22 @@ TEST_CASE("moving tissue: with contact also what the pose brings together may be
   CHECK(count(open.free) == count(body.moving(40, without).free));
 }
 
+TEST_CASE("moving tissue: what meets on the way may bend, though it is apart again wherever the path is tested") {
+  const Body body({}, 160);
+  const MovingSettings without{.margin_mm = 8, .rim_mm = 8, .contact = false, .near_mm = 10};
+  MovingSettings with = without;
+  with.contact = true;
+  // The tube is bent by 40 degrees at a quarter and at half of the path, and by 165 degrees between.
+  const BonePath there_and_back = [&](double t) {
+    const double bump = std::max(0.0, 1 - std::abs(t - 0.375) / 0.125);
+    return bone_motions(body.tube.weights.bones(), body.tube.rig, body.tube.pose(40 + 125 * bump));
+  };
+  const auto moving = [&](const MovingSettings& settings) {
+    return moving_tissue(body.tube.volume, body.tissue, body.tube.weights, there_and_back, settings);
+  };
+  CHECK(count(moving(with).free) > 1.5 * count(moving(without).free));
+}
+
 TEST_CASE("moving tissue: what the pose brings together later moves as a rigid body before") {
   const Body body({}, 160);
   const MovingSettings settings{.margin_mm = 8, .rim_mm = 8, .contact = true, .near_mm = 10};
