@@ -22,10 +22,13 @@ constexpr int kTile = 128;             // edge length of the square tiles in whi
 constexpr int kLightTile = 64;         // edge length of a tile in pictures with light by rays, pixels
 // Edge length of a tile of a grey image, whose rays take ten times as long, pixels.
 constexpr int kImageTile = 40;
+constexpr int kCoarsestImage = 8;  // coarsest scale of a moving picture of a grey image
 constexpr int kImagePictures = 2;  // at most this many pictures of a grey image are averaged
 // Length of the steps of rays through a grey image, in voxels of the image: in a picture in full resolution, and while
 // something moves.
 constexpr double kFineStep = 0.7, kCoarseStep = 1.4;
+// While something moves, the steps are at least this long compared with the distance between neighbouring rays.
+constexpr double kStepOfPixel = 0.7;
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -241,7 +244,9 @@ struct View3D::Impl {
   int shown_scale = 0;   // scale at which the body was drawn (every n-th pixel); 0: no body
   int sample = 0;        // number of pictures in the averages so far; the pictures with fine light come last
   bool fine = false;     // true: the last picture was drawn with fine light switched on
-  int next_tile = 0;     // index of the next tile of the picture that will be averaged next
+  // Index of the next tile of the picture that will be averaged next; kNotStarted: its buffers are not cleared yet.
+  static constexpr int kNotStarted = -1;
+  int next_tile = kNotStarted;
   bool refines = false;  // true: the picture will be refined to full resolution and averaged (scale 0)
   PixelRect rect;        // the rectangle that the body covers, in pixels of the picture drawn at shown_scale
   std::int64_t rays_followed = 0;
@@ -330,6 +335,13 @@ struct View3D::Impl {
                          target.size());
     image_slices = source.image->uploaded();
   }
+  // Returns the length of a ray's steps while something moves, voxels of the image. Steps much shorter than the
+  // distance between the rays of a picture of `size` pixels would only cost time.
+  double coarse_step(const Source& source, const glm::ivec2& size) const {
+    const double pixel = 2 * key.camera.distance * std::tan(key.camera.field_of_view / 2) / size.y;
+    const glm::dvec3& spacing = source.image->grid().spacing;
+    return std::max(kCoarseStep, kStepOfPixel * pixel / std::min({spacing.x, spacing.y, spacing.z}));
+  }
   ShadePass::Colours colours() const {
     if (!scene.weights) return ShadePass::Colours::Tissues;
     if (!scene.weights->contours) return ShadePass::Colours::Weights;
@@ -383,11 +395,23 @@ struct View3D::Impl {
     if (source.image) {
       image.resize(size, GL_RGBA8);
       image.clear();
-      draw_image(source, rays, image, scale == 1 ? kFineStep : kCoarseStep, rect);
+      draw_image(source, rays, image, scale == 1 ? kFineStep : coarse_step(source, size), rect);
     } else {
       shade(source, rays, shown, rect);
     }
     shown_scale = scale;
+  }
+
+  // Draws the whole body at once at the scale that the last picture suggests, and finds the scale for the next one.
+  void draw_in_time(const Source& source) {
+    const double begin = seconds();
+    const int at = moving_scale;
+    draw_at_once(source, at);
+    glFinish();
+    // Tries a finer scale if its expected time, which is proportional to its pixels, is below 85 % of kFrame.
+    const double cost = seconds() - begin;
+    if (cost > kFrame) moving_scale = std::min(at + 1, shows_image(scene) ? kCoarsestImage : kCoarsest);
+    else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) moving_scale = at - 1;
   }
 
   // Draws some tiles of the next picture to average. Returns true if the picture is complete and was averaged.
@@ -400,7 +424,12 @@ struct View3D::Impl {
     ViewRays rays = rays_of(source, key.size, picture);
     rays.smooth_cuts = with_light;
     const PixelRect part = covered_by(source, rays, key.size);
-    if (next_tile == 0) start_picture(source, rays, part, with_light);
+    if (next_tile == kNotStarted) {
+      start_picture(source, rays, part, with_light);
+      next_tile = 0;
+      glFinish();
+      if (seconds() - begin >= kTileBudget / 2) return false;  // the buffers of a new size are slow at first use
+    }
     const int edge = source.image ? kImageTile : with_light ? kLightTile : kTile;
     const glm::ivec2 tiles = (part.high - part.low + edge - 1) / edge;
     const int round = part.empty() ? 0 : tiles.x * tiles.y, count = with_light ? 2 * round : round;
@@ -430,7 +459,7 @@ struct View3D::Impl {
       rect = part;
     }
     shown_scale = 1;
-    next_tile = 0;
+    next_tile = kNotStarted;
     ++sample;
     return true;
   }
@@ -467,7 +496,7 @@ struct View3D::Impl {
     average.bind();
     resources.compose.accumulate(body.texture(), key.size, 1, part);
     sample = 1;
-    next_tile = 0;
+    next_tile = kNotStarted;
   }
 
   // Returns the rectangle of the output that the body can cover, with a margin for outlines and for pixels stretched at
@@ -548,8 +577,9 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   const KeepFramebuffer keep;
   // The drawing time of a new body is not known yet, so its first picture has the coarsest scale.
   const LabelVolume *last = my.scene.volume.get(), *next = scene.volume.get();
-  if (next && (!last || last->grid.size != next->grid.size) && my.resources.pictures_at_rest > 0)
-    my.moving_scale = kCoarsest;
+  if (next && (!last || last->grid.size != next->grid.size || shows_image(my.scene) != shows_image(scene)) &&
+      my.resources.pictures_at_rest > 0)
+    my.moving_scale = shows_image(scene) ? kCoarsestImage : kCoarsest;
   ShownWeights before = my.scene.weights.value_or(ShownWeights{});
   if (scene.weights) before.weights = scene.weights->weights;
   my.key = key;
@@ -565,27 +595,23 @@ void View3D::draw(const Scene& scene, const Camera& camera, const glm::ivec2& si
   bool redraw = overlay_changed || moved || recoloured || more_weights || more_image;
   if (my.fine != my.resources.fine_light) {
     my.fine = my.resources.fine_light;
-    if (my.sample >= my.pictures()) my.sample = my.pictures(), my.next_tile = 0, redraw = true;
+    if (my.sample >= my.pictures()) my.sample = my.pictures(), my.next_tile = Impl::kNotStarted, redraw = true;
   }
   if (!source) {
     my.shown_scale = 0;
     my.sample = 0;
   } else if (moved || more_image) {
     my.changed_at = now;
-    my.sample = my.next_tile = 0;
-    const double begin = seconds();
-    my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
-    if (scale == 0 && my.resources.pictures_at_rest > 0) {
-      glFinish();
-      // Tries a finer scale if its expected time, which is proportional to its pixels, is below 85 % of kFrame.
-      const double cost = seconds() - begin;
-      const int at = my.moving_scale;
-      if (cost > kFrame) my.moving_scale = std::min(at + 1, kCoarsest);
-      else if (at > 1 && cost * at * at / ((at - 1) * (at - 1)) < kFrame * 0.85) my.moving_scale = at - 1;
-    }
+    my.sample = 0;
+    my.next_tile = Impl::kNotStarted;
+    if (scale > 0 || my.resources.pictures_at_rest == 0) my.draw_at_once(*source, scale > 0 ? scale : my.moving_scale);
+    else my.draw_in_time(*source);
   } else if ((recoloured || more_weights) && !source->image) {
     my.changed_at = now;
     my.recolour(*source, scene.weights == before);
+  } else if (my.refines && my.sample == 0 && source->image && my.moving_scale < my.shown_scale) {
+    my.draw_in_time(*source);  // the image is refined for seconds, so a less coarse picture is shown first
+    redraw = true;
   } else if (my.refines && my.sample < my.pictures() + my.lit_pictures() && now - my.changed_at >= kRest) {
     redraw |= my.refine(*source);
   }
@@ -631,6 +657,21 @@ std::vector<Label> View3D::shown_labels(int pixels) const {
   for (size_t label = 1; label < shown.size(); ++label)
     if (shown[label] * scale >= pixels) result.push_back(static_cast<Label>(label));
   return result;
+}
+
+std::vector<Label> View3D::pixel_labels() const {
+  const Impl& my = *impl_;
+  if (!my.drawn || my.shown_scale == 0 || shows_image(my.scene)) return {};
+  const KeepFramebuffer keep;
+  const glm::ivec2 size = my.shown[0].size();
+  std::vector<Label> labels(static_cast<size_t>(size.x) * static_cast<size_t>(size.y));
+  glBindFramebuffer(GL_FRAMEBUFFER, my.shown[0].march_target.name());
+  glReadBuffer(GL_COLOR_ATTACHMENT2);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, size.x, size.y, GL_RED_INTEGER, GL_UNSIGNED_SHORT, labels.data());
+  glReadBuffer(GL_COLOR_ATTACHMENT0);
+  gl::check_gl("reading the labels of a picture");
+  return labels;
 }
 
 std::optional<Hit> View3D::pick(const glm::ivec2& pixel) const {

@@ -29,8 +29,10 @@ struct PreparedBody;
 // Throws Error if the volume does not fit in textures.
 //   looks, display  the settings with which the volume will be drawn; with other settings, parts are computed again
 //   limits          the result of Renderer::limits()
+//   grey            the grey image that will be shown with the volume; empty: none
 std::shared_ptr<PreparedBody> prepared_body(const std::shared_ptr<const LabelVolume>& volume, const LabelLooks& looks,
-                                            Display display, const TextureLimits& limits, Progress& progress);
+                                            Display display, const TextureLimits& limits, Progress& progress,
+                                            const std::optional<ShownGrey>& grey = {});
 
 // How the light on a body is computed. Draft: from the body's blurred occupancy, immediately, also while something
 // moves. Fine: by rays through the body to the light and to the sky, while nothing moves (render/passes/light_pass.h).
@@ -56,8 +58,9 @@ class Renderer {
   // complete() returns false. If begin_frame() is never called, each draw uploads everything.
   void begin_frame(double upload_seconds);
 
-  // Uploads as much of a prepared body as the frame's time limit allows. Returns true when the body can be drawn
-  // without delay. Throws Error when the driver has no memory for it.
+  // Makes a prepared body ready to be drawn, in several calls: uploads as much as the frame's time limit allows, then
+  // compiles the shaders, and at last draws a tiny picture. Returns true when the body can be drawn without delay.
+  // Throws Error when the driver has no memory for it.
   bool upload(PreparedBody& prepared);
   // Limits the memory for the textures of each volume that is uploaded from now on, bytes. A volume that needs more is
   // drawn at a coarser resolution. By default, only the driver limits the memory.
@@ -95,7 +98,7 @@ struct Hit {
 class View3D {
  public:
   // Coarsest scale of a moving picture. At scale 5 there is one ray for 5 x 5 pixels, so each pixel shows the ray of a
-  // pixel that is at most two pixels away.
+  // pixel that is at most two pixels away. Only pictures of a grey image are drawn at a coarser scale.
   static constexpr int kCoarsest = 5;
 
   explicit View3D(Renderer& renderer);
@@ -118,6 +121,10 @@ class View3D {
   // Returns the labels that the last picture shows on at least `pixels` of its pixels, in ascending order. Tissue
   // behind an opaque one is not shown, but tissue behind a transparent one is.
   std::vector<Label> shown_labels(int pixels) const;
+
+  // Returns the label of the outermost visible tissue at each pixel of the last picture, 0 where the picture shows no
+  // tissue. The first row is the bottom row. A picture in a coarser scale has fewer pixels.
+  std::vector<Label> pixel_labels() const;
 
   // These functions return what the last picture shows at a pixel. Pixels are counted from the top left corner.
   std::optional<Hit> pick(const glm::ivec2& pixel) const;

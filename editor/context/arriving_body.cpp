@@ -59,7 +59,7 @@ bool ArrivingBodies::upload(render::Renderer& renderer) {
 
 MakeReady body_maker(const Views& views) {
   return [arriving = views.arriving, display = views.display, limits = views.renderer.limits()](
-             const Document& document, Progress& progress) {
+             const Document& document, Progress& progress, const std::optional<render::ShownGrey>& grey) {
     if (!document.volume || !arriving->has_frames()) return;
     const render::LabelLooks looks =
         document.tissues
@@ -67,7 +67,7 @@ MakeReady body_maker(const Views& views) {
             : render::LabelLooks{};
     const render::Display shown = display == render::Display::Image ? render::Display::Solid : display;
     try {
-      arriving->await(render::prepared_body(document.volume, looks, shown, limits, progress), progress);
+      arriving->await(render::prepared_body(document.volume, looks, shown, limits, progress, grey), progress);
     } catch (const Error&) {  // ignored: the views meet the same error when they draw the body
     }
   };

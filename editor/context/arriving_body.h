@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "core/base/progress.h"
 #include "core/project/document.h"
@@ -42,7 +43,8 @@ class ArrivingBodies {
 // Returns a function that a job calls in its own thread with the document that will be shown when the job ends. The
 // function makes the document's body ready to be drawn with the views' current display mode. If the window draws no
 // frames, such as while it is minimized, the function does nothing.
-using MakeReady = std::function<void(const Document&, Progress&)>;
+//   grey  the grey image that will be shown with the body; empty: none
+using MakeReady = std::function<void(const Document&, Progress&, const std::optional<render::ShownGrey>& grey)>;
 MakeReady body_maker(const Views& views);
 
 }  // namespace limber::editor

@@ -102,12 +102,14 @@ std::vector<NamedFile> inputs_of(FileKind kind, const Path& path) {
 // which may be labels, but are distributed like grey values.
 struct ReadVolume {
   std::optional<VolumeFile> labels;
-  std::shared_ptr<const GreyVolume> image;
-  std::shared_ptr<const GreyLevels> levels;  // grey values of the image; null: there is no image
-  std::string doubt;                         // why the file seems to be a grey image; "": it is a label volume
-  bool is_image = false;                     // true: the file is certainly a grey image
-  std::shared_ptr<Opened> as_project;        // project that shows the image without labels; null: there is no image
+  std::shared_ptr<const GreyVolume> image;  // kept only while the user may still decide that the file holds labels
+  std::optional<render::ShownGrey> shown;   // the image as it will be shown; empty: there is no image
+  std::string doubt;                        // why the file seems to be a grey image; "": it is a label volume
+  bool is_image = false;                    // true: the file is certainly a grey image
+  std::shared_ptr<Opened> as_project;       // project that shows the image without labels; null: there is no image
 };
+
+bool has_tissues(const Document& document) { return document.tissues && !document.tissues->tissues.empty(); }
 
 // Returns a project for an image without labels that was read from `path`. The caller sets the project's members
 // `agreed` and `then`.
@@ -137,19 +139,27 @@ ReadVolume read_labels_or_image(const Path& path, Progress& progress) {
       if (tissue.file_value < kAirOfCt) read.doubt = "it has negative values, as a CT has";
   if (read.doubt.empty()) return read;
   read.image = shared(read_grey_volume(path, progress));
-  read.levels = levels_of(*read.image);
+  read.shown = usually_shown(levels_of(*read.image));
   // Labels are not negative. A DICOM series whose values look like grey values is an image from a scanner.
-  read.is_image = !read.labels || read.levels->least < 0 || read.image->type.format == "DICOM";
-  read.as_project = project_for_image(*read.levels, path);
+  read.is_image = !read.labels || read.shown->image->least < 0 || read.image->type.format == "DICOM";
+  // The editor's own thread would need many milliseconds to free so much memory.
+  if (read.is_image) read.labels.reset(), read.image.reset();
+  read.as_project = project_for_image(*read.shown->image, path);
   return read;
+}
+
+// Makes the views ready to show the image, with the body that is open or, without one, alone.
+void make_image_ready(const MakeReady& make_ready, const Document& now, const Opened& opened,
+                      const render::ShownGrey& shown, Progress& progress) {
+  make_ready(has_tissues(now) ? now : opened.document, progress, shown);
 }
 
 // Shows an image that was read from `path` with the open body. If no body is open, opens the project `opened` for the
 // image.
 //   agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
-void take_image(Context& context, const std::shared_ptr<const GreyLevels>& image, const std::shared_ptr<Opened>& opened,
+void take_image(Context& context, const render::ShownGrey& image, const std::shared_ptr<Opened>& opened,
                 const Path& path, std::int64_t agreed) {
-  if (const auto& tissues = context.document().tissues; tissues && !tissues->tissues.empty()) {
+  if (has_tissues(context.document())) {
     show_image(context, image, path);
     context.messages->ok(path.filename().string(),
                          "The image is shown with the body. Its settings are in Sidebar > Image.");
@@ -171,9 +181,9 @@ void take_image(Context& context, const std::shared_ptr<const GreyLevels>& image
 //   agreed  revision of the open project that the user agreed to replace; -1: the user was not asked
 void take_or_show(Context& context, const ReadVolume& read, const Path& path, const char* answer, const Finish& take,
                   std::int64_t agreed) {
-  if (!read.image) return take(context);
-  const Finish show = [levels = read.levels, opened = read.as_project, path, agreed](Context& c) {
-    take_image(c, levels, opened, path, agreed);
+  if (!read.shown) return take(context);
+  const Finish show = [shown = *read.shown, opened = read.as_project, path, agreed](Context& c) {
+    take_image(c, shown, opened, path, agreed);
   };
   if (read.is_image) return show(context);
   show_grey_image(context, {.image = read.image,
@@ -289,6 +299,16 @@ Import read_import(FileKind kind, const Path& path, const Document& now, Progres
           file.warnings, 1, std::move(read)};
 }
 
+// Makes the views ready to show an imported volume or image.
+void make_import_ready(const MakeReady& make_ready, const Document& before, const Import& import, Progress& progress) {
+  const ReadVolume& read = import.read;
+  if (read.is_image) return make_image_ready(make_ready, before, *read.as_project, *read.shown, progress);
+  if (!import.change || !read.doubt.empty()) return;
+  Document next = before;
+  import.change(next);
+  make_ready(next, progress, {});
+}
+
 // Returns true if the parts of the document that an import reads did not change during the import. `then` is the
 // document at the start of the import, `now` the document at its end.
 bool same_basis(FileKind kind, const Document& then, const Document& now) {
@@ -345,42 +365,48 @@ void open_files(Context& context, std::vector<Path> paths, Then then) {
 
 void open_volume(Context& context, const Path& path, Then then) {
   ask_about_unsaved(context, [path, then](Context& c) {
-    const int job = start_task(
-        c, "Open " + path.filename().string(),
-        [path, then, agreed = c.history->revision(), make_ready = body_maker(*c.views)](Progress& progress) -> Finish {
-          ReadVolume read = read_labels_or_image(path, progress);
-          if (!read.labels) return [read, path, agreed](Context& c) { take_or_show(c, read, path, "", {}, agreed); };
-          VolumeFile& file = *read.labels;
-          auto opened = std::make_shared<Opened>();
-          opened->document = with_volume(file);
-          opened->document.volume = shared(std::move(file.volume));
-          opened->extents = shared(extents_of(opened->document.volume));
-          if (read.doubt.empty()) make_ready(opened->document, progress);
-          opened->inputs = inputs_of(FileKind::Volume, path);
-          opened->name = name_of_file(path);
-          opened->label = "Open " + path.filename().string();
-          opened->agreed = agreed;
-          opened->then = [path, then](Context& c) {
-            keep_thumbnail(c, path);
-            if (then) then(c);
-          };
-          const Finish take = [opened, path, warnings = file.warnings](Context& c) {
-            warn_of(c.messages, path, warnings);
-            add_recent(c.recent_files, path, std::time(nullptr));
-            replace_project(c, opened);
-          };
-          return [take, path, agreed, read = std::move(read)](Context& c) {
-            take_or_show(c, read, path, "Open as labels", take, agreed);
-          };
-        });
+    const int job =
+        start_task(c, "Open " + path.filename().string(),
+                   [path, then, now = c.document(), agreed = c.history->revision(),
+                    make_ready = body_maker(*c.views)](Progress& progress) -> Finish {
+                     ReadVolume read = read_labels_or_image(path, progress);
+                     if (read.is_image) make_image_ready(make_ready, now, *read.as_project, *read.shown, progress);
+                     if (!read.labels)
+                       return [read, path, agreed](Context& c) { take_or_show(c, read, path, "", {}, agreed); };
+                     VolumeFile& file = *read.labels;
+                     auto opened = std::make_shared<Opened>();
+                     opened->document = with_volume(file);
+                     opened->document.volume = shared(std::move(file.volume));
+                     opened->extents = shared(extents_of(opened->document.volume));
+                     if (read.doubt.empty()) make_ready(opened->document, progress, {});
+                     opened->inputs = inputs_of(FileKind::Volume, path);
+                     opened->name = name_of_file(path);
+                     opened->label = "Open " + path.filename().string();
+                     opened->agreed = agreed;
+                     opened->then = [path, then](Context& c) {
+                       keep_thumbnail(c, path);
+                       if (then) then(c);
+                     };
+                     const Finish take = [opened, path, warnings = file.warnings](Context& c) {
+                       warn_of(c.messages, path, warnings);
+                       add_recent(c.recent_files, path, std::time(nullptr));
+                       replace_project(c, opened);
+                     };
+                     return [take, path, agreed, read = std::move(read)](Context& c) {
+                       take_or_show(c, read, path, "Open as labels", take, agreed);
+                     };
+                   });
     c.background->step_of_job[job] = StepOfWork::Prepare;
   });
 }
 
 void import_file(Context& context, FileKind kind, const Path& path, Then then) {
   const int job = start_task(
-      context, imported(path), [kind, path, then, before = context.document()](Progress& progress) -> Finish {
+      context, imported(path),
+      [kind, path, then, before = context.document(),
+       make_ready = body_maker(*context.views)](Progress& progress) -> Finish {
         auto import = std::make_shared<Import>(read_import(kind, path, before, progress));
+        if (kind == FileKind::Volume) make_import_ready(make_ready, before, *import, progress);
         import->inputs = inputs_of(kind, path);
         const Finish take = [import, kind, path, then, before](Context& c) {
           if (!same_basis(kind, before, c.document()))
@@ -407,12 +433,14 @@ void import_file(Context& context, FileKind kind, const Path& path, Then then) {
 }
 
 void open_image(Context& context, const Path& path) {
-  const int job = start_task(context, "Open image " + path.filename().string(), [path](Progress& progress) -> Finish {
-    const auto levels = levels_of(read_grey_volume(path, progress));
-    return [levels, opened = project_for_image(*levels, path), path](Context& c) {
-      take_image(c, levels, opened, path, -1);
-    };
-  });
+  const int job = start_task(
+      context, "Open image " + path.filename().string(),
+      [path, now = context.document(), make_ready = body_maker(*context.views)](Progress& progress) -> Finish {
+        const render::ShownGrey shown = usually_shown(levels_of(read_grey_volume(path, progress)));
+        const auto opened = project_for_image(*shown.image, path);
+        make_image_ready(make_ready, now, *opened, shown, progress);
+        return [shown, opened, path](Context& c) { take_image(c, shown, opened, path, -1); };
+      });
   context.background->step_of_job[job] = StepOfWork::Prepare;
 }
 
@@ -445,7 +473,7 @@ void open_sample(Context& context, Sample sample, Then then) {
                                  document.volume = shared(std::move(phantom.volume));
                                  opened->extents = shared(extents_of(document.volume));
                                  document.tissues = shared(std::move(phantom.tissues));
-                                 make_ready(document, progress);
+                                 make_ready(document, progress, {});
                                  document.volume_type = shared(FileType{"NRRD", "uint8", true});
                                  document.armature = shared(std::move(phantom.armature));
                                  add_clip(document, clip_of(shared(std::move(phantom.motion)), "Motion"));

@@ -232,7 +232,7 @@ void open_project(Context& context, const Path& path, Then then, Leftover leftov
           opened->editor = std::move(project.editor);
           if (opened->document.volume)
             opened->extents = std::make_shared<const Extents>(extents_of(opened->document.volume));
-          make_ready(opened->document, progress);
+          make_ready(opened->document, progress, {});
           opened->name = file.filename().string();
           opened->label = "Open " + file.filename().string();
           opened->agreed = agreed;

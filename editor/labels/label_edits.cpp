@@ -73,7 +73,7 @@ void start_label_edit(Context& context, LabelEdit edit) {
                             auto changed = std::make_shared<LabelVolume>(*before);
                             apply_change(found.change, *changed);
                             const std::shared_ptr<const LabelVolume> after = std::move(changed);
-                            make_ready({.volume = after, .tissues = table, .visibility = visibility}, progress);
+                            make_ready({.volume = after, .tissues = table, .visibility = visibility}, progress, {});
                             return [before, after, tissues, wanted = edit.tissues,
                                     same = keeps_tissue_voxels(found.change), outcome](const Document& now) {
                               if (now.volume != before)

@@ -72,7 +72,7 @@ void start_labels(Context& context, const std::string& label, const std::string&
                             CtLabels labels = make(*image, progress);
                             const auto volume = std::make_shared<const LabelVolume>(std::move(labels.volume));
                             const auto tissues = std::make_shared<const TissueTable>(std::move(labels.tissues));
-                            make_ready({.volume = volume, .tissues = tissues}, progress);
+                            make_ready({.volume = volume, .tissues = tissues}, progress, {});
                             return [volume, tissues, before, label](const Document& now) {
                               if (now.volume != before)
                                 throw Error("another volume was opened meanwhile", label, "run the command again");

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/tissue/tissue_table.h"
+#include "editor/context/arriving_body.h"
 #include "editor/context/background_task.h"
 #include "editor/context/context.h"
 #include "editor/ui/messages.h"
@@ -50,8 +51,7 @@ std::shared_ptr<const GreyLevels> levels_of(const GreyVolume& image) {
   return std::make_shared<const GreyLevels>(grey_levels(image.grid, image.voxels));
 }
 
-void show_image(Context& context, std::shared_ptr<const GreyLevels> image, const Path& path) {
-  require_same_place(context.document(), *image, path);
+render::ShownGrey usually_shown(std::shared_ptr<const GreyLevels> image) {
   render::ShownGrey shown;
   if (!looks_like_ct(*image)) {
     const auto [level, width] = usual_window(*image);
@@ -60,7 +60,12 @@ void show_image(Context& context, std::shared_ptr<const GreyLevels> image, const
     shown.rendering = render::GreyRendering::Window;
   }
   shown.image = std::move(image);
-  context.views->image = std::move(shown);
+  return shown;
+}
+
+void show_image(Context& context, const render::ShownGrey& shown, const Path& path) {
+  require_same_place(context.document(), *shown.image, path);
+  context.views->image = shown;
   context.views->image_path = path;
   context.ui->touch();
 }
@@ -82,19 +87,19 @@ void close_image(Context& context) {
   context.ui->touch();
 }
 
-void reopen_image(Context& context, const Path& path, const std::optional<render::ShownGrey>& shown) {
+void reopen_image(Context& context, const Path& path, const std::optional<render::ShownGrey>& saved) {
   context.views->image_path =
       path;  // set already now, so that a project saved before the image is read names the image
   start_task(
       context, "Open image " + path.filename().string(),
-      [path, shown](Progress& progress) -> Finish {
-        auto image = levels_of(read_grey_volume(path, progress));
-        return [image, path, shown](Context& c) {
+      [path, saved, body = context.document(), make_ready = body_maker(*context.views)](Progress& progress) -> Finish {
+        const auto image = levels_of(read_grey_volume(path, progress));
+        render::ShownGrey shown = saved ? *saved : usually_shown(image);
+        shown.image = image;
+        make_ready(body, progress, shown);
+        return [shown, path](Context& c) {
           if (c.views->image || c.views->image_path != path) return;  // another image or project was opened meanwhile
-          show_image(c, image, path);
-          if (!shown) return;
-          c.views->image = shown;
-          c.views->image->image = image;
+          show_image(c, shown, path);
         };
       },
       [path](Context& c, const std::string& error) {

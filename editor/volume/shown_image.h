@@ -29,17 +29,19 @@ bool looks_like_ct(const GreyLevels& image);
 // Converts a grey image to the form that the views need. Takes long, so call it in a background task.
 std::shared_ptr<const GreyLevels> levels_of(const GreyVolume& image);
 
-// Shows the image with the open body, with the default window of its values, and stores its path. Throws Error if the
-// open volume and the image do not overlap in the world, because no view would show both.
-void show_image(Context& context, std::shared_ptr<const GreyLevels> image, const Path& path);
+// Returns the image with the default window of its values. Takes long, so call it in a background task.
+render::ShownGrey usually_shown(std::shared_ptr<const GreyLevels> image);
+// Shows the image with the open body, and stores its path. Throws Error if the open volume and the image do not overlap
+// in the world, because no view would show both.
+void show_image(Context& context, const render::ShownGrey& shown, const Path& path);
 // Returns a document for an image without labels: a volume on the image's grid in which all voxels are air. The user
 // can then make labels from the image or paint them.
 Document document_for_image(const GreyLevels& image);
 void close_image(Context& context);
 
-// Reads the image with which a project was saved, and shows it with the saved settings (`shown`; empty: none were
+// Reads the image with which a project was saved, and shows it with the saved settings (`saved`; empty: none were
 // saved). If the file is missing, shows a message; the project keeps the file's path.
-void reopen_image(Context& context, const Path& path, const std::optional<render::ShownGrey>& shown);
+void reopen_image(Context& context, const Path& path, const std::optional<render::ShownGrey>& saved);
 
 // Stores the posed image of a result, and deletes the posed images of results that no longer exist.
 void keep_posed_image(Views& views, PosedImage image);

@@ -105,7 +105,7 @@ void start_preparation(Context& context, Preparation preparation) {
         }
         const bool same = !preparation.mirrors && same_tissue(*before, *after);
         const auto left = tissues ? present(*tissues, *after) : nullptr;
-        make_ready({.volume = after, .tissues = tissues, .visibility = visibility}, progress);
+        make_ready({.volume = after, .tissues = tissues, .visibility = visibility}, progress, {});
         return [before, after, same, left, tissues, note, is_loss, mirrors = preparation.mirrors](const Document& now) {
           if (now.volume != before)
             throw Error("the volume was changed meanwhile", "preparing the volume", "run the command again");

@@ -29,11 +29,16 @@
 
 namespace limber::render {
 
-// A label volume and the fields of its layers, ready for upload (prepared_body()).
+// A label volume and the fields of its layers, ready for upload (prepared_body()), and what Renderer::upload() does
+// with them next.
 struct PreparedBody {
   std::shared_ptr<const LabelVolume> original;
   DrawnVolume volume;
   std::vector<PreparedField> layers;
+  std::shared_ptr<const LabelLooks> looks;  // looks and display with which the body will be drawn
+  Display display = Display::Solid;
+  std::optional<ShownGrey> grey;  // the grey image that will be shown with the body; empty: none
+  enum class Step { Body, Image, Programs, TrialPicture, Done } step = Step::Body;
 };
 
 struct PassResources {

@@ -59,6 +59,23 @@ GreyVolume round_image(const std::function<float(double)>& value_at) {
 
 }  // namespace
 
+TEST_CASE("grey image: its first picture is coarse, and less coarse pictures follow while nothing moves") {
+  Studio studio;
+  View3D view(studio.renderer);
+  Scene scene = scene_of(air_on(grid_of({64, 64, 64})));
+  scene.grey = shown(round_image([](double r) { return r < 24 ? 1000.0f : 0.0f; }));
+  scene.display = Display::Image;
+  const Camera camera = camera_of(scene.volume->grid);
+  view.draw(scene, camera, kSize, 0);
+  const int first = view.scale();
+  CHECK(first > View3D::kCoarsest);
+  // These pictures follow at once, not only after the time after which a picture is refined.
+  for (int i = 0; i < 10; ++i) view.draw(scene, camera, kSize, 0.001 * i);
+  CHECK(view.scale() < first);
+  for (double now = 1; !view.complete(); now += 1) view.draw(scene, camera, kSize, now);
+  CHECK(view.scale() == 1);
+}
+
 TEST_CASE("grey image: slices show its values through the window, on another grid than that of the labels") {
   Studio studio;
   SliceView view(studio.renderer);

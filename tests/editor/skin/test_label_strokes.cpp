@@ -32,7 +32,7 @@ void show_halves(Context& editor) {
   const Grid& grid = editor.document().volume->grid;
   std::vector<float> values(static_cast<std::size_t>(grid.voxel_count()));
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<int>(i) % grid.size.x < 12 ? 1000.0f : 0.0f;
-  show_image(editor, std::make_shared<const GreyLevels>(grey_levels(grid, values)), "image.nrrd");
+  show_image(editor, usually_shown(std::make_shared<const GreyLevels>(grey_levels(grid, values))), "image.nrrd");
 }
 
 // The ball in four views of the Skin workspace, with the label brush set to bone.

@@ -21,6 +21,17 @@ std::shared_ptr<const LabelVolume> ball() {
 
 bool same_pixels(const Image& a, const Image& b) { return a.size == b.size && a.rgba == b.rgba; }
 
+// Makes a body ready to be drawn, and returns in how many frames. With a time limit of 0, each frame uploads one slot.
+int make_ready(Renderer& renderer, PreparedBody& body) {
+  constexpr int kMostFrames = 10'000;
+  for (int frames = 1; frames <= kMostFrames; ++frames) {
+    renderer.begin_frame(0);
+    if (renderer.upload(body)) return frames;
+  }
+  FAIL("the body is never ready");
+  return 0;
+}
+
 }  // namespace
 
 TEST_CASE("prepared body: uploaded over several frames, it is drawn as one that is uploaded at once") {
@@ -34,14 +45,7 @@ TEST_CASE("prepared body: uploaded over several frames, it is drawn as one that 
     const Image expected = picture_of(at_once.renderer, scene, camera, kSize);
     Studio studio;
     const auto body = prepared_body(volume, *scene.looks, display, studio.renderer.limits(), no_progress());
-    int frames = 0;
-    bool is_done = false;
-    for (; !is_done && frames < 10'000; ++frames) {
-      studio.renderer.begin_frame(0);  // with a time limit of 0, one slot is uploaded per frame
-      is_done = studio.renderer.upload(*body);
-    }
-    CHECK(is_done);
-    CHECK(frames > 20);
+    CHECK(make_ready(studio.renderer, *body) > 20);
     const auto& resident = studio.renderer.resources().body(volume);
     REQUIRE(resident.layers.size() >= 1);
     const int revision = resident.layers[0]->revision();
@@ -80,11 +84,7 @@ TEST_CASE("prepared body: a volume too large for the textures is prepared at hal
   Studio studio(2 * kSlot);
   const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
   CHECK(body->volume.halvings > 0);
-  bool is_done = false;
-  while (!is_done) {
-    studio.renderer.begin_frame(0);
-    is_done = studio.renderer.upload(*body);
-  }
+  make_ready(studio.renderer, *body);
   CHECK(studio.renderer.note().empty());  // there is no message, as the body is not shown yet
   picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
   CHECK(studio.renderer.note().starts_with("Shown at 1/2 of its resolution"));
@@ -110,13 +110,33 @@ TEST_CASE("prepared body: one whose upload fails is drawn all the same, one that
   CHECK(studio.renderer.resources().body_count() == 1);
 }
 
+TEST_CASE(
+    "prepared body: a grey image is uploaded before its first picture, and so is the body that is drawn already") {
+  const auto volume = ball();
+  Studio studio;
+  ShownGrey grey;
+  std::vector<float> values(volume->voxels.begin(), volume->voxels.end());
+  grey.image = std::make_shared<const GreyLevels>(grey_levels(volume->grid, values));
+  Scene scene = scene_of(volume);
+  picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
+  scene.display = Display::Image;
+  scene.grey = grey;
+  const auto body =
+      prepared_body(volume, *scene.looks, Display::Solid, studio.renderer.limits(), no_progress(), scene.grey);
+  make_ready(studio.renderer, *body);
+  studio.renderer.begin_frame(0);
+  View3D view(studio.renderer);
+  view.draw(scene, camera_of(volume->grid), kSize, 0);
+  CHECK(studio.renderer.resources().grey(scene.grey, PassResources::Extent::InTime)->complete());
+  CHECK_FALSE(studio.renderer.resources().upload_time->used);  // the picture itself uploaded nothing
+}
+
 TEST_CASE("prepared body: an empty volume, and a cancelled one") {
   const auto volume = painted(grid_of({64, 64, 64}), [](const glm::dvec3&) -> Label { return 0; });
   const Scene scene = scene_of(volume);
   Studio studio;
   const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
-  studio.renderer.begin_frame(0);
-  CHECK(studio.renderer.upload(*body));
+  make_ready(studio.renderer, *body);
   CHECK(studio.renderer.resources().body(volume).layers[0]->hull().empty());
   picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
 
