@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include <epoxy/gl.h>
+
 #include "render/passes/pass_resources.h"
 
 #include "tests/render/studio.h"
@@ -129,6 +131,19 @@ TEST_CASE(
   view.draw(scene, camera_of(volume->grid), kSize, 0);
   CHECK(studio.renderer.resources().grey(scene.grey, PassResources::Extent::InTime)->complete());
   CHECK_FALSE(studio.renderer.resources().upload_time->used);  // the picture itself uploaded nothing
+}
+
+TEST_CASE("prepared body: its shaders are linked before its first picture") {
+  const auto volume = ball();
+  const Scene scene = scene_of(volume);
+  Studio studio;
+  const auto body = prepared_body(volume, *scene.looks, scene.display, studio.renderer.limits(), no_progress());
+  make_ready(studio.renderer, *body);
+  // Drivers number programs in ascending order, so programs that the picture links come after this one.
+  const GLuint last = glCreateProgram();
+  picture_of(studio.renderer, scene, camera_of(volume->grid), kSize);
+  for (GLuint later = last + 1; later < last + 100; ++later) CHECK_FALSE(glIsProgram(later));
+  glDeleteProgram(last);
 }
 
 TEST_CASE("prepared body: an empty volume, and a cancelled one") {
