@@ -22,7 +22,7 @@ constexpr float kUnit = 100;  // unit of distances in the weight formula, mm
 
 SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                           const BoneParts& parts, const GeodesicBinding& settings, Progress& progress,
-                          WeightsReport* report) {
+                          WeightsReport* report, const TissueTable* tissues) {
   progress.update("weights", 0);
   const ZeroedVector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
@@ -77,7 +77,7 @@ SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue,
   }
   best.hold_all(held_by, kSoft);
   WeightsReport ignored;
-  cover_islands(volume, tissue, armature, best, report ? *report : ignored);
+  cover_islands(volume, tissue, armature, best, report ? *report : ignored, tissues);
   return best.weights(names_of_bones(armature));
 }
 

@@ -16,6 +16,7 @@ struct GeodesicBinding {
 
 SkinWeights bind_geodesic(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
                           const BoneParts& parts, const GeodesicBinding& settings = {},
-                          Progress& progress = no_progress(), WeightsReport* report = nullptr);
+                          Progress& progress = no_progress(), WeightsReport* report = nullptr,
+                          const TissueTable* tissues = nullptr);
 
 }  // namespace limber

@@ -7,7 +7,7 @@
 namespace limber {
 
 SkinWeights bind_rigid(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                       const BoneParts& parts, Progress& progress, WeightsReport* report) {
+                       const BoneParts& parts, Progress& progress, WeightsReport* report, const TissueTable* tissues) {
   progress.update("weights", 0);
   const ZeroedVector<std::uint16_t> held_by = fixed_bone(volume, tissue, parts, armature);
   const NearestBone nearest = nearest_bone(volume, tissue, armature, held_by);
@@ -15,7 +15,7 @@ SkinWeights bind_rigid(const LabelVolume& volume, const TissueVoxels& tissue, co
   BestFour best(tissue);
   best.hold_all({nearest.bone.data(), nearest.bone.size()}, kSoft);
   WeightsReport ignored;
-  cover_islands(volume, tissue, armature, best, report ? *report : ignored);
+  cover_islands(volume, tissue, armature, best, report ? *report : ignored, tissues);
   return best.weights(names_of_bones(armature));
 }
 

@@ -9,6 +9,7 @@
 namespace limber {
 
 SkinWeights bind_rigid(const LabelVolume& volume, const TissueVoxels& tissue, const Armature& armature,
-                       const BoneParts& parts, Progress& progress = no_progress(), WeightsReport* report = nullptr);
+                       const BoneParts& parts, Progress& progress = no_progress(), WeightsReport* report = nullptr,
+                       const TissueTable* tissues = nullptr);
 
 }  // namespace limber

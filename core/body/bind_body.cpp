@@ -23,8 +23,10 @@ SkinWeights weights_of(const Body& body, BoundBody& bound, Binding binding, Prog
   const LabelVolume& volume = body.file.volume;
   const BoneParts& parts = parts_of(body, bound, progress);
   switch (binding) {
-    case Binding::Rigid: return bind_rigid(volume, bound.tissue, body.rig, parts, progress, &bound.solve);
-    case Binding::Geodesic: return bind_geodesic(volume, bound.tissue, body.rig, parts, {}, progress, &bound.solve);
+    case Binding::Rigid:
+      return bind_rigid(volume, bound.tissue, body.rig, parts, progress, &bound.solve, &body.tissues);
+    case Binding::Geodesic:
+      return bind_geodesic(volume, bound.tissue, body.rig, parts, {}, progress, &bound.solve, &body.tissues);
     case Binding::Heat: break;
   }
   return diffuse_heat(volume, bound.tissue, body.tissues, body.rig, parts, {}, progress, &bound.solve);

@@ -91,10 +91,11 @@ SkinWeights computed(const Document& from, TissueVoxels tissue, const Computatio
       split_bones(volume, tissue, *from.tissues, *from.armature, progress, usable_bone_map(seam_source(from)));
   tissue.set_seams(body_seams().of(seam_source(from), progress));
   switch (computation.method) {
-    case BindingMethod::Rigid: return bind_rigid(volume, tissue, *from.armature, parts, progress, &report);
+    case BindingMethod::Rigid:
+      return bind_rigid(volume, tissue, *from.armature, parts, progress, &report, from.tissues.get());
     case BindingMethod::Geodesic:
       return bind_geodesic(volume, tissue, *from.armature, parts, {.stiffness = computation.stiffness}, progress,
-                           &report);
+                           &report, from.tissues.get());
     case BindingMethod::Heat: break;
   }
   return diffuse_heat(volume, tissue, *from.tissues, *from.armature, parts, {.stiffness = computation.stiffness},

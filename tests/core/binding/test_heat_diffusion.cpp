@@ -6,6 +6,8 @@
 #include <doctest/doctest.h>
 
 #include "core/base/parallel.h"
+#include "core/binding/geodesic.h"
+#include "core/binding/rigid.h"
 #include "tests/core/skin/small_body.h"
 
 using namespace limber;
@@ -115,6 +117,15 @@ TEST_CASE("heat: nothing flows through air, and an island in the air is named") 
   REQUIRE(named.warnings.size() == 2);
   CHECK(named.warnings[0].starts_with("no bone reaches 75 voxels of calf muscle near ("));
   CHECK(named.warnings[1].starts_with("no bone reaches 1 voxel of calf muscle near ("));
+
+  // Rigid and geodesic weights give the same warnings.
+  const TissueVoxels both(wide);
+  const BoneParts parts = split_bones(wide, both, body.tissues, body.armature);
+  WeightsReport rigid, geodesic;
+  bind_rigid(wide, both, body.armature, parts, no_progress(), &rigid, &body.tissues);
+  bind_geodesic(wide, both, body.armature, parts, {}, no_progress(), &geodesic, &body.tissues);
+  CHECK(rigid.warnings == named.warnings);
+  CHECK(geodesic.warnings == named.warnings);
 }
 
 TEST_CASE("heat: without bone tissue the voxels along each rig bone are the sources") {
