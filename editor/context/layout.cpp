@@ -9,6 +9,8 @@ namespace {
 
 constexpr float kBar = 36, kStrip = 44, kStatus = 26, kGap = 2;
 constexpr float kSidebarLow = 260, kSidebarHigh = 520, kSidebarInSmall = 280, kBottomLow = 120, kBottomInSmall = 120;
+// Views narrower than this are not moved from under a sidebar that covers them, px at scale 1.
+constexpr float kLeastBeside = 200;
 
 class Pixels {
  public:
@@ -18,6 +20,12 @@ class Pixels {
  private:
   float scale_;
 };
+
+// Returns the part of a rectangle that the sidebar leaves free, or the whole rectangle if that part is too narrow.
+Rect beside_sidebar(const Layout& layout, const Rect& rect, float scale) {
+  const Rect beside = layout.uncovered(rect);
+  return beside.width() >= kLeastBeside * scale ? beside : rect;
+}
 
 void place_one(Layout& layout, ViewId id) { layout.view_places = {{id, layout.views}}; }
 
@@ -71,6 +79,11 @@ Arrangements default_arrangements() {
   Arrangements all;
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = default_arrangement(static_cast<Workspace>(i));
   return all;
+}
+
+Rect Layout::uncovered(Rect rect) const {
+  if (sidebar_over_views && !sidebar.empty()) rect.high.x = std::max(rect.low.x, std::min(rect.high.x, sidebar.low.x));
+  return rect;
 }
 
 const ViewPlace* Layout::view_at(const glm::vec2& point) const {
@@ -127,6 +140,7 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
     const float middle = std::round((layout.views.low.y + layout.views.high.y) / 2), half = px(38);
     layout.sidebar_handle = {{right - px(28), middle - half}, {right, middle + half}};
   }
+  if (arrangement.views != ViewLayout::One) layout.views = beside_sidebar(layout, layout.views, scale);
   place_views(layout, arrangement, px(kGap));
 
   const float line = std::max(1.0f, std::floor(scale));
@@ -142,7 +156,8 @@ Layout arrange(const glm::ivec2& window, float scale, const Arrangement& arrange
 Layout in_sides(Layout layout, float share, float scale) {
   const float half = std::max(1.0f, std::round(kGap * scale / 2));
   std::vector<ViewPlace> sides;
-  for (const ViewPlace& place : layout.view_places) {
+  for (ViewPlace place : layout.view_places) {
+    place.rect = beside_sidebar(layout, place.rect, scale);
     const float x = std::round(place.rect.low.x + place.rect.width() * share);
     sides.push_back({place.id, {{x + half, place.rect.low.y}, place.rect.high}});
     sides.push_back({place.id, {place.rect.low, {x - half, place.rect.high.y}}, true});

@@ -9,8 +9,9 @@
 //   status 26
 //
 // Sizes are pixels at scale 1. If the window is less than 1360 wide, the sidebar is 280 wide and the search field
-// shrinks to its icon. Below 1180, buttons with an icon lose their text. Below 1100, the sidebar is closed at first and
-// covers the views when opened. If the window is less than 720 high, the bottom area is 120 high.
+// shrinks to its icon. Below 1180, buttons with an icon lose their text. Below 1100, the sidebar is closed at first;
+// when opened, it covers the right part of a single 3D view, and several views end at it. If the window is less than
+// 720 high, the bottom area is 120 high.
 #pragma once
 
 #include <array>
@@ -62,6 +63,7 @@ struct Layout {
   std::vector<Splitter> splitters;
 
   bool several() const { return view_places.size() > (by_sides ? 2u : 1u); }
+  Rect uncovered(Rect rect) const;  // returns the part of a rectangle at the left of a sidebar that covers the views
   const ViewPlace* view_at(const glm::vec2& point) const;  // returns nullptr if the point is outside every view
   const Rect* place_of(ViewId id) const;                   // returns nullptr if the view is not shown
 };

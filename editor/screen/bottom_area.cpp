@@ -10,9 +10,7 @@ void draw_bottom(Context& context) {
   const Rect& rect = context.screen->layout.bottom;
   if (rect.empty()) return;
   begin_region(context.ui, Region::Bottom, "bottom", rect, context.ui->look.theme.panel);
-  Rect seen = rect;
-  if (context.screen->layout.sidebar_over_views && !context.screen->layout.sidebar.empty())
-    seen.high.x = std::min(seen.high.x, context.screen->layout.sidebar.low.x);
+  const Rect seen = context.screen->layout.uncovered(rect);
   if (context.screen->arrangement().console) draw_console(context, seen);
   else if (context.screen->arrangement().timeline) draw_timeline(context, seen);
   else draw_results(context, seen);

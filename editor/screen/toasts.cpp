@@ -144,8 +144,7 @@ Rect place_of_toasts(const Context& context) {
   for (const ViewPlace& view : layout.view_places)
     if (view.id == ViewId::Body && !view.side_a && view.rect.width() >= context.ui->look.px(kLeastPlace))
       place = view.rect;
-  if (layout.sidebar_over_views && !layout.sidebar.empty()) place.high.x = std::min(place.high.x, layout.sidebar.low.x);
-  return place;
+  return layout.uncovered(place);
 }
 
 // Returns true if the pointer is over a toast, at the position where the toast was drawn in the last frame.

@@ -128,6 +128,7 @@ std::string state_of(const Context& context) {
 
 void draw_body_overlay(Context& context, const ViewPlace& place) {
   const Rect& rect = place.rect;
+  const Rect seen = context.screen->layout.uncovered(rect);
   const BodyView& body = context.views->body;
   const double visible_height = 2 * body.camera.distance * std::tan(body.camera.field_of_view / 2);
   if (context.screen->layout.by_sides) draw_side_chip(context, place);
@@ -143,7 +144,7 @@ void draw_body_overlay(Context& context, const ViewPlace& place) {
   draw_onion_skin(context);
   draw_motion_paths(context);
   draw_constraint_lines(context);
-  draw_axis_ball(context, rect);
+  draw_axis_ball(context, seen);
   if (!context.document().volume) return draw_empty_view(context, rect);
   draw_clip_handles(context, rect);
   draw_proposed_joint(context, rect);
@@ -151,7 +152,7 @@ void draw_body_overlay(Context& context, const ViewPlace& place) {
   if (draw_weight_legend(context, rect) || draw_fem_legend(context, rect)) above.high.y -= context.ui->look.px(60);
   above.high.y -= context.ui->look.px(draw_marks_legend(context, rect));
   if (!proposed_joint(context)) draw_last_operation(context, above);
-  draw_scale_bar(context, rect, visible_height / rect.height());
+  draw_scale_bar(context, seen, visible_height / rect.height());
 }
 
 }  // namespace limber::editor

@@ -92,6 +92,30 @@ TEST_CASE("layout: below 1100 the sidebar is closed, and opened lies over the vi
   CHECK(arrange({2048, 1280}, 2, {}).sidebar.empty());  // the same window at twice the resolution
 }
 
+TEST_CASE("layout: below 1100 an open sidebar covers no slice, and no side of a comparison") {
+  Arrangement open;
+  open.sidebar = true;
+  for (const float scale : {1.0f, 2.0f}) {
+    const glm::ivec2 window(glm::vec2(1024, 640) * scale);
+    const Layout one = arrange(window, scale, open);
+    CHECK(one.uncovered(one.views).high.x == one.sidebar.low.x);
+    std::vector<Layout> several{in_sides(one, 0.5f, scale)};
+    for (const ViewLayout views : {ViewLayout::Split, ViewLayout::Four}) {
+      open.views = views;
+      several.push_back(arrange(window, scale, open));
+      CHECK(several.back().views.high.x == several.back().sidebar.low.x);
+      open.views = ViewLayout::One;
+    }
+    for (const Layout& layout : several)
+      for (const ViewPlace& place : layout.view_places) {
+        CHECK_FALSE(place.rect.overlaps(layout.sidebar));
+        CHECK(place.rect.width() > 150 * scale);
+      }
+  }
+  const Layout wide = arrange({1280, 720}, 1, open);
+  CHECK(wide.uncovered(wide.views) == wide.views);
+}
+
 TEST_CASE("layout: a splitter goes where it is dragged, within its limits, and back by a double click") {
   const Arrangement start;
   const Layout layout = arrange({1600, 900}, 1, start);

@@ -63,3 +63,19 @@ TEST_CASE("scale bar: narrow slices have scale bars, too, right of the letter at
     }
   }
 }
+
+TEST_CASE("scale bar: in a narrow window an open sidebar covers neither the scale bar nor the axes") {
+  SmallEditor test({1024, 640});
+  for (const char* keys : {"move \"3D view/view\"\n key N\n wait-idle", "key Ctrl+Alt+Q\n wait-idle"}) {
+    test.play(keys);
+    const Rect& sidebar = test.editor->screen->layout.sidebar;
+    REQUIRE_FALSE(sidebar.empty());
+    int seen = 0;
+    for (const Widget& widget : test.editor->ui->widgets.widgets())
+      if (widget.name.ends_with("scale bar") || widget.name.ends_with("axis L")) {
+        CHECK(widget.rect.high.x <= sidebar.low.x);
+        ++seen;
+      }
+    CHECK(seen >= 2);
+  }
+}
