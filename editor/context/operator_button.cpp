@@ -46,14 +46,15 @@ void operator_menu_item(Context& context, std::string_view id, std::string_view 
   const bool enabled = disabled_reason(context, *op).empty(), on = op->checked && op->checked(context);
   const Look& look = context.ui->look;
   const std::vector<std::string> caps = chord ? key_caps(*chord) : std::vector<std::string>{};
-  const float width = std::max(look.px(190), text_size(look.fonts.regular, label).x + look.px(34 + 28) +
+  const float least = std::max(look.px(190), text_size(look.fonts.regular, label).x + look.px(34 + 28) +
                                                  width_of_key_caps(context.ui, caps) + look.px(10));
+  // Every row is as wide as the menu, so that it can be pressed at its right end, too.
+  const float wide = std::max(least, ImGui::GetContentRegionAvail().x);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::PushID(op->id.c_str());
   const bool clicked =
-      ImGui::Selectable("##item", false, enabled ? 0 : ImGuiSelectableFlags_Disabled, ImVec2(width, look.px(22)));
+      ImGui::Selectable("##item", false, enabled ? 0 : ImGuiSelectableFlags_Disabled, ImVec2(wide, look.px(22)));
   ImGui::PopID();
-  const float wide = std::max(width, ImGui::GetContentRegionAvail().x);
   const Rect rect{from_im(corner), {corner.x + wide, corner.y + look.px(22)}};
   register_widget(context.ui, label, rect, enabled);
   const Colour colour = enabled ? look.theme.text : look.theme.text3;

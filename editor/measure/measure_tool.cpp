@@ -138,7 +138,7 @@ class MeasureTool final : public Modal {
     const auto& tissues = context.document().tissues;
     if (point && needs_tissue && (!tissues || tissues->tissues.empty())) {
       context.messages->info("A girth or a thickness needs labels",
-                             "Make labels from the image, or measure a distance or an angle.");
+                             "Edit > Prepare volume makes labels from the image. Distances and angles need none.");
       return true;
     }
     if (!point || (needs_tissue && context.document().volume->at_or_air(point->voxel) == 0)) {
@@ -248,6 +248,10 @@ class MeasureTool final : public Modal {
 
 std::unique_ptr<Modal> begin_measuring(const Context& context, MeasureKind kind) {
   return std::make_unique<MeasureTool>(context, kind);
+}
+
+bool is_measuring(const Context& context) {
+  return dynamic_cast<const MeasureTool*>(context.interaction->modal.get()) != nullptr;
 }
 
 }  // namespace limber::editor

@@ -13,5 +13,6 @@ namespace limber::editor {
 struct Context;
 
 std::unique_ptr<Modal> begin_measuring(const Context& context, MeasureKind kind);
+bool is_measuring(const Context& context);  // true while clicks set the points of a measurement
 
 }  // namespace limber::editor

@@ -49,6 +49,34 @@ bool any_operator(const OperatorRegistry& operators, Entry begin, Entry end) {
   return std::any_of(begin, end, [&](const std::string& id) { return find_operator(operators, id) != nullptr; });
 }
 
+// Draws the row that opens a submenu, and begins the submenu if it is open. The row has the height of the other rows,
+// 22 px plus the spacing between rows. Its highlight is as wide as theirs: ImGui's own would begin at the title, so
+// this function draws the highlight below the row once it is known whether the pointer is on the row.
+bool begin_submenu(const Look& look, const std::string& title) {
+  const ImVec2 corner = ImGui::GetCursorScreenPos(), spacing = ImGui::GetStyle().ItemSpacing;
+  const float above = std::round((look.px(22) - ImGui::GetFontSize()) / 2), wide = ImGui::GetContentRegionAvail().x;
+  ImDrawList& canvas = *ImGui::GetWindowDrawList();
+  canvas.ChannelsSplit(2);
+  canvas.ChannelsSetCurrent(1);
+  ImGui::SetCursorPos({ImGui::GetCursorPosX() + look.px(34), ImGui::GetCursorPosY() + above});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing,
+                      ImVec2(spacing.x, look.px(22) - ImGui::GetFontSize() - above + spacing.y));
+  for (const ImGuiCol colour : {ImGuiCol_Header, ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive})
+    ImGui::PushStyleColor(colour, 0u);
+  const bool open = ImGui::BeginMenu(title.c_str());
+  ImGui::PopStyleColor(3);
+  ImGui::PopStyleVar();
+  canvas.ChannelsSetCurrent(0);
+  if (open || ImGui::IsItemHovered() || ImGui::IsItemFocused()) {
+    const ImVec2 half{std::floor(spacing.x / 2), std::floor(spacing.y / 2)};
+    canvas.AddRectFilled({corner.x - half.x, corner.y - half.y},
+                         {corner.x + wide + half.x, corner.y + look.px(22) + half.y},
+                         ImGui::GetColorU32(ImGuiCol_HeaderHovered));
+  }
+  canvas.ChannelsMerge();
+  return open;
+}
+
 //   submenu  title of the submenu that the entries belong to; "": none
 void draw_entries(Context& context, Entry begin, Entry end, const std::string& submenu = "") {
   bool line_wanted = false, any = false;
@@ -66,15 +94,7 @@ void draw_entries(Context& context, Entry begin, Entry end, const std::string& s
       if (!opens) operator_menu_item(context, *entry, submenu);
       else {
         const std::string title = entry->substr(2);
-        // Give the row that opens a submenu the same height as the other rows: 22 px plus the spacing between rows.
-        const float above = std::round((context.ui->look.px(22) - ImGui::GetFontSize()) / 2),
-                    spacing = ImGui::GetStyle().ItemSpacing.y;
-        ImGui::SetCursorPos({ImGui::GetCursorPosX() + context.ui->look.px(34), ImGui::GetCursorPosY() + above});
-        ImGui::PushStyleVar(
-            ImGuiStyleVar_ItemSpacing,
-            ImVec2(ImGui::GetStyle().ItemSpacing.x, context.ui->look.px(22) - ImGui::GetFontSize() - above + spacing));
-        const bool open = ImGui::BeginMenu(title.c_str());
-        ImGui::PopStyleVar();
+        const bool open = begin_submenu(context.ui->look, title);
         if (!open)
           register_widget(context.ui, title, {from_im(ImGui::GetItemRectMin()), from_im(ImGui::GetItemRectMax())});
         if (open) {
@@ -296,7 +316,7 @@ Menu pointer_menu(const std::string& name, ViewId view) {
   if (name == "Volume") return {name, {"view.reveal", "-", "prepare.regrid", "prepare.orient", "prepare.crop",
         "prepare.pad", "prepare.specks",
         "prepare.statistics", "-", "file.export_volume", "file.export_tissues"}};
-  if (name == "Armature") return {name, {"view.bones", "view.bone_names", "view.bone_axes", "view.bones_in_front",
+  if (name == "Rig") return {name, {"view.bones", "view.bone_names", "view.bone_axes", "view.bones_in_front",
         "-", "skin.heat", "pose.flex",
         "pose.clear", "-", "file.import_rig", "file.export_rig"}};
   if (name == "Result") return {name, {"result.toggle", "edit.rename", "result.copy_report", "-", "result.delete",

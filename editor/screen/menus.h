@@ -18,7 +18,7 @@ struct Menu {
 };
 std::vector<Menu> menus();
 // Returns a menu that opens at the pointer, by its name. "context" is the context menu of the view `view`. "Bone" and
-// "Posed bone" are menus for the selected bones. "Volume", "Tissue", "Armature" and "Result" belong to rows of the
+// "Posed bone" are menus for the selected bones. "Volume", "Tissue", "Rig" and "Result" belong to rows of the
 // outliner. "Views", "Display", "Snap", "Similar" and "Workspaces" are opened by operators.
 Menu pointer_menu(const std::string& name, ViewId view);
 

@@ -18,8 +18,9 @@ void set_colours(const Theme& theme) {
   set({ImGuiCol_WindowBg, ImGuiCol_ChildBg, ImGuiCol_PopupBg}, theme.panel);
   set({ImGuiCol_MenuBarBg, ImGuiCol_TitleBg, ImGuiCol_TitleBgActive, ImGuiCol_TableHeaderBg}, theme.head);
   set({ImGuiCol_Button}, theme.raised);
-  set({ImGuiCol_ButtonHovered, ImGuiCol_HeaderHovered}, theme.hover);
-  set({ImGuiCol_ButtonActive, ImGuiCol_HeaderActive}, theme.active);
+  set({ImGuiCol_ButtonHovered}, theme.hover);
+  // In the light theme, rows of menus with the hover colour of buttons would hardly differ from the panel.
+  set({ImGuiCol_ButtonActive, ImGuiCol_HeaderHovered, ImGuiCol_HeaderActive}, theme.active);
   set({ImGuiCol_Header, ImGuiCol_TextSelectedBg}, theme.accent_soft);
   set({ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive}, theme.field);
   set({ImGuiCol_Separator, ImGuiCol_TableBorderLight}, theme.line);

@@ -60,6 +60,26 @@ struct FourViews : SmallEditor {
 
 }  // namespace
 
+TEST_CASE("measure: the strip shows the measure tool as the active one, and the tool before it again") {
+  FourViews test;
+  const auto colour_of = [&](const char* button) {
+    const Rect& place = test.editor->ui->widgets.find(button)->rect;
+    const glm::ivec2 at(std::round(place.low.x + 4), std::round(place.centre().y));
+    const render::Image picture = test.host->picture();
+    const std::size_t first = (static_cast<std::size_t>(at.y) * picture.size.x + at.x) * 4;
+    return std::vector<std::uint8_t>(picture.rgba.begin() + first, picture.rgba.begin() + first + 3);
+  };
+  test.play("move Axial/view\n wait-idle");
+  const auto active = colour_of("tool.select"), idle = colour_of("measure.menu");
+  REQUIRE(active != idle);
+  test.play("click View/Overlays/Measure/\"Measure distance\"\n move Axial/view\n wait-idle");
+  CHECK(colour_of("measure.menu") == active);
+  CHECK(colour_of("tool.select") == idle);
+  test.play("key Escape\n wait-idle");
+  CHECK(colour_of("measure.menu") == idle);
+  CHECK(colour_of("tool.select") == active);
+}
+
 std::vector<Proof> proofs_of_measuring() {
   const char* four = "key Ctrl+1\n key Ctrl+Alt+Q\n wait-idle";
   const auto has = [](MeasureKind kind) { return [kind](Stage& s, const Seen&) { return has_kind(s, kind); }; };

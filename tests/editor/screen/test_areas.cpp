@@ -230,6 +230,18 @@ TEST_CASE("areas: messages leave limbs free, and are fewer where more would cove
   CHECK(test.fact("text:+2 more") == "shown");
 }
 
+TEST_CASE("areas: a row of a menu is pressed at its right end, too") {
+  LimbEditor test;
+  REQUIRE(test.fact("sidebar") == "yes");
+  test.play("click View\nwait-idle");
+  const Rect row = test.editor->ui->widgets.find("View/Sidebar")->rect;
+  test.host->events.push(PointerMoved{{row.high.x - 3, row.centre().y}});
+  test.player.settle();
+  for (const bool down : {true, false}) test.host->events.push(ButtonChanged{MouseButton::Left, down});
+  test.player.settle();
+  CHECK(test.fact("sidebar") == "no");
+}
+
 TEST_CASE("areas: a job that begins to run moves no section of the sidebar") {
   LimbEditor test;
   test.play("key Ctrl+4\nwait-idle\nmove \"3D view/view\"");
