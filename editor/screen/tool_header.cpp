@@ -245,7 +245,8 @@ void put_options(Context& context, Header& header) {
     if (header.fits(110, {"rig.templates"})) header.plain("rig.templates");
     header.line();
   }
-  if (context.workspace() == Workspace::Rig && context.document().armature) {
+  // These groups stand there before there is a rig, too, so that no button moves when one is fitted.
+  if (context.workspace() == Workspace::Rig) {
     if (header.fits(140, {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"}))
       header.choice("Snap", {"snap.steps", "snap.voxel", "snap.joint", "snap.bone_middle"});
     if (header.fits(header.toggle_width(110), {"edit.x_mirror"})) header.toggle("edit.x_mirror");

@@ -87,11 +87,12 @@ void start_labels(Context& context, const std::string& label, const std::string&
                             };
                           });
   context.background->step_of_job[id] = StepOfWork::Prepare;
-  context.background->after_job[id] = [label, advice](Context& c, const JobStatus& job) {
+  context.background->after_job[id] = [label, advice, before](Context& c, const JobStatus& job) {
     if (job.state != JobState::Done) return;
     *c.selection = {};
     c.views->display = render::Display::Solid;
-    frame_all(c, false);
+    // The views keep their places where the labels lie on the grid that they have shown before.
+    if (!before || !(before->grid == c.document().volume->grid)) frame_all(c, false);
     c.messages->ok(label, std::to_string(c.document().tissues->tissues.size()) + " tissues. " + advice);
   };
   context.ui->touch();

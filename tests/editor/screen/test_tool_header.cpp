@@ -37,3 +37,21 @@ TEST_CASE("tool header: as a window gets narrower, groups of the Resample worksp
   }
   CHECK(counts.back() < 5);
 }
+
+TEST_CASE("tool header: no button of the Rig workspace moves when a rig is fitted") {
+  LimbEditor test({1280, 720});
+  const auto places = [&] {
+    std::vector<std::pair<std::string, float>> all;
+    for (const Widget& widget : test.editor->ui->widgets.widgets())
+      if (widget.region == Region::ToolHeader) all.emplace_back(widget.name, widget.rect.low.x);
+    return all;
+  };
+  const auto with_rig = places();
+  REQUIRE(with_rig.size() > 6);
+  Document bare = test.editor->document();
+  bare.armature = nullptr;
+  bare.pose = nullptr;
+  test.editor->history->reset(bare, "Without a rig");
+  test.play("wait-idle");
+  CHECK(places() == with_rig);
+}
