@@ -51,7 +51,7 @@ void export_gltf(const ExportGltfOptions& options) {
 
 void add_export_gltf(CLI::App& app) {
   auto* command = app.add_subcommand(
-      "export-gltf", "exports the body's surface, skeleton and weights, and motions as animations, to one .glb file");
+      "export-gltf", "exports the body's surface, rig and weights, and motions as animations, to one .glb file");
   auto options = std::make_shared<ExportGltfOptions>();
   add_body_options(*command, options->body);
   command->add_option("--weights", options->weights, "weights: W.nrrd, or a folder with Bender's weights")->required();

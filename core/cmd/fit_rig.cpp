@@ -106,7 +106,7 @@ void add_fit_rig(CLI::App& app) {
   command->add_option("VOLUME", options->volume, "label volume")->required();
   command
       ->add_option("--template", options->rig,
-                   "skeleton to fit: arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk "
+                   "rig to fit: arm, hand, leg, adult, child, quadruped, auto, or a rig file (JSON, Bender .vtk "
                    "or .arm, BVH)")
       ->required();
   command->add_option("--tissues", options->tissues, "tissue table (JSON, .ctbl, ITK-SNAP)");

@@ -185,7 +185,7 @@ std::vector<Operator> export_operators() {
                        "-motion"}),
       export_operator({"file.export_gltf",
                        "glTF...",
-                       "Export the surface, skeleton, weights and every clip for other programs.",
+                       "Export the surface, rig, weights and every clip for other programs.",
                        ExportKind::Gltf,
                        {{"glTF", {".glb"}}},
                        ""}),

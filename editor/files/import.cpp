@@ -22,6 +22,7 @@
 #include "editor/context/context.h"
 #include "editor/context/document_edits.h"
 #include "editor/context/open_project.h"
+#include "editor/context/operator.h"
 #include "editor/context/recent_files.h"
 #include "editor/context/selection.h"
 #include "editor/context/tissue_bounds.h"
@@ -36,6 +37,7 @@
 #include "editor/skin/weight_layers.h"
 #include "editor/ui/messages.h"
 #include "editor/volume/grey_image_panel.h"
+#include "editor/volume/image_labels.h"
 #include "editor/volume/shown_image.h"
 
 namespace limber::editor {
@@ -169,7 +171,8 @@ void take_image(Context& context, const render::ShownGrey& image, const std::sha
     show_image(c, image, path);
     c.views->display = render::Display::Image;
     c.messages->ok(path.filename().string(),
-                   "This is a grey image. To rig it, make labels first: Edit > Prepare volume > Labels from CT.");
+                   "This is a grey image. To rig it, make labels first: Edit > Prepare volume > " +
+                       find_operator(c.operators, labels_operator(c.views))->label);
   };
   opened->agreed = agreed;
   add_recent(context.recent_files, path, std::time(nullptr));

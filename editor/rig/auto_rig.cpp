@@ -61,7 +61,7 @@ std::vector<std::string> template_labels() {
 void start_auto_fit(Context& context, const std::string& which) {
   const Document from = context.document();
   auto fitted = std::make_shared<AutoFit>();
-  const int id = context.jobs->start("Auto-fit skeleton", [from, which, fitted](Progress& progress) -> Edit {
+  const int id = context.jobs->start("Auto-fit rig", [from, which, fitted](Progress& progress) -> Edit {
     const Armature rig = which == "rig"
                              ? *from.armature
                              : rig_template(which.empty() ? suggest_template(*from.volume, progress) : which);
@@ -69,7 +69,7 @@ void start_auto_fit(Context& context, const std::string& which) {
     auto laid = std::make_shared<const Armature>(fitted->armature);
     return [from, laid](const Document& now) {
       if (now.volume != from.volume)
-        throw Error("the volume was changed meanwhile", "fitting a skeleton", "run the command again");
+        throw Error("the volume was changed meanwhile", "fitting the rig", "run the command again");
       return with_rig(now, laid);
     };
   });
@@ -77,7 +77,7 @@ void start_auto_fit(Context& context, const std::string& which) {
   context.background->after_job[id] = [fitted, before = from.armature](Context& c, const JobStatus& job) {
     if (job.state != JobState::Done) return;
     show_fit(c.messages, *fitted);
-    if (before) warn_of_moved_targets(c, "Skeleton fitted", *before, bones_of(*before, *c.document().armature));
+    if (before) warn_of_moved_targets(c, "Rig fitted", *before, bones_of(*before, *c.document().armature));
   };
   context.ui->touch();
 }
@@ -126,11 +126,10 @@ void show_fit(Messages& messages, const AutoFit& fitted) {
   const std::string result = std::to_string(sure) + " of " + std::to_string(fitted.joints.size()) +
                              " joints found with confidence, " + percent(fitted.check.whole) +
                              " of bone length in tissue";
-  if (sure > 0 && fitted.check.whole >= kMostlyInside) messages.ok("Skeleton fitted", result, "view.console");
+  if (sure > 0 && fitted.check.whole >= kMostlyInside) messages.ok("Rig fitted", result, "view.console");
   else
-    messages.warn(
-        sure > 0 ? "Skeleton fitted, but partly outside the body" : "Skeleton positioned, but every joint is uncertain",
-        result);
+    messages.warn(sure > 0 ? "Rig fitted, but partly outside the body" : "Rig positioned, but every joint is uncertain",
+                  result);
 }
 
 void ask_auto_fit(Context& context) {
@@ -143,10 +142,10 @@ void ask_auto_fit(Context& context) {
     start_auto_fit(c, chosen == 0 ? "" : chosen <= rig_templates().size() ? rig_templates()[chosen - 1].name : "rig");
   };
   context.dialogs->open(
-      make_form({"Auto-fit skeleton",
+      make_form({"Auto-fit rig",
                  "Finds the joints from the bone tissue, or from the body's shape where no bone is labelled.",
                  "Fit",
-                 {choice_of("Skeleton", "The skeleton to fit to the body in the volume.", choices)},
+                 {choice_of("Rig", "The rig to fit to the body in the volume.", choices)},
                  outcome,
                  act}));
 }
@@ -162,13 +161,13 @@ void ask_template(Context& context) {
     c.history->commit("Add template " + chosen.label, with_rig(c.document(), rig));
     if (before) warn_of_moved_targets(c, "Add template " + chosen.label, *before, bones_of(*before, *rig));
     c.messages->ok("Add template " + chosen.label,
-                   "The skeleton is scaled to the tissue. Use Auto-fit skeleton to find its joints");
+                   "The rig is scaled to the tissue. Use Auto-fit rig to find its joints");
   };
   context.dialogs->open(
       make_form({"Templates",
-                 "Adds a skeleton, scaled to the tissue's bounding box. You can then move its joints by hand.",
+                 "Adds a rig, scaled to the tissue's bounding box. You can then move its joints by hand.",
                  "Add",
-                 {choice_of("Skeleton", "The skeleton to add.", template_labels())},
+                 {choice_of("Rig", "The rig to add.", template_labels())},
                  outcome,
                  act}));
 }

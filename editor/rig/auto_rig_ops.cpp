@@ -49,10 +49,10 @@ Operator shows_proposed(const char* id, const char* label, const char* descripti
 
 std::vector<Operator> rig_fit_operators() {
   return {
-      {"rig.auto_fit", "Auto-fit skeleton...", kAutoFitIcon, "Rig",
-       "Fit a skeleton to the volume automatically. Its joints are found from the bones or the body's shape.",
+      {"rig.auto_fit", "Auto-fit rig...", kAutoFitIcon, "Rig",
+       "Fit a rig (skeleton) to the volume automatically. Its joints are found from the bones or the body's shape.",
        ask_auto_fit, needs_labels},
-      {"rig.templates", "Templates...", icon::kRig, "Rig", "Add a ready-made skeleton, scaled to the tissue.",
+      {"rig.templates", "Templates...", icon::kRig, "Rig", "Add a ready-made rig (skeleton), scaled to the tissue.",
        ask_template, needs_labels},
       {"rig.fit_joint_axis", "Fit joint axis", kFitAxisIcon, "Rig",
        "Find the hinge axis about which the selected bone turns with the fewest collisions of bones, and show where "

@@ -96,7 +96,7 @@ class Tree {
   void add_bones() {
     if (!document_.armature) return;
     const auto& bones = document_.armature->bones;
-    rows.push_back({Row::Kind::Armature, "armature", "Armature", std::to_string(bones.size()), icon::kRig, 0, 0,
+    rows.push_back({Row::Kind::Armature, "armature", "Rig", std::to_string(bones.size()), icon::kRig, 0, 0,
                     !bones.empty(), open("armature", true)});
     rows.back().visible = context_.views->bones;
     if (!rows.back().open) return;
@@ -196,11 +196,11 @@ void open_menu(Context& context, const Row& row) {
   switch (row.kind) {
     case Row::Kind::Volume:
     case Row::Kind::Tissues: context.menus->open_popup = "Volume"; return;
-    case Row::Kind::Armature: context.menus->open_popup = "Armature"; return;
+    case Row::Kind::Armature: context.menus->open_popup = "Rig"; return;
     case Row::Kind::Bone:
       context.menus->open_popup = context.workspace() == Workspace::Rig    ? "Bone"
                                   : context.workspace() == Workspace::Pose ? "Posed bone"
-                                                                           : "Armature";
+                                                                           : "Rig";
       return;
     case Row::Kind::Tissue: context.menus->open_popup = "Tissue"; return;
     case Row::Kind::Results: return;

@@ -40,7 +40,7 @@ Step prepare_step(const Context& context) {
     // operators that change the grid or paint labels, not those that need tissue.
     step.line = "No labels yet";
     step.operator_id = labels_operator(context.views);
-    step.button = "Labels...";
+    step.button = find_operator(context.operators, step.operator_id)->label;
     step.more = {"labels.new_tissue",        "labels.brush", "prepare.regrid",
                  "prepare.crop_to_clip_box", "prepare.pad",  "prepare.orient"};
     return step;
@@ -137,7 +137,8 @@ void draw_step(Context& context, Column& column, const Step& step, int number) {
 
   const Operator* op = find_operator(context.operators, step.operator_id);
   const bool next = step.state == StepState::Next;
-  const float width = op && !step.button.empty() && step.state != StepState::Working ? look.px(88) : 0;
+  const float text = std::ceil(text_size(look.fonts.regular, step.button).x) + look.px(20);
+  const float width = op && !step.button.empty() && step.state != StepState::Working ? std::max(look.px(88), text) : 0;
   const Rect place{{row.high.x - look.px(10) - width, row.low.y + look.px(7)},
                    {row.high.x - look.px(10), row.high.y - look.px(7)}};
   const float left = row.low.x + look.px(34), right = width > 0 ? place.low.x - look.px(8) : row.high.x - look.px(10),

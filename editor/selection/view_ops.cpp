@@ -123,7 +123,7 @@ std::vector<Operator> view_operators() {
       overlay_operator("view.rulers", "Rulers", "Show rulers in mm along the edges of the slices.", &Views::rulers),
       overlay_operator("view.letters", "Orientation letters",
                        "Show letters for the sides of the body, such as L and R.", &Views::letters),
-      overlay_operator("view.bones", "Bones", "Show the skeleton in the views.", &Views::bones),
+      overlay_operator("view.bones", "Bones", "Show the rig's bones in the views.", &Views::bones),
       shape_operator("view.bones_octahedron", "Octahedra", "Draw bones as octahedra that are wide at the head.",
                      render::BoneShape::Octahedron),
       shape_operator("view.bones_stick", "Sticks", "Draw bones as thin sticks between their joints.",

@@ -88,9 +88,12 @@ void draw_image_section(Context& context, Column& column) {
     }
     column.space(4);
     const Rect row = column.row(26);
-    const float middle = std::round(row.centre().x), gap = context.ui->look.px(3), side = context.ui->look.px(10);
-    operator_button(context, labels_operator(context.views),
-                    {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}}, "Make labels...");
+    const float middle = std::round(row.low.x + row.width() * 0.62f), gap = context.ui->look.px(3),
+                side = context.ui->look.px(10);
+    // The button of the labels has the width that its name and its icon need, and closing the image takes the rest.
+    const char* labels = labels_operator(context.views);
+    operator_button(context, labels, {{row.low.x + side, row.low.y}, {middle - gap, row.high.y}},
+                    find_operator(context.operators, labels)->label);
     operator_button(context, "image.close", {{middle + gap, row.low.y}, {row.high.x - side, row.high.y}}, "Close");
     column.space(6);
   }

@@ -57,7 +57,7 @@ std::vector<Proof> proofs_of_rig_fitting() {
       {"rig.auto_fit",
        "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The current rig\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) {
-         return s.is("edit", "Auto-fit skeleton") && s.document().armature != b.document.armature &&
+         return s.is("edit", "Auto-fit rig") && s.document().armature != b.document.armature &&
                 s.is("toast", "Skeleton positioned, but every joint is uncertain");
        },
        Shows::Nothing, rigging},
@@ -130,7 +130,7 @@ TEST_CASE("joint axis: a joint without a hinge is fitted as the hinge it bends b
   CHECK(stage.document().armature->bones[1].limits.type == JointLimits::Type::Hinge);
 }
 
-TEST_CASE("operators: skeletons are placed and fitted") {
+TEST_CASE("operators: rigs are placed and fitted") {
   Stage stage;
   prove(stage, proofs_of_rig_fitting());
 }
@@ -169,7 +169,7 @@ TEST_CASE("rig fitting: what collides is shown until the axis is moved, and not 
 }
 
 TEST_CASE(
-    "rig fitting: a fitted skeleton is one edit, takes the old weights and pose away, and tells the least sure "
+    "rig fitting: a fitted rig is one edit, takes the old weights and pose away, and tells the least sure "
     "joints") {
   Stage stage;
   Document document = stage.document();
@@ -183,7 +183,7 @@ TEST_CASE(
   start_auto_fit(stage.editor(), "arm");
   stage.play("wait-job");
   REQUIRE(stage.document().armature);
-  CHECK(stage.is("edit", "Auto-fit skeleton"));
+  CHECK(stage.is("edit", "Auto-fit rig"));
   const auto& log = stage.editor().messages->log;
   CHECK(std::count_if(log.begin(), log.end(), [](const LogLine& line) {
           return line.text.find("found by bone surface") != std::string::npos;

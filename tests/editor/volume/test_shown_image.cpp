@@ -161,14 +161,20 @@ TEST_CASE("image: a bare CT is a picture at once, becomes labels on request, and
     return disabled_reason(sitting.editor(), *find_operator(sitting.editor().operators, "rig.auto_fit"));
   };
   CHECK(why_no_rig().starts_with("The volume has no labels"));
+  sitting.play("drag \"3D view/view\" 60 30 MMB\n wait-idle");
+  const Views& views = *sitting.editor().views;
+  const render::Camera seen_from = views.body.camera;
+  const glm::dvec3 cross_hair = views.cross_hair;
   sitting.play(
-      "expect \"text:No labels yet\"\n click Steps/Prepare/Labels...\n wait-idle\n click \"Make "
-      "labels\"\n "
+      "expect \"text:No labels yet\"\n click Steps/Prepare/\"Labels from CT...\"\n wait-idle\n click \"Make labels\"\n "
       "wait-job\n wait-idle\n expect widget:Steps/Prepare/Statistics");
   sitting.play("expect error none\n expect unsaved yes");
   const Document labelled = sitting.editor().document();
   REQUIRE(labelled.tissues->find(6));
   CHECK(why_no_rig() == "");
+  // The views stay where they are, because the labels lie on the image's own grid.
+  CHECK(views.body.camera == seen_from);
+  CHECK(views.cross_hair == cross_hair);
   CHECK(labelled.volume->grid == scan().grid);
   CHECK(labelled.volume->at({20, 20, 20}) == 6);
   CHECK(sitting.editor().views->image);
@@ -260,7 +266,7 @@ TEST_CASE("image: a bare MR is offered a threshold of its own histogram, and kee
   for (const char* tool : {"labels.new_tissue", "prepare.regrid", "prepare.pad", "prepare.orient"})
     CHECK_MESSAGE(sitting.test.fact(std::string("widget:Steps/Prepare more/") + tool) == "shown", tool);
   CHECK(sitting.test.fact("widget:Steps/Prepare more/prepare.merge") != "shown");
-  sitting.play("click Steps/Prepare/Labels...\n wait-idle\n expect \"text:Labels from MR\"");
+  sitting.play("click Steps/Prepare/\"Labels from MR...\"\n wait-idle\n expect \"text:Labels from MR\"");
   CHECK(sitting.test.fact("text:Bone threshold") != "shown");
   sitting.play("click \"Make labels\"\n wait-job\n wait-idle\n expect error none");
   const Document& labelled = sitting.editor().document();
