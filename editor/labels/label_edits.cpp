@@ -35,7 +35,7 @@ std::string needs_edited_tissue(const Context& context) {
   if (!document.volume || !document.tissues) return "Open a volume first";
   return context.selection->tissue && document.tissues->find(*context.selection->tissue)
              ? ""
-             : "Select a tissue in the list of tissues first";
+             : "Select a tissue first, under Label brush or Tissues in the sidebar";
 }
 
 const Tissue& edited_tissue(const Context& context) {

@@ -47,9 +47,9 @@ void draw_tool_strip(Context& context) {
     const Operator* op = find_operator(context.operators, id);
     const Rect place{{rect.low.x + look.px(4), y}, {rect.low.x + look.px(40), y + height}};
     const Pressed pressed = press_area(context.ui, id, place, disabled_reason(context, *op).empty());
-    // While the pointer measures, the measure tool is the active one.
-    const bool measures = id == "measure.menu", is_tool = id.starts_with("tool.");
-    const bool on = is_measuring(context) && (measures || is_tool) ? measures : op->checked && op->checked(context);
+    // While the pointer measures, the measure tool is the active one. Clipping stays on beside it.
+    const bool on =
+        is_measuring(context) && !id.starts_with("view.") ? id == "measure.menu" : op->checked && op->checked(context);
     if (on) fill(place, look.theme.accent, look.px(5));
     else if (pressed.hovered) fill(place, look.theme.hover, look.px(5));
     const Colour colour = on                                      ? look.theme.on_accent

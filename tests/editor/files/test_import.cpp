@@ -126,7 +126,7 @@ TEST_CASE("opening: a rig that does not lie in the body comes in with the offer 
     CHECK((inside() > 0.6) == (std::string(answer) != "Keep rig"));
   }
   sitting.play(
-      "expect toast \"Skeleton positioned, but every joint is uncertain\"\n key Ctrl+Z\n expect edit \"Import "
+      "expect toast \"Rig positioned, but every joint is uncertain\"\n key Ctrl+Z\n expect edit \"Import "
       "far.json\"");
 }
 

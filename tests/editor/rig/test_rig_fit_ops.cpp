@@ -46,7 +46,7 @@ void open_bars(Stage& stage) {
 std::vector<Proof> proofs_of_rig_fitting() {
   const char* rigging = "key Ctrl+1\n move \"3D view/view\"\n wait-idle";
   return {
-      {"rig.templates", "click rig.templates\n click Skeleton/list\n click \"Skeleton/Quadruped\"\n key Return",
+      {"rig.templates", "click rig.templates\n click Rig/list\n click \"Rig/Quadruped\"\n key Return",
        [](Stage& s, const Seen&) {
          return s.is("edit", "Add template Quadruped") &&
                 s.document().armature->bones.size() == rig_template("quadruped").bones.size() &&
@@ -54,11 +54,10 @@ std::vector<Proof> proofs_of_rig_fitting() {
        },
        Shows::InBody, rigging},
       // The names of this rig mean nothing, so the fit is quick.
-      {"rig.auto_fit",
-       "key Ctrl+Shift+F\n click Skeleton/list\n click \"Skeleton/The current rig\"\n key Return\n wait-job",
+      {"rig.auto_fit", "key Ctrl+Shift+F\n click Rig/list\n click \"Rig/The current rig\"\n key Return\n wait-job",
        [](Stage& s, const Seen& b) {
          return s.is("edit", "Auto-fit rig") && s.document().armature != b.document.armature &&
-                s.is("toast", "Skeleton positioned, but every joint is uncertain");
+                s.is("toast", "Rig positioned, but every joint is uncertain");
        },
        Shows::Nothing, rigging},
       {"rig.fit_joint_axis", "key Shift+J\n wait-job\n wait-idle",
