@@ -26,6 +26,7 @@ constexpr double kLeft = 0.25;
 // Some nodes, the stragglers, may still move further than the tolerance when the solve ends (NewtonSettings), but none
 // further than this many tolerances.
 constexpr double kStraggle = 3;
+constexpr int kStalls = 4;  // number of iterations over which the energy must stall (NewtonSettings::stalled)
 
 double longest(const NodePositions& step) {
   return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0;
@@ -101,12 +102,14 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
   int jams = 0;
   double damping = 0;
   double value = energy.value(x);
+  std::vector<double> values;  // the energy before each iteration
   NodePositions step;
   while (result.iterations < settings.iterations) {
     if (progress.cancelled()) throw Cancelled();
     double slope = 0;
     if (!energy.newton_step(x, HessianKind::Projected, step, slope, nullptr, damping)) break;
     ++result.iterations;
+    values.push_back(value);
     result.residual = longest(step);
 
     result.bound = energy.largest_step(x, step, 1);
@@ -128,6 +131,11 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     }
     if (!is_damped && settled(step, result.residual, settings) && energy.tightest() > kSqueezed &&
         (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
+      result.converged = true;
+      break;
+    }
+    if (std::ssize(values) >= kStalls && values.end()[-kStalls] - value < settings.stalled * value &&
+        settled(step, result.residual, settings) && energy.tightest() > kSqueezed) {
       result.converged = true;
       break;
     }

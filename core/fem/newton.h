@@ -22,6 +22,9 @@ struct NewtonSettings {
   // Largest share of the nodes that may move further than the tolerance (up to 3 times as far) in the last step, since
   // a few of many thousands of nodes converge very slowly.
   double stragglers = 0;
+  // The solve also ends when no node would move further than the tolerance and the energy has stalled: a few iterations
+  // together have lowered it by less than this share. Contact may then keep a step short that changes the shape hardly.
+  double stalled = 0;
   int iterations = 40;
   std::vector<char> fixed;  // #nodes: 1 for nodes whose step is never smoothed (FemEnergy::limit_step); empty: none
 };

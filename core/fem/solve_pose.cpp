@@ -18,7 +18,8 @@ namespace limber {
 
 namespace {
 constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the final pose
-constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers of the last solve, a share of the nodes
+constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers, a share of the nodes
+constexpr double kStalled = 0.02;     // NewtonSettings::stalled of all solves but the last
 // Factor on step_tolerance_mm when a shape is solved again before the next part is retried.
 constexpr double kTight = 0.25;
 constexpr double kLeastPart = 0.1;  // if objects move by less than this share of the shortest part, the part fails
@@ -365,8 +366,8 @@ void PoseSolve::tell(double at, int iteration, double residual, const NodePositi
 NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, NodePositions& x) {
   const int before = result_.iterations;
   const NewtonResult solved =
-      minimise(*energy_, x, {tolerance_mm, result_.reached == 1 ? kStragglers : 0, iterations, held_}, progress_,
-               [&](int iteration, double residual) { tell(at, before + iteration, residual, x); });
+      minimise(*energy_, x, {tolerance_mm, kStragglers, result_.reached == 1 ? 0 : kStalled, iterations, held_},
+               progress_, [&](int iteration, double residual) { tell(at, before + iteration, residual, x); });
   result_.iterations += solved.iterations;
   result_.residual = solved.residual;
   return solved;
