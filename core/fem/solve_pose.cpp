@@ -19,7 +19,7 @@ namespace limber {
 namespace {
 constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the final pose
 constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers, a share of the nodes
-constexpr double kStalled = 0.02;     // NewtonSettings::stalled of all solves but the last
+constexpr double kStalled = 0.005;    // NewtonSettings::stalled of all solves but the last
 // Factor on step_tolerance_mm when a shape is solved again before the next part is retried.
 constexpr double kTight = 0.25;
 constexpr double kLeastPart = 0.1;  // if objects move by less than this share of the shortest part, the part fails
