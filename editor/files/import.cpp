@@ -368,37 +368,35 @@ void open_files(Context& context, std::vector<Path> paths, Then then) {
 
 void open_volume(Context& context, const Path& path, Then then) {
   ask_about_unsaved(context, [path, then](Context& c) {
-    const int job =
-        start_task(c, "Open " + path.filename().string(),
-                   [path, then, now = c.document(), agreed = c.history->revision(),
-                    make_ready = body_maker(*c.views)](Progress& progress) -> Finish {
-                     ReadVolume read = read_labels_or_image(path, progress);
-                     if (read.is_image) make_image_ready(make_ready, now, *read.as_project, *read.shown, progress);
-                     if (!read.labels)
-                       return [read, path, agreed](Context& c) { take_or_show(c, read, path, "", {}, agreed); };
-                     VolumeFile& file = *read.labels;
-                     auto opened = std::make_shared<Opened>();
-                     opened->document = with_volume(file);
-                     opened->document.volume = shared(std::move(file.volume));
-                     opened->extents = shared(extents_of(opened->document.volume));
-                     if (read.doubt.empty()) make_ready(opened->document, progress, {});
-                     opened->inputs = inputs_of(FileKind::Volume, path);
-                     opened->name = name_of_file(path);
-                     opened->label = "Open " + path.filename().string();
-                     opened->agreed = agreed;
-                     opened->then = [path, then](Context& c) {
-                       keep_thumbnail(c, path);
-                       if (then) then(c);
-                     };
-                     const Finish take = [opened, path, warnings = file.warnings](Context& c) {
-                       warn_of(c.messages, path, warnings);
-                       add_recent(c.recent_files, path, std::time(nullptr));
-                       replace_project(c, opened);
-                     };
-                     return [take, path, agreed, read = std::move(read)](Context& c) {
-                       take_or_show(c, read, path, "Open as labels", take, agreed);
-                     };
-                   });
+    auto work = [path, then, now = c.document(), agreed = c.history->revision(),
+                 make_ready = body_maker(*c.views)](Progress& progress) -> Finish {
+      ReadVolume read = read_labels_or_image(path, progress);
+      if (read.is_image) make_image_ready(make_ready, now, *read.as_project, *read.shown, progress);
+      if (!read.labels) return [read, path, agreed](Context& c) { take_or_show(c, read, path, "", {}, agreed); };
+      VolumeFile& file = *read.labels;
+      auto opened = std::make_shared<Opened>();
+      opened->document = with_volume(file);
+      opened->document.volume = shared(std::move(file.volume));
+      opened->extents = shared(extents_of(opened->document.volume));
+      if (read.doubt.empty()) make_ready(opened->document, progress, {});
+      opened->inputs = inputs_of(FileKind::Volume, path);
+      opened->name = name_of_file(path);
+      opened->label = "Open " + path.filename().string();
+      opened->agreed = agreed;
+      opened->then = [path, then](Context& c) {
+        keep_thumbnail(c, path);
+        if (then) then(c);
+      };
+      const Finish take = [opened, path, warnings = file.warnings](Context& c) {
+        warn_of(c.messages, path, warnings);
+        add_recent(c.recent_files, path, std::time(nullptr));
+        replace_project(c, opened);
+      };
+      return [take, path, agreed, read = std::move(read)](Context& c) {
+        take_or_show(c, read, path, "Open as labels", take, agreed);
+      };
+    };
+    const int job = start_task(c, "Open " + path.filename().string(), std::move(work));
     c.background->step_of_job[job] = StepOfWork::Prepare;
   });
 }
