@@ -15,11 +15,14 @@ constexpr double kJam = 0.05;         // share of the full Newton step: a shorte
 // While the distance of touching parts is below this many thicknesses of the barrier, the solve never counts as
 // converged: a Newton step then only doubles the distance, so it is short although the force is far too large.
 constexpr double kSqueezed = 1e-3;
-// Damping of the Hessian after a jam, an iteration whose line search hardly moves (FemEnergy::newton_step); each
-// further jam increases it. Where parts of the skin meet along parallel edges, the Hessian lacks some of the energy's
-// curvature, and an undamped step leads far along such an edge.
+// Damping of the Hessian (FemEnergy::newton_step) after a poor iteration: a jam, or a search that achieves less than
+// the share kPoor of the decrease that the slope predicts. Each further poor iteration increases it. Where parts of the
+// skin meet along parallel edges, the Hessian lacks some of the energy's curvature, and an undamped step leads far
+// along such an edge.
 constexpr double kDamped = 1e-2;
-constexpr int kJams = 3;  // number of jams in a row after which the solve gives up
+constexpr double kPoor = 0.03;
+constexpr int kMostDamped = 16;  // upper limit on the number of good iterations in a row that stay damped
+constexpr int kJams = 3;         // number of jams in a row after which the solve gives up
 // The solve has converged only if the last line search left out at most this much of the full Newton step: the longest
 // motion of a node in the remainder, as a share of the tolerance.
 constexpr double kLeft = 0.25;
@@ -27,6 +30,28 @@ constexpr double kLeft = 0.25;
 // further than this many tolerances.
 constexpr double kStraggle = 3;
 constexpr int kStalls = 4;  // number of iterations over which the energy must stall (NewtonSettings::stalled)
+
+// The damping of the next iteration. The first good iteration ends it. If undamped steps prove poor again, twice as
+// many iterations stay damped from then on.
+class Damping {
+ public:
+  double value() const { return value_; }
+  void update(bool is_poor) {
+    if (is_poor) {
+      if (value_ == 0) {
+        left_ = held_;
+        held_ = std::min(2 * held_ + 1, kMostDamped);
+      }
+      value_ = std::max(kDamped, 10 * value_);
+    } else if (value_ > kDamped) value_ /= 10;
+    else if (left_ > 0) --left_;
+    else value_ = 0;
+  }
+
+ private:
+  double value_ = 0;
+  int held_ = 0, left_ = 0;  // number of further good iterations that stay damped: after the next poor one, and now
+};
 
 double longest(const NodePositions& step) {
   return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0;
@@ -100,14 +125,14 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
                       const std::function<void(int, double)>& on_iteration) {
   NewtonResult result;
   int jams = 0;
-  double damping = 0;
+  Damping damping;
   double value = energy.value(x);
   std::vector<double> values;  // the energy before each iteration
   NodePositions step;
   while (result.iterations < settings.iterations) {
     if (progress.cancelled()) throw Cancelled();
     double slope = 0;
-    if (!energy.newton_step(x, HessianKind::Projected, step, slope, nullptr, damping)) break;
+    if (!energy.newton_step(x, HessianKind::Projected, step, slope, nullptr, damping.value())) break;
     ++result.iterations;
     values.push_back(value);
     result.residual = longest(step);
@@ -120,16 +145,18 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     if (on_iteration) on_iteration(result.iterations, result.residual);
     jams = length < kJam ? jams + 1 : 0;
     if (jams == kJams) break;
-    const bool is_damped = damping > 0;  // if damped, a short step does not show that the solve has converged
+    // If damped, a short step does not show that the solve has converged, unless it is very short and taken whole.
+    const bool is_damped = damping.value() > 0;
+    const bool is_still = length >= 1 && damping.value() <= kDamped && result.residual < kLeft * settings.tolerance_mm;
     const bool may_damp = energy.tightest() < 1;
-    damping = length < kJam && may_damp ? std::max(kDamped, 10 * damping) : damping > kDamped ? damping / 10 : 0;
+    damping.update(may_damp && (length < kJam || values.back() - value < kPoor * slope));
     if (length == 0) {
       // If the step is too short to matter, the solve has converged; otherwise a damped step may find a lower energy.
       result.converged = !is_damped && result.residual < settings.tolerance_mm;
       if (result.converged || !may_damp) break;
       continue;
     }
-    if (!is_damped && settled(step, result.residual, settings) && energy.tightest() > kSqueezed &&
+    if ((!is_damped || is_still) && settled(step, result.residual, settings) && energy.tightest() > kSqueezed &&
         (1 - length) * result.residual < kLeft * settings.tolerance_mm) {
       result.converged = true;
       break;
