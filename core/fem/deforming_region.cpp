@@ -138,11 +138,12 @@ class Cells {
     }
   }
 
-  // Returns the positions on the path at which contact is tested: the given `places`, and as many between them that no
-  // cell moves further than near_mm from one to the next. Otherwise parts could pass each other unnoticed.
+  // Returns the positions on the path at which contact is tested: the given `places`, and so many between them that no
+  // cell moves further than near_mm from one to the next, as far as kMostBetween allows. Otherwise parts could pass
+  // each other unnoticed.
   std::vector<double> tested_places(const BonePath& path, const std::vector<double>& places, double near_mm) const {
-    std::unordered_map<int, std::pair<glm::dvec3, glm::dvec3>>
-        boxes;  // bounding box of each motion's cells at rest, mm
+    // The bounding box of each motion's cells at rest, mm.
+    std::unordered_map<int, std::pair<glm::dvec3, glm::dvec3>> boxes;
     const AffineTransform world = world_from_voxel(grid_);
     for_each_cell([&](const glm::ivec3& cell, std::int64_t at) {
       if (motion_[at] == kAir) return;

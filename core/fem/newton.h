@@ -4,9 +4,9 @@
 // does not move. All steps use the projected Hessian, because until the last iterations of a deep bend the exact
 // Hessian is indefinite or nearly so, and its steps are useless. The solve ends when the full Newton step is shorter
 // than the tolerance and the line search has taken almost all of it. The solve gives up after three searches in a row
-// that hardly moved. A full step that lowers the energy well is also tried at 2, 4 and 8 times its length. A step that
-// is limited to less than half of its length is first smoothed around the tets or pairs that limit it, so that the
-// other nodes can take it.
+// that hardly moved. After a poor search the Hessian is damped. A full step that lowers the energy well is also tried
+// at 2, 4 and 8 times its length. A step that is limited to less than half of its length is first smoothed around the
+// tets or pairs that limit it, so that the other nodes can take it.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ struct NewtonSettings {
   // a few of many thousands of nodes converge very slowly.
   double stragglers = 0;
   // The solve also ends when no node would move further than the tolerance and the energy has stalled: a few iterations
-  // together have lowered it by less than this share. Contact may then keep a step short that changes the shape hardly.
+  // together have lowered it by less than this share. Contact then keeps steps short, and they hardly change the shape.
   double stalled = 0;
   int iterations = 40;
   std::vector<char> fixed;  // #nodes: 1 for nodes whose step is never smoothed (FemEnergy::limit_step); empty: none
