@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Finds which of many boxes intersect a given box. Boxes are ranges of whole voxels; they are sorted into cubic bins.
+// Finds which of many boxes intersect a given box, or which of many points lie near a point. Boxes are ranges of whole
+// voxels; they are sorted into cubic bins.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -67,6 +69,35 @@ class BoxBins {
   glm::ivec3 first_{0}, size_{0};
   std::vector<std::int64_t> begin_;
   std::vector<int> entries_;
+};
+
+// Finds points near a place. The bins are as wide as the search, so its cost is the same in every unit of length.
+class PointBins {
+ public:
+  PointBins(const std::vector<glm::dvec3>& points, double reach) {
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (const glm::dvec3& p : points) low = glm::min(low, p), high = glm::max(high, p);
+    const glm::dvec3 size = points.empty() ? glm::dvec3(0) : high - low;
+    reach_ = std::max({reach, kLeastReach * std::max({size.x, size.y, size.z}), 1e-30});
+    std::vector<VoxelRange> boxes;
+    for (const glm::dvec3& p : points) boxes.push_back({cell_of(p), cell_of(p)});
+    bins_ = BoxBins(std::move(boxes), kCells);
+  }
+
+  // Writes the indices of the points within `reach` of a place, and of some points further away, in ascending order,
+  // into `found`.
+  void near(const glm::dvec3& place, std::vector<int>& found) const {
+    const glm::ivec3 cell = cell_of(place);
+    bins_.meeting({cell - (kCells + 1), cell + (kCells + 1)}, found);
+  }
+
+ private:
+  static constexpr int kCells = 8;             // cells along the reach; a bin is as wide
+  static constexpr double kLeastReach = 1e-3;  // least width of a bin, as a share of the points' extent
+  glm::ivec3 cell_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p * (kCells / reach_))); }
+
+  BoxBins bins_;
+  double reach_ = 1;
 };
 
 }  // namespace limber

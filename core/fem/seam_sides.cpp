@@ -6,6 +6,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/base/disjoint_sets.h"
+
 namespace limber {
 
 namespace {
@@ -82,24 +84,6 @@ std::vector<std::uint16_t> sides_of_bones(const TissueVoxels& tissue, const std:
   return side;
 }
 
-// Groups of numbered things.
-class Groups {
- public:
-  explicit Groups(std::int64_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0); }
-  // Returns the smallest number in the group of `i`.
-  std::int32_t of(std::int64_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return static_cast<std::int32_t>(i);
-  }
-  void unite(std::int64_t a, std::int64_t b) {
-    const auto [low, high] = std::minmax({of(a), of(b)});
-    parent_[high] = low;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
 // Lets islands follow the bone around them that has most faces with them. Returns their voxels with the new bone.
 //   has_bone  #tissue voxels: 1 for voxels of bone tissue
 //   bone      #tissue voxels: the bone that each follows; changed for islands
@@ -107,7 +91,7 @@ std::vector<VoxelSides::Stray> join_islands(const TissueVoxels& tissue, const st
                                             const std::vector<std::uint16_t>& side_of_bone,
                                             std::vector<std::uint16_t>& bone) {
   const auto side = [&](std::int64_t place) { return side_of_bone[bone[place]]; };
-  Groups groups(tissue.size());
+  DisjointSets groups(tissue.size());
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
     if (!is_cut && side(first) == side(second)) groups.unite(first, second);
   });
@@ -118,7 +102,7 @@ std::vector<VoxelSides::Stray> join_islands(const TissueVoxels& tissue, const st
   };
   std::map<std::int32_t, Island> islands;
   for (std::int64_t i = 0; i < tissue.size(); ++i) {
-    Island& island = islands[groups.of(i)];
+    Island& island = islands[groups.least(i)];
     ++island.voxels;
     island.holds_bone |= has_bone[i] != 0;
   }
@@ -132,11 +116,12 @@ std::vector<VoxelSides::Stray> join_islands(const TissueVoxels& tissue, const st
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
     if (is_cut || side(first) == side(second)) return;
     for (const auto& [of, next] : {std::pair{first, second}, std::pair{second, first}})
-      if (const auto island = islands.find(groups.of(of)); island != islands.end()) ++island->second.faces[bone[next]];
+      if (const auto island = islands.find(groups.least(of)); island != islands.end())
+        ++island->second.faces[bone[next]];
   });
   std::vector<VoxelSides::Stray> strays;
   for (std::int64_t i = 0; i < tissue.size(); ++i) {
-    const auto island = islands.find(groups.of(i));
+    const auto island = islands.find(groups.least(i));
     if (island == islands.end() || island->second.faces.empty()) continue;
     const auto& faces = island->second.faces;
     const auto most =
@@ -196,12 +181,12 @@ std::shared_ptr<const Seams> close_gaps(const TissueVoxels& tissue, const Grid& 
     }
   });
   // Open faces are in one group if a path between them leads over voxels with open faces.
-  Groups groups(tissue.size());
+  DisjointSets groups(tissue.size());
   for_each_face(tissue, [&](std::int64_t first, std::int64_t second, bool is_cut) {
     if (!is_cut && is_at_face[first] && is_at_face[second]) groups.unite(first, second);
   });
   // For each group around joints: the sides that these joints attach to each other, as groups of sides.
-  std::map<std::int32_t, Groups> attached;
+  std::map<std::int32_t, DisjointSets> attached;
   const AffineTransform world = world_from_voxel(grid);
   for (const SideJoint& joint : joints) {
     double distance = INFINITY;
@@ -212,14 +197,14 @@ std::shared_ptr<const Seams> close_gaps(const TissueVoxels& tissue, const Grid& 
       if (here < distance) distance = here, nearest = face.first;
     }
     if (nearest < 0) continue;
-    Groups& sides =
-        attached.try_emplace(groups.of(nearest), 1 + *std::max_element(side.begin(), side.end())).first->second;
+    DisjointSets& sides =
+        attached.try_emplace(groups.least(nearest), 1 + *std::max_element(side.begin(), side.end())).first->second;
     sides.unite(joint.first, joint.second);
   }
   auto closed = std::make_shared<Seams>(seams);
   for (const OpenFace& face : open) {
-    const auto sides = attached.find(groups.of(face.first));
-    if (sides == attached.end() || sides->second.of(side[face.first]) != sides->second.of(side[face.second]))
+    const auto sides = attached.find(groups.least(face.first));
+    if (sides == attached.end() || sides->second.least(side[face.first]) != sides->second.least(side[face.second]))
       closed->cut(face.lower, face.axis);
   }
   return closed;

@@ -69,17 +69,13 @@ void mark_faced(const TetMesh& mesh, const std::vector<int>& bone, const NodePos
                 const std::vector<RigidTransform>& motion, double reach, std::vector<std::uint8_t>& faced) {
   std::vector<int> nodes;
   std::vector<glm::dvec3> place;
-  std::vector<VoxelRange> boxes;
   for (int v = 0; v < int(mesh.V.rows()); ++v) {
     if (bone[v] < 0) continue;
     nodes.push_back(v);
     const glm::dvec3 rest = vec_of(mesh.V.row(v));
     place.push_back(motion.empty() ? rest : motion[bone[v]] * rest);
-    const glm::ivec3 cell(glm::floor(place.back()));
-    boxes.push_back({cell, cell});
   }
-  const BoxBins bins(boxes, 8);
-  const int range = int(std::ceil(reach)) + 1;
+  const PointBins bins(place, reach);
   std::vector<int> near;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     const int v = nodes[k];
@@ -87,7 +83,7 @@ void mark_faced(const TetMesh& mesh, const std::vector<int>& bone, const NodePos
     if (faced[v] || length == 0) continue;
     glm::dvec3 out = vec_of(normal.row(v)) / length;
     if (!motion.empty()) out = motion[bone[v]].rotation * out;
-    bins.meeting({boxes[k].low - range, boxes[k].high + range}, near);
+    bins.near(place[k], near);
     faced[v] = std::any_of(near.begin(), near.end(), [&](int n) {
       const glm::dvec3 to = place[n] - place[k];
       const double distance = glm::length(to);

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numeric>
 
 #include <Eigen/LU>
 
+#include "core/base/disjoint_sets.h"
 #include "core/deform/box_bins.h"
 #include "core/mesh/lattice_net.h"
 
@@ -177,24 +177,23 @@ constexpr int kNone = -1, kSeveral = -2;
 // `joint_mm`. Of the nodes of a bone itself, at most half are included, those nearest to another bone.
 //   bone  #V: the bone of each node; kNone: soft tissue; kSeveral: shared by bones
 std::vector<std::uint8_t> nodes_of_joints(const TetMesh& mesh, const std::vector<int>& bone, double joint_mm) {
-  std::vector<VoxelRange> boxes(mesh.V.rows()), of_bones(mesh.V.rows());
-  for (int i = 0; i < mesh.V.rows(); ++i) {
-    boxes[i].low = boxes[i].high = glm::ivec3(glm::floor(glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2))));
-    if (bone[i] >= 0) of_bones[i] = boxes[i];
-  }
-  const BoxBins bins(of_bones, 8);
-  const int reach = static_cast<int>(std::ceil(joint_mm)) + 1;
+  const auto place = [&](int i) { return glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)); };
+  std::vector<int> held;  // the nodes of bones
+  std::vector<glm::dvec3> held_at;
+  for (int i = 0; i < mesh.V.rows(); ++i)
+    if (bone[i] >= 0) held.push_back(i), held_at.push_back(place(i));
+  const PointBins bins(held_at, joint_mm);
   std::map<int, std::vector<std::pair<double, int>>> near_other;  // for each bone: (distance to another bone, node)
   std::map<int, std::size_t> count;
   std::vector<std::uint8_t> between(mesh.V.rows(), 0);
   std::vector<int> near;
   for (int i = 0; i < mesh.V.rows(); ++i) {
     if (bone[i] >= 0) ++count[bone[i]];
-    bins.meeting({boxes[i].low - reach, boxes[i].high + reach}, near);
+    bins.near(place(i), near);
     std::map<int, double> to_bone;
     for (int n : near) {
-      const double distance = (mesh.V.row(n) - mesh.V.row(i)).norm();
-      const auto [at, is_first] = to_bone.try_emplace(bone[n], distance);
+      const double distance = (mesh.V.row(held[n]) - mesh.V.row(i)).norm();
+      const auto [at, is_first] = to_bone.try_emplace(bone[held[n]], distance);
       at->second = std::min(at->second, distance);
     }
     if (to_bone.size() < 2) continue;
@@ -228,19 +227,13 @@ void mark_closing_bones(const TetMesh& mesh, const std::vector<int>& bone,
     if (marked[i] && free[bone[i]] > 0) --free[bone[i]];
 
   std::vector<double> nearest(nodes.size(), INFINITY);
-  const int reach = static_cast<int>(std::ceil(closing_mm)) + 1;
   for (const std::vector<RigidTransform>& motion : motions) {
     std::vector<glm::dvec3> posed;
-    std::vector<VoxelRange> boxes;
-    for (const int i : nodes) {
-      posed.push_back(motion[bone[i]] * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)));
-      const glm::ivec3 cell(glm::floor(posed.back()));
-      boxes.push_back({cell, cell});
-    }
-    const BoxBins bins(boxes, 8);
+    for (const int i : nodes) posed.push_back(motion[bone[i]] * glm::dvec3(mesh.V(i, 0), mesh.V(i, 1), mesh.V(i, 2)));
+    const PointBins bins(posed, closing_mm);
     std::vector<int> near;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      bins.meeting({boxes[k].low - reach, boxes[k].high + reach}, near);
+      bins.near(posed[k], near);
       for (const int n : near)
         if (bone[nodes[n]] != bone[nodes[k]]) nearest[k] = std::min(nearest[k], glm::distance(posed[n], posed[k]));
     }
@@ -324,32 +317,25 @@ void free_nodes_at_seams(FemModel& fem, const std::vector<int>& side, const IsHe
 // determine their position. Each moves rigidly with the bone that most of its nodes follow.
 void hold_loose_parts(FemModel& fem) {
   if (fem.mesh.side.empty()) return;
-  std::vector<int> part(fem.mesh.V.rows());
-  std::iota(part.begin(), part.end(), 0);
-  const auto root = [&](int i) {
-    while (part[i] != i) i = part[i] = part[part[i]];
-    return i;
-  };
+  const int nodes = int(fem.mesh.V.rows());
+  DisjointSets parts(nodes);
   for (const auto& tet : fem.mesh.T.rowwise())
-    for (int i = 1; i < 4; ++i) {
-      const auto [low, high] = std::minmax({root(tet[0]), root(tet[i])});
-      part[high] = low;
-    }
-  std::vector<char> is_held(part.size(), 0);
-  for (std::size_t i = 0; i < part.size(); ++i)
-    if (fem.held_by[i] >= 0) is_held[root(static_cast<int>(i))] = 1;
-  for (const FemModel::Waiting& each : fem.waiting) is_held[root(each.node)] = 1;
+    for (int i = 1; i < 4; ++i) parts.unite(tet[0], tet[i]);
+  std::vector<char> is_held(nodes, 0);
+  for (int i = 0; i < nodes; ++i)
+    if (fem.held_by[i] >= 0) is_held[parts.least(i)] = 1;
+  for (const FemModel::Waiting& each : fem.waiting) is_held[parts.least(each.node)] = 1;
   std::map<int, std::map<int, double>> follows;  // for each loose part, the sum of its nodes' weights by bone
-  for (std::size_t i = 0; i < part.size(); ++i)
-    if (const int of = root(static_cast<int>(i)); !is_held[of])
+  for (int i = 0; i < nodes; ++i)
+    if (const int of = parts.least(i); !is_held[of])
       for (const auto& [bone, weight] : fem.influences[i]) follows[of][bone] += weight;
   std::map<int, int> holder;
   for (const auto& [of, bones] : follows)
     holder[of] = std::max_element(bones.begin(), bones.end(), [](const auto& a, const auto& b) {
                    return a.second < b.second;
                  })->first;
-  for (std::size_t i = 0; i < part.size(); ++i)
-    if (const auto of = holder.find(root(static_cast<int>(i))); of != holder.end()) {
+  for (int i = 0; i < nodes; ++i)
+    if (const auto of = holder.find(parts.least(i)); of != holder.end()) {
       fem.held_by[i] = of->second;
       fem.influences[i] = {{of->second, 1.0}};
     }

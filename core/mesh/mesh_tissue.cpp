@@ -53,7 +53,7 @@ void cut_open(TissueMesh& result, const LatticeNet& net, const VoxelRegions& vox
   const Eigen::MatrixX4i before = mesh.T;
   split_at_faces(mesh, net.cut, nodes_of_several_sides(mesh, voxels));
   open_faces(mesh, net.cut, before, kOpen * net.spacing_mm);
-  if (const std::int64_t removed = remove_crossing(mesh); removed > 0) {
+  if (const std::int64_t removed = remove_crossing(mesh) + remove_flakes(mesh, voxels); removed > 0) {
     if (!result.warning.empty()) result.warning += "; ";
     result.warning +=
         std::to_string(removed) + (removed == 1 ? " tet" : " tets") +

@@ -8,7 +8,9 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/disjoint_sets.h"
 #include "core/mesh/crossings.h"
+#include "core/mesh/voxels_in_tet.h"
 
 namespace limber {
 
@@ -158,6 +160,24 @@ void open_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces, con
   }
 }
 
+namespace {
+
+// Removes the marked tets and returns their number.
+std::int64_t remove_tets(TetMesh& mesh, const std::vector<char>& lost) {
+  const Eigen::Index all = mesh.T.rows();
+  Eigen::Index kept = 0;
+  for (Eigen::Index t = 0; t < all; ++t) {
+    if (lost[t]) continue;
+    mesh.T.row(kept) = mesh.T.row(t).eval();
+    mesh.region[kept++] = mesh.region[t];
+  }
+  mesh.T.conservativeResize(kept, 4);
+  mesh.region.resize(kept);
+  return all - kept;
+}
+
+}  // namespace
+
 std::int64_t remove_crossing(TetMesh& mesh) {
   const Eigen::Index all = mesh.T.rows();
   constexpr int kRounds = 8;
@@ -177,17 +197,43 @@ std::int64_t remove_crossing(TetMesh& mesh) {
       if (is_soft_a && (!is_soft_b || mesh.region[a] >= mesh.region[b])) lost[a] = 1;
       else if (is_soft_b) lost[b] = 1;
     }
-    Eigen::Index kept = 0;
-    for (Eigen::Index t = 0; t < mesh.T.rows(); ++t) {
-      if (lost[t]) continue;
-      mesh.T.row(kept) = mesh.T.row(t).eval();
-      mesh.region[kept++] = mesh.region[t];
-    }
-    if (kept == mesh.T.rows()) break;
-    mesh.T.conservativeResize(kept, 4);
-    mesh.region.resize(kept);
+    if (remove_tets(mesh, lost) == 0) break;
   }
   return all - mesh.T.rows();
+}
+
+std::int64_t remove_flakes(TetMesh& mesh, const VoxelRegions& voxels) {
+  constexpr double kLeastTissue = 0.5;  // share of a part's volume
+  DisjointSets parts(mesh.V.rows());
+  for (const auto& tet : mesh.T.rowwise())
+    for (int i = 1; i < 4; ++i) parts.unite(tet[0], tet[i]);
+  std::map<int, std::vector<Eigen::Index>> loose;  // the tets of each part without bone
+  std::set<int> with_bone;
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    if (!is_soft_region(mesh.region[t])) with_bone.insert(parts.least(mesh.T(t, 0)));
+  for (Eigen::Index t = 0; t < mesh.T.rows(); ++t)
+    if (const int part = parts.least(mesh.T(t, 0)); !with_bone.contains(part)) loose[part].push_back(t);
+  std::vector<char> lost(mesh.T.rows(), 0);
+  const AffineTransform voxel = voxel_from_world(voxels.grid);
+  for (const auto& [part, tets] : loose) {
+    std::int64_t tissue = 0;
+    double mm3 = 0;
+    for (const Eigen::Index t : tets) {
+      glm::dvec3 corner[4];
+      for (int i = 0; i < 4; ++i) {
+        const Eigen::RowVector3d at = mesh.V.row(mesh.T(t, i));
+        corner[i] = voxel * glm::dvec3(at.x(), at.y(), at.z());
+      }
+      for_each_row_in_tet(corner, voxels.grid, 0, voxels.grid.size.z - 1, [&](glm::ivec3 v, const glm::ivec3& last) {
+        for (; v.x <= last.x; ++v.x) tissue += voxels.tissue.index_of(v) >= 0;
+      });
+      mm3 += signed_volume(mesh.V, mesh.T.row(t));
+    }
+
+    if (double(tissue) * voxels.grid.voxel_volume() < kLeastTissue * mm3)
+      for (const Eigen::Index t : tets) lost[t] = 1;
+  }
+  return remove_tets(mesh, lost);
 }
 
 std::vector<int> split_at_seams(TetMesh& mesh, const SampleLattice& lattice, const SurfaceNet& net) {

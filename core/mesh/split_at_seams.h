@@ -8,6 +8,7 @@
 
 #include "core/mesh/surface_net.h"
 #include "core/mesh/tet_mesh.h"
+#include "core/mesh/voxel_regions.h"
 
 namespace limber {
 
@@ -27,6 +28,12 @@ void open_faces(TetMesh& mesh, const std::vector<std::array<int, 3>>& faces, con
 // faces fold sharply. Their tissue then moves with the border. Returns the number of removed tets.
 //   mesh  regions by sides (soft_region()); a removed tet leaves its nodes
 std::int64_t remove_crossing(TetMesh& mesh);
+
+// Removes flakes: parts of the mesh without bone, connected to no other part, in which tissue is less than half of the
+// volume. The mesh is coarser than the body, so it may bridge the air between two limbs; where the bridge is cut
+// between their sides, flakes remain that nothing holds in place. Returns the number of removed tets.
+//   mesh  regions by sides (soft_region()); a removed tet leaves its nodes
+std::int64_t remove_flakes(TetMesh& mesh, const VoxelRegions& voxels);
 
 // Splits the nodes on seams and returns all of them. Two tets at a node are in one group if they are connected around
 // the node through faces that no seam cuts. The first group keeps the node; every further group gets a copy of it, at
