@@ -21,8 +21,12 @@ constexpr double kSqueezed = 1e-3;
 // along such an edge.
 constexpr double kDamped = 1e-2;
 constexpr double kPoor = 0.03;
-constexpr int kMostDamped = 16;  // upper limit on the number of good iterations in a row that stay damped
-constexpr int kJams = 3;         // number of jams in a row after which the solve gives up
+// A step that would move a node further than this share of the mesh's extent is useless. It is not searched either,
+// since most of the skin would count as near along it, but damped.
+constexpr double kWild = 0.5;
+constexpr double kMostDamping = 10;  // wild steps are searched if even this damping does not make them shorter
+constexpr int kMostDamped = 16;      // upper limit on the number of good iterations in a row that stay damped
+constexpr int kJams = 3;             // number of jams in a row after which the solve gives up
 // The solve has converged only if the last line search left out at most this much of the full Newton step: the longest
 // motion of a node in the remainder, as a share of the tolerance.
 constexpr double kLeft = 0.25;
@@ -52,6 +56,10 @@ class Damping {
   double value_ = 0;
   int held_ = 0, left_ = 0;  // number of further good iterations that stay damped: after the next poor one, and now
 };
+
+double extent(const NodePositions& x) {
+  return x.rows() ? (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm() : 0;
+}
 
 double longest(const NodePositions& step) {
   return step.rows() ? std::sqrt(step.rowwise().squaredNorm().maxCoeff()) : 0;
@@ -136,6 +144,11 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     ++result.iterations;
     values.push_back(value);
     result.residual = longest(step);
+    const bool may_damp = energy.tightest() < 1;
+    if (may_damp && damping.value() < kMostDamping && result.residual > kWild * extent(x)) {
+      damping.update(true);
+      continue;
+    }
 
     result.bound = energy.largest_step(x, step, 1);
     const bool is_short = result.bound.length < kShort;
@@ -148,7 +161,6 @@ NewtonResult minimise(FemEnergy& energy, NodePositions& x, const NewtonSettings&
     // If damped, a short step does not show that the solve has converged, unless it is very short and taken whole.
     const bool is_damped = damping.value() > 0;
     const bool is_still = length >= 1 && damping.value() <= kDamped && result.residual < kLeft * settings.tolerance_mm;
-    const bool may_damp = energy.tightest() < 1;
     damping.update(may_damp && (length < kJam || values.back() - value < kPoor * slope));
     if (length == 0) {
       // If the step is too short to matter, the solve has converged; otherwise a damped step may find a lower energy.
