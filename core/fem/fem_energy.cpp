@@ -34,7 +34,7 @@ FemEnergy::FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const
       rest_(rest) {
   std::vector<double> bulk(T.rows()), shear(T.rows());
   for (Eigen::Index t = 0; t < T.rows(); ++t) bulk[t] = patch_bulk(material[t]), shear[t] = material[t].shear_modulus;
-  const PatchOrder order = grow_patches(rest, T, bulk, shear, patch_size);
+  PatchOrder order = grow_patches(rest, T, bulk, shear, patch_size);
 
   std::vector<TetEnergy> energy(T.rows());
   std::vector<double> ordered_bulk(T.rows()), filled(T.rows());
@@ -50,6 +50,7 @@ FemEnergy::FemEnergy(const NodePositions& rest, const Eigen::MatrixX4i& T, const
   }
   flesh_ = ElasticForm(rest, flesh_tets_, energy, order.first);
   patches_ = PatchForm(flesh_, order.first, ordered_bulk, std::move(filled));
+  order_ = std::move(order.tet);
   add_inversion_guard(Eigen::MatrixX4i(0, 4));
 }
 
@@ -58,6 +59,11 @@ void FemEnergy::set_constraints(PinForm pins, std::vector<int> carried, NodePosi
   pins_ = std::move(pins);
   carried_ = std::move(carried);
   carried_target_ = std::move(carried_target);
+}
+
+void FemEnergy::set_pressures(const std::vector<double>& pressure, const std::vector<Eigen::Index>& tet) {
+  added_.resize(order_.size());
+  for (std::size_t k = 0; k < order_.size(); ++k) added_[k] = pressure[tet[order_[k]]];
 }
 
 void FemEnergy::add_inversion_guard(const Eigen::MatrixX4i& guarded) {
@@ -129,12 +135,18 @@ void FemEnergy::find_ratios(const NodePositions& x) {
   ratios_at_ = x;
 }
 
+void FemEnergy::find_pressures() {
+  patches_.pressures(J_, pressure_);
+  for (std::size_t k = 0; k < added_.size(); ++k) pressure_[k] += added_[k];
+}
+
 double FemEnergy::value(const NodePositions& x) {
   double sum = 0;
   {
     const CpuTimer timer(seconds_.search);
     find_ratios(x);
     sum = flesh_.value(x, J_) + patches_.value(J_) + pins_.value(x) + slide_.value(x);
+    for (std::size_t k = 0; k < added_.size(); ++k) sum += added_[k] * flesh_.tet(std::int64_t(k)).volume * (J_[k] - 1);
     if (load_.rows()) sum -= load_.cwiseProduct(x).sum();
   }
   if (contact_.empty()) return sum;
@@ -145,7 +157,7 @@ double FemEnergy::value(const NodePositions& x) {
 void FemEnergy::gradient(const NodePositions& x, NodePositions& gradient) {
   find_ratios(x);
   gradient.setZero(node_count_, 3);
-  patches_.pressures(J_, pressure_);
+  find_pressures();
   flesh_.add_gradient(x, pressure_, gradient);
   contact_.update_active_pairs(x);
   contact_.add_gradient(gradient);
@@ -165,7 +177,7 @@ void FemEnergy::assemble(const NodePositions& x, HessianKind curvature, NodePosi
   gradient.setZero(node_count_, 3);
   matrix_->clear();
   const auto values = matrix_->values();
-  patches_.pressures(J_, pressure_);
+  find_pressures();
   flesh_.add_derivatives(x, pressure_, patches_.stiffness(), curvature, gradient, values);
   contact_.add_gradient(gradient);
   contact_.add_curvature(values);

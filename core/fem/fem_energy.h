@@ -68,6 +68,10 @@ class FemEnergy {
     slide_.moved = std::move(moved);
   }
   const SlideForm& slide() const { return slide_; }
+  // Sets a constant pressure on each tet that deforms, kPa, beyond the pressures that its material causes. Positive
+  // pressure makes the tet smaller.
+  //   pressure  pressure[tet[t]] acts on tet t of the constructor's T
+  void set_pressures(const std::vector<double>& pressure, const std::vector<Eigen::Index>& tet);
   // Sets a constant force on each node, such as its weight, mN.
   void set_load(NodePositions load) { load_ = std::move(load); }
 
@@ -119,6 +123,7 @@ class FemEnergy {
   void prepare(const NodePositions& x);
   void number();
   void find_ratios(const NodePositions& x);
+  void find_pressures();
   void assemble(const NodePositions& x, HessianKind curvature, NodePositions& gradient);
 
   int node_count_;
@@ -132,7 +137,9 @@ class FemEnergy {
   PinForm pins_;
   SlideForm slide_;
   ContactForm contact_;
-  NodePositions load_;  // force on each node, mN; empty: none
+  std::vector<std::int64_t> order_;  // index in the constructor's T of each tet of flesh_
+  std::vector<double> added_;        // #T: pressure that set_pressures() added; empty: none
+  NodePositions load_;               // force on each node, mN; empty: none
   std::vector<int> carried_;
   NodePositions carried_target_;
 

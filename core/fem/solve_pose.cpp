@@ -17,6 +17,7 @@
 namespace limber {
 
 namespace {
+constexpr int kKeepings = 6;          // number of solves after it that keep the volumes of tissues
 constexpr int kSettling = 3;          // factor on step_iterations for the last solve, at the final pose
 constexpr double kStragglers = 1e-3;  // NewtonSettings::stragglers, a share of the nodes
 constexpr double kStalled = 0.005;    // NewtonSettings::stalled of all solves but the last
@@ -32,29 +33,6 @@ constexpr double kWeakBarrier = 100;
 Eigen::RowVector3d moved(const RigidTransform& transform, const Eigen::RowVector3d& p) {
   const glm::dvec3 q = transform * glm::dvec3(p[0], p[1], p[2]);
   return {q.x, q.y, q.z};
-}
-
-void check(const FemModel& model, const Eigen::MatrixX3d* start) {
-  const auto wrong = [](const char* what) {
-    throw Error("a list of the finite element model does not fit its mesh", what, "give one valid entry for each");
-  };
-  if (std::ssize(model.material) != model.mesh.T.rows()) wrong("material of each tet");
-  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("bone that holds each node");
-  if (std::any_of(model.waiting.begin(), model.waiting.end(), [&](const FemModel::Waiting& each) {
-        return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 ||
-               model.held_by[each.node] >= 0;
-      }))
-    wrong("nodes that wait for a bone");
-  if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences of each node");
-  for (const FemModel::Sliding& each : model.sliding)
-    if (each.node < 0 || each.node >= std::ssize(model.held_by) || model.held_by[each.node] >= 0 || each.bone < 0 ||
-        each.bone >= std::ssize(model.bone_surface) || !model.bone_surface[each.bone])
-      wrong("bone surface of each sliding node");
-  if (start && start->rows() != model.mesh.V.rows()) wrong("start position of each node");
-  if (count_inverted(model.mesh.T, model.mesh.V))
-    throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
-  if (start && count_inverted(model.mesh.T, *start))
-    throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
 // All nodes of objects have this number in the list of rigid nodes; it is above the numbers of all bones. So objects
@@ -125,6 +103,7 @@ class PoseSolve {
   bool good(const std::vector<RigidTransform>& pose, const NodePositions& x);
   void record();
   void settle();
+  bool settle_from(NodePositions x);
   void hold_at(double at, const NodePositions* less = nullptr);
   NodePositions weight_at(double at) const;
   template <class Way>
@@ -374,21 +353,36 @@ NewtonResult PoseSolve::relax(double at, double tolerance_mm, int iterations, No
 }
 
 // Solves at the final pose again, to the final tolerance, which is finer than that of the steps. A shape that does not
-// converge is kept, because it is as good as the result of a step.
+// converge is kept, because it is as good as the result of a step. Then keeps the volumes of tissues.
 void PoseSolve::settle() {
   result_.blocked_by.clear();
-  if (result_.residual < settings_.tolerance_mm) return;
   hold_at(1);
-  NodePositions x = x_;
+  if (result_.residual >= settings_.tolerance_mm && !settle_from(x_)) return;
+  VolumeKeeper keeper(model_.mesh, model_.kept, model_.material);
+  for (int round = 0; round < kKeepings && result_.blocked_by.empty(); ++round) {
+    const std::vector<double> pressures = keeper.pressures_at(x_);
+    if (pressures.empty()) return;
+    energy_->set_pressures(pressures, parts_.elastic_tet);
+    const NodePositions before = x_;
+    if (settle_from(x_) && result_.blocked_by.empty()) continue;
+    x_ = before;
+    result_.blocked_by.clear();
+    return;
+  }
+}
+
+// Solves at the final pose, starting at x, and keeps the result if it is good. Otherwise returns false.
+bool PoseSolve::settle_from(NodePositions x) {
   energy_->build_broad_phase(x);
   const NewtonResult solved = relax(1, settings_.tolerance_mm, kSettling * settings_.step_iterations, x);
-  if (!good(path_(1), x)) return;
+  if (!good(path_(1), x)) return false;
   x_ = std::move(x);
   record();
-  if (solved.converged) return;
+  if (solved.converged) return true;
   char moves[60];
   std::snprintf(moves, sizeof moves, "nodes would still move by %.1f mm: ", solved.residual);
   result_.blocked_by = moves + obstacle(solved.bound, x_);
+  return true;
 }
 
 // Returns true if all bones' nodes are close to their bones. Otherwise sets blocked_by and returns false.

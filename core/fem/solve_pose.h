@@ -19,6 +19,7 @@
 #include "core/base/progress.h"
 #include "core/deform/skinning.h"
 #include "core/fem/fem_energy.h"
+#include "core/fem/kept_volumes.h"
 #include "core/fem/material.h"
 #include "core/fem/rigid_object.h"
 #include "core/mesh/tet_mesh.h"
@@ -48,6 +49,7 @@ struct FemModel {
   std::vector<std::vector<BoneWeight>> influences;
   std::vector<std::string> bone_names;  // names for messages; a bone without a name is called "bone 3"
   std::vector<double> mass;             // #V: mass of each node in kg, for gravity; empty: none
+  std::vector<KeptVolume> kept;         // tissues whose volumes the final pose keeps
   RigidObjects objects;                 // rigid objects that press on the skin, if contact is on
 };
 

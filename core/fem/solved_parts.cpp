@@ -50,7 +50,7 @@ SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by,
       for (const int v : T.row(t)) in_joint[v] = 1;
   }
 
-  std::vector<Eigen::Index> elastic_tet, rigid_tet;
+  std::vector<Eigen::Index> rigid_tet;
   std::vector<double> volume(model.mesh.V.rows(), 0);
   const NodePositions rest = model.mesh.V;
   for (Eigen::Index t = 0; t < T.rows(); ++t) {
@@ -75,6 +75,32 @@ SolvedParts::SolvedParts(const FemModel& model, const std::vector<int>& held_by,
     const double spring = (in_joint[v] ? kJointPinStiffness : kPinStiffness) / (size * size);
     if (in_elastic[v]) pin_stiffness.push_back(spring * volume[v]);
   }
+}
+
+void check(const FemModel& model, const Eigen::MatrixX3d* start) {
+  const auto wrong = [](const char* what) {
+    throw Error("a list of the finite element model does not fit its mesh", what, "give one valid entry for each");
+  };
+  if (std::ssize(model.material) != model.mesh.T.rows()) wrong("material of each tet");
+  if (std::ssize(model.held_by) != model.mesh.V.rows()) wrong("bone that holds each node");
+  if (std::any_of(model.waiting.begin(), model.waiting.end(), [&](const FemModel::Waiting& each) {
+        return each.node < 0 || each.node >= std::ssize(model.held_by) || each.bone < 0 ||
+               model.held_by[each.node] >= 0;
+      }))
+    wrong("nodes that wait for a bone");
+  if (std::ssize(model.influences) != model.mesh.V.rows()) wrong("influences of each node");
+  for (const FemModel::Sliding& each : model.sliding)
+    if (each.node < 0 || each.node >= std::ssize(model.held_by) || model.held_by[each.node] >= 0 || each.bone < 0 ||
+        each.bone >= std::ssize(model.bone_surface) || !model.bone_surface[each.bone])
+      wrong("bone surface of each sliding node");
+  for (const KeptVolume& volume : model.kept)
+    for (const KeptVolume::Part& part : volume.parts)
+      if (part.tet < 0 || part.tet >= model.mesh.T.rows()) wrong("tets of each kept volume");
+  if (start && start->rows() != model.mesh.V.rows()) wrong("start position of each node");
+  if (count_inverted(model.mesh.T, model.mesh.V))
+    throw Error("a tet mesh has inverted tets", "at rest", "mesh the volume again");
+  if (start && count_inverted(model.mesh.T, *start))
+    throw Error("a tet mesh has inverted tets", "at the start of the solve", "start from rest");
 }
 
 std::vector<FemModel::Waiting> worth_waiting(const FemModel& model) {

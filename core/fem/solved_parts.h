@@ -13,8 +13,9 @@ namespace limber {
 // flesh, because that node may yield.
 struct SolvedParts {
   Eigen::MatrixX4i elastic, rigid;
-  std::vector<TetMaterial> material;  // material of each elastic tet
-  std::vector<char> is_flesh;         // 1 for each elastic tet whose nodes are not all held by one bone
+  std::vector<Eigen::Index> elastic_tet;  // index in the mesh of each elastic tet
+  std::vector<TetMaterial> material;      // material of each elastic tet
+  std::vector<char> is_flesh;             // 1 for each elastic tet whose nodes are not all held by one bone
   // Held nodes of elastic tets, on springs; held nodes of rigid tets only, moved exactly.
   std::vector<int> pinned, carried;
   std::vector<double> pin_stiffness;
@@ -26,6 +27,10 @@ struct SolvedParts {
   //   size     size of the body relative to an adult (1); spring stiffness is divided by its square
   SolvedParts(const FemModel& model, const std::vector<int>& held_by, double size);
 };
+
+// Throws Error if the model's lists do not fit its mesh, or if a tet is inverted at rest or at the start.
+//   start  #V positions; null: rest
+void check(const FemModel& model, const Eigen::MatrixX3d* start);
 
 // Returns the nodes that become free only at a later position on the path, with that position. A small group of nodes
 // becomes free together with the group before it, since each group costs a new analysis of the matrix.

@@ -171,6 +171,28 @@ void choose_materials(TissueModel& model, const LabelVolume& volume, const Tissu
   }
 }
 
+// Returns the largest share by which a pose may change the volume of a tissue of this many voxels; 0: any.
+double kept_within(const Tissue& tissue, std::int64_t voxels) {
+  constexpr std::int64_t kLarge = 5000, kSmall = 500;
+  if (is_bone(tissue.kind) || tissue.kind == TissueKind::Cavity || tissue.poisson_ratio < 0.4 || voxels < kSmall)
+    return 0;
+  return voxels < kLarge ? 0.02 : 0.002;
+}
+
+void keep_volumes(TissueModel& model, const LabelVolume& volume, const TissueTable& tissues) {
+  std::vector<std::int64_t> voxels(65536, 0);
+  for (const Label label : volume.voxels) ++voxels[label];
+  std::map<Label, KeptVolume> kept;
+  for (const Tissue& each : tissues.tissues)
+    if (const double within = kept_within(each, voxels[each.label])) kept[each.label].within = within;
+  for (int t = 0; t < model.fem.mesh.T.rows(); ++t)
+    for (std::int32_t i = model.first[t]; i < model.first[t + 1] && !model.joint[t]; ++i)
+      if (const auto found = kept.find(model.parts[i].label); found != kept.end())
+        found->second.parts.push_back({t, model.parts[i].mm3});
+  for (auto& [label, each] : kept)
+    if (!each.parts.empty()) model.fem.kept.push_back(std::move(each));
+}
+
 constexpr int kNone = -1, kSeveral = -2;
 
 // Returns 1 for each node that belongs to a joint: the sum of its distances to the two nearest bones is less than
@@ -438,6 +460,7 @@ TissueModel tissue_model(const LabelVolume& volume, const TissueVoxels& tissue, 
             settings.sliding.tet_mm);
   find_parts(model, volume);
   choose_materials(model, volume, tissues, settings);
+  keep_volumes(model, volume, tissues);
   return model;
 }
 
