@@ -205,15 +205,18 @@ class MethodsWriter {
         used("/settings/mesher") == "tetgen"
             ? "by TetGen" + cite("tetgen") + " inside a surface net" + cite("net") + ". "
             : "on a body-centred cubic lattice" + cite("stuffing") + " bounded by a surface net" + cite("net") + ". ";
-    text += "Soft tissue is a compressible neo-Hookean solid" + cite("neohooke") +
-            " with Young’s moduli and Poisson ratios of the tissue table; the mean volume of patches of tetrahedra "
-            "avoids locking" +
-            cite("fbar") + ". Barriers keep tetrahedra from inverting" + cite("ipc") +
-            ". The pose was reached in steps of at most " + parameter("step_degrees") +
-            "°, each solved by projected Newton" + cite("eigen") + " with sparse Cholesky factors" + cite("cholmod") +
-            " until no node would move by more than " + mm(parameter("step_tolerance_mm")) + ", at the end " +
-            mm(parameter("tolerance_mm")) + " (" + used("/solve/iterations") + " iterations). Ends of bones within " +
-            mm(parameter("joint_mm")) + " of another bone count as the joint and are not held.";
+    text +=
+        "Soft tissue is a compressible neo-Hookean solid" + cite("neohooke") +
+        " with Young’s moduli and Poisson ratios of the tissue table; the mean volume of patches of tetrahedra "
+        "avoids locking" +
+        cite("fbar") +
+        ", and a pressure of its own keeps the volume of each soft tissue of 500 voxels or more in the pose. Barriers "
+        "keep tetrahedra from inverting" +
+        cite("ipc") + ". The pose was reached in steps of at most " + parameter("step_degrees") +
+        "°, each solved by projected Newton" + cite("eigen") + " with sparse Cholesky factors" + cite("cholmod") +
+        " until no node would move by more than " + mm(parameter("step_tolerance_mm")) + ", at the end " +
+        mm(parameter("tolerance_mm")) + " (" + used("/solve/iterations") + " iterations). Ends of bones within " +
+        mm(parameter("joint_mm")) + " of another bone count as the joint and are not held.";
     const std::string contact = parameter("contact_mm");
     if (!contact.empty())
       text += " With contact, skin nearer than " + mm(contact) + " to other skin is pushed apart" + cite("ipc") +
