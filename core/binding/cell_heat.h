@@ -43,8 +43,8 @@ struct CellTemperatures {
   ZeroedVector<Entry> entries;
 };
 
-// Solves for the temperatures of all bones. Throws Error if the solve for a bone does not reach its residual, and
-// Cancelled if the user cancels.
+// Solves for the temperatures of all bones. Throws Error if the residual of a solve stays above that of the
+// settings, and Cancelled if the user cancels.
 //   most_bytes  memory limit of a block of several bones
 CellTemperatures solve_cells(const HeatCells& cells, const std::vector<std::vector<CellSource>>& sources,
                              const Armature& armature, const HeatDiffusion& settings, double most_bytes,

@@ -20,7 +20,8 @@
 
 namespace limber {
 
-// Computes the skin weights of a volume. Throws Error if the solve for a bone does not reach its residual.
+// Computes the skin weights of a volume. Throws Error if the residual of a solve stays above that of the
+// settings.
 SkinWeights diffuse_heat(const LabelVolume& volume, const TissueTable& tissues, const Armature& armature,
                          const HeatDiffusion& settings = {}, Progress& progress = no_progress(),
                          WeightsReport* report = nullptr);

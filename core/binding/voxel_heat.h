@@ -41,8 +41,8 @@ struct ShareOfProgress {
   }
 };
 
-// Solves for the temperatures of the bones of all blocks in the blocks' bricks, and offers them to `best`. Throws Error
-// if the solve for a bone does not reach its residual, and Cancelled if the user cancels.
+// For each block, solves for the temperatures of its bones at the voxels of its bricks, and offers them to `best`.
+// Throws Error if the residual of a solve stays above that of the settings, and Cancelled if the user cancels.
 void solve_in_voxels(const HeatGraph& heat, const HeatBody& body, const std::vector<BoneBlock>& blocks,
                      const KnownHeat& known, const HeatDiffusion& settings, const ShareOfProgress& share,
                      Progress& progress, BestFour& best, WeightsReport& report);

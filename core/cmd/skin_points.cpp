@@ -89,7 +89,7 @@ class CaseReader {
     if (bones.size() != weights.size())
       fail("\"influence_bones\" and \"influence_weights\" differ in length", "correct the lists");
     if (offsets.size() != skin.points.size() + 1)
-      fail("\"influence_offsets\" does not have one number more than there are points", "correct the list");
+      fail("\"influence_offsets\" must have exactly one number more than there are points", "correct the list");
     for (size_t i = 0; i < bones.size(); ++i) {
       if (!(bones[i] >= 0 && bones[i] < double(skin.bones.size())) || !(weights[i] >= 0))
         fail("influence " + std::to_string(i) + " has an unknown bone or a negative weight", "correct the influence");

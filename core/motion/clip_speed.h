@@ -17,8 +17,8 @@ Clip at_rate(const Clip& clip, double rate);
 // handles, markers and the playing range keep their places in the motion, to the nearest frame. The clip's frame
 // `start` stays. Throws Error for a factor outside [kSlowest, kFastest], and Cancelled.
 Clip at_speed(const Clip& clip, double factor, Progress& progress = no_progress());
-// Returns the poses resampled so that they play `factor` times as fast. The first pose stays, and the duration changes
-// by less than a frame.
+// Returns the poses resampled so that they play `factor` times as fast. The first pose stays. The new duration is the
+// old one divided by `factor`, rounded down to whole frames.
 std::vector<Pose> at_speed(const std::vector<Pose>& poses, double factor);
 
 }  // namespace limber

@@ -72,8 +72,8 @@ std::uint64_t up_to(int end, int word) {
   return left < 0 ? 0 : left >= 63 ? ~std::uint64_t{0} : (std::uint64_t{2} << left) - 1;
 }
 
-// Fills rows of bits for slice low.z: a bit is 1 where there is no tissue or no volume. The first bit is the bit of
-// voxel `low`, whose x must be a multiple of eight.
+// Fills rows of bits for slice low.z: a bit is 1 where there is no tissue, and outside the volume. The first bit is the
+// bit of voxel `low`, whose x must be a multiple of eight.
 void air_of_slice(const TissueVoxels& tissue, const glm::ivec3& low, int words, int rows, std::uint64_t* air) {
   std::fill_n(air, std::size_t(words) * rows, ~std::uint64_t{0});
   if (low.z < 0 || low.z >= tissue.grid_size().z) return;

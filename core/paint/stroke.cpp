@@ -198,7 +198,7 @@ Stroke::Work::Work(const WeightedBody& body, std::shared_ptr<const SkinWeights> 
       locked_(settings.locked),
       normalize_(settings.normalize) {
   if (weights_->size() != body.tissue.size() || weights_->bones().size() != body.armature.bones.size())
-    throw std::logic_error("Stroke: the weights are of another body");
+    throw std::logic_error("Stroke: the weights belong to another body");
   const auto in_rig = [&](int bone) { return bone >= 0 && bone < std::ssize(body.armature.bones); };
   if (settings.bones.empty() || !std::all_of(settings.bones.begin(), settings.bones.end(), in_rig))
     throw std::logic_error("Stroke: a bone is not in the rig, or no bone is given");

@@ -204,7 +204,7 @@ py::object resample_body(const Weights& weights, const py::object& poses, const 
   if (asked.empty()) return py::list();
   for (const Pose& pose : asked)
     if (pose.rotation.size() != weights.body->rig.bones.size())
-      throw Error("the pose is of another rig", std::to_string(pose.rotation.size()) + " bones",
+      throw Error("the pose belongs to another rig", std::to_string(pose.rotation.size()) + " bones",
                   "give a pose of this body's rig");
   if (options.fit_joints && asked.size() > 1)
     throw Error("joints are fitted to one pose, not to a sequence", "fit_joints", "give one pose");

@@ -73,7 +73,7 @@ PosedPreview update_preview(Preview& preview, const Pose& pose, const std::strin
   if (!found || !found->blend)
     throw Error("this method cannot pose previews", method, "write " + method_summaries(Methods::Blends));
   if (pose.rotation.size() != preview.bone_count())
-    throw Error("the pose is of another rig", std::to_string(pose.rotation.size()) + " bones",
+    throw Error("the pose belongs to another rig", std::to_string(pose.rotation.size()) + " bones",
                 "give a pose of this body's rig");
   const py::gil_scoped_release without_lock;
   return preview.posed(pose, *found->blend);

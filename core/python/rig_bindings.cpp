@@ -111,7 +111,7 @@ Pose pose_from(const Armature& rig, const std::string& name, const std::map<std:
 
 void require_pose_of(const Armature& rig, const Pose& pose) {
   if (pose.rotation.size() != rig.bones.size())
-    throw Error("the pose is of another rig", std::to_string(pose.rotation.size()) + " bones",
+    throw Error("the pose belongs to another rig", std::to_string(pose.rotation.size()) + " bones",
                 "give a pose of this rig, which has " + std::to_string(rig.bones.size()));
 }
 

@@ -61,8 +61,8 @@ class FemObjects {
   // uses them to find the tissue that the objects press on. Throws Error if an object needs millions of points.
   //   reach_mm  upper limit on the distance between sample points
   std::vector<ObjectSweep> sweeps(double reach_mm) const;
-  // Selects for each object the way that moving_tissue() found clear. Throws Error if no way leads to the object's
-  // target position, or if no tissue is near it.
+  // Selects for each object the shortest of its ways out of the body, which moving_tissue() found. Throws Error if the
+  // body blocks all of them, or if the object comes near no tissue.
   void choose(const std::vector<ObjectClearance>& clearances);
   // Adds the objects to a model, far away from the body.
   void add_to(FemModel& model) const;

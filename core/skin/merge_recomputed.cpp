@@ -37,7 +37,7 @@ Target target_of(const Influence& before, const Influence& computed, const BoneS
 WeightEdit recomputed(const WeightedBody& body, const SkinWeights& weights, const SkinWeights& computed,
                       const std::vector<int>& bones, const EditScope& scope) {
   if (weights.size() != computed.size() || weights.bones() != computed.bones())
-    throw std::logic_error("the recomputed weights are of another body");
+    throw std::logic_error("the recomputed weights belong to another body");
   BoneSet chosen(weights.bones().size(), bones.empty());
   for (const int bone : bones) chosen[bone] = 1;
   return edited(body, weights, scope,

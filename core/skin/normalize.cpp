@@ -186,7 +186,7 @@ WeightRules::WeightRules(const Armature& armature, BoneSet locked, Normalize nor
       children_(armature.bones.size()) {
   const std::size_t count = armature.bones.size();
   if (locked_.empty()) locked_.assign(count, 0);
-  if (locked_.size() != count) throw std::logic_error("WeightRules: the locks are of another rig");
+  if (locked_.size() != count) throw std::logic_error("WeightRules: the locks belong to another rig");
   any_locked_ = std::any_of(locked_.begin(), locked_.end(), [](auto l) { return l != 0; });
   for (std::size_t b = 0; b < count; ++b) {
     parent_.push_back(armature.bones[b].parent);

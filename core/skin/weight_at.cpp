@@ -86,7 +86,7 @@ std::vector<SkinAt> skin_at(const LabelVolume& volume, const TissueVoxels& tissu
                             std::span<const glm::dvec3> points) {
   if (tissue.size() == 0)
     throw Error("the volume has no tissue", "weights at points", "use a volume with labels other than 0");
-  if (weights.size() != tissue.size()) throw std::logic_error("the weights are of another volume");
+  if (weights.size() != tissue.size()) throw std::logic_error("the weights belong to another volume");
   const Sampler sampler(volume, tissue, weights);
   const AffineTransform to_voxel = voxel_from_world(volume.grid);
   std::vector<SkinAt> skin(points.size());

@@ -20,9 +20,9 @@ constexpr std::int64_t kBricksOfStep = 2048;  // bricks between two progress upd
 
 void check(const WeightedBody& body, const SkinWeights& weights, const EditScope& scope) {
   if (weights.size() != body.tissue.size() || weights.bones().size() != body.armature.bones.size())
-    throw std::logic_error("the edited weights are of another body");
+    throw std::logic_error("the edited weights belong to another body");
   if (!scope.region.empty() && std::ssize(scope.region) != body.tissue.size())
-    throw std::logic_error("the region is of another body");
+    throw std::logic_error("the region belongs to another body");
 }
 
 void check_bones(const WeightedBody& body, std::span<const int> bones) {

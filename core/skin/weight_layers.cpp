@@ -95,7 +95,7 @@ SkinWeights composed(const WeightLayers& layers) {
 
 std::vector<std::int64_t> changed_bricks(const WeightLayers& layers, const WeightLayers& before) {
   const std::int64_t count = layers.base->chunk_count();
-  if (before.base->chunk_count() != count) throw std::logic_error("the layers are of another body");
+  if (before.base->chunk_count() != count) throw std::logic_error("the layers belong to another body");
   // Returns the index of the first layer, from `from` upwards, that covers any part of the brick. Returns the number of
   // layers if none does.
   const auto next = [](const WeightLayers& of, std::size_t from, std::int64_t brick) {
@@ -186,7 +186,7 @@ PaintedBrick painted_brick(const WeightLayer& layer, std::int64_t brick, const S
 
 WeightLayer painted_on(const WeightLayer& layer, const SkinWeights& before, const SkinWeights& after) {
   if (before.size() != after.size() || before.size() != layer.weights.size())
-    throw std::logic_error("the layer is of another body");
+    throw std::logic_error("the layer belongs to another body");
   WeightLayer painted = layer;
   for (std::int64_t b = 0; b < before.chunk_count(); ++b) {
     if (before.shared_chunk(b) == after.shared_chunk(b) || before.chunk(b) == after.chunk(b)) continue;
@@ -356,7 +356,7 @@ WeightLayer shares_painted_on(const WeightLayer& layer, const SkinWeights& befor
 
 WeightLayers over_base(const WeightLayers& layers, std::shared_ptr<const SkinWeights> base) {
   if (base->chunk_count() != layers.base->chunk_count() || base->bones() != layers.base->bones())
-    throw std::logic_error("the layers are of another body");
+    throw std::logic_error("the layers belong to another body");
   WeightLayers over{std::move(base), {}};
   for (const auto& layer : layers.layers) {
     WeightLayer next = *layer;

@@ -40,7 +40,7 @@ struct BodyView {
 
 struct SliceState {
   render::SliceCamera camera;
-  bool fitted = false;  // true: the camera has been set to show the whole body, which needs the view's size
+  bool fitted = false;  // true: the camera shows the whole body, for which the view's size had to be known
   std::unique_ptr<render::SliceView> picture, other;
 };
 

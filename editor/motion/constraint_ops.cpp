@@ -49,7 +49,7 @@ std::function<std::string(const Context&)> needs_neighbour(InOrder where) {
     if (std::string why = needs_constraint(context); !why.empty()) return why;
     if (order_neighbour(context, active_constraint(context)->name, where)) return "";
     return std::string("The constraint cannot move ") + (where == InOrder::Earlier ? "up" : "down") +
-           ": this would not change the order in which constraints turn the same bones";
+           ": its order among the constraints that turn its bones would stay the same";
   };
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Draws the list of weight layers, the topmost layer first. A row has an eye that hides the layer, a button that paints
-// its mask, its name and its opacity. The last row is the base, which cannot be removed.
+// Draws the list of weight layers, the topmost layer first. A row has the layer's name and opacity, an eye that hides
+// the layer, and a button that paints its mask. The last row is the base, which cannot be removed.
 #include "editor/context/context.h"
 #include "editor/context/operator.h"
 #include "editor/context/operator_button.h"

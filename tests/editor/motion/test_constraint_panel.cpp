@@ -378,7 +378,7 @@ TEST_CASE("constraint panel: no order is offered where one constraint must wait 
     for (const InOrder where : {InOrder::Earlier, InOrder::Later})
       for (const Constraint& one : list) CHECK_FALSE(order_neighbour(*test.editor, one.name, where));
     CHECK(disabled_reason(*test.editor, *find_operator(test.editor->operators, "constraint.up")) ==
-          "The constraint cannot move up: this would not change the order in which constraints turn the same bones");
+          "The constraint cannot move up: its order among the constraints that turn its bones would stay the same");
   }
 }
 
