@@ -93,7 +93,7 @@ class PointBins {
 
  private:
   static constexpr int kCells = 8;             // cells along the reach; a bin is as wide
-  static constexpr double kLeastReach = 1e-3;  // least width of a bin, as a share of the points' extent
+  static constexpr double kLeastReach = 0.01;  // least width of a bin, as a share of the points' extent
   glm::ivec3 cell_of(const glm::dvec3& p) const { return glm::ivec3(glm::floor(p * (kCells / reach_))); }
 
   BoxBins bins_;
