@@ -21,7 +21,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kChangeInterval = std::chrono::milliseconds(50);
-constexpr int kLongAtOnce = 1;  // number of long jobs that run together; each uses all cores
+constexpr int kLongAtOnce = 1;   // number of long jobs that run together; each uses all cores
+constexpr int kQuietAtOnce = 1;  // number of quiet jobs that run together
 // Seconds; the end of a stage is estimated only after this time: early guesses vary.
 constexpr double kFirstEstimate = 0.5;
 constexpr double kLeastFraction = 0.02;  // the end of a stage is estimated only after this share: early guesses vary
@@ -155,14 +156,14 @@ void Jobs::work_on(const std::shared_ptr<Job>& job, const std::shared_ptr<Board>
 
 void Jobs::start_waiting() {
   const std::lock_guard lock(board_->mutex);
-  std::array<int, 2> running{};  // number of running jobs in each lane
+  const std::array<int, 3> at_once{at_once_, kLongAtOnce, kQuietAtOnce};
+  std::array<int, 3> running{};  // number of running jobs in each lane
   const auto running_beside = [&](const auto& job) -> int& { return running[static_cast<std::size_t>(job->lane)]; };
   for (const auto& job : jobs_)
     running_beside(job) += job->status.state == JobState::Running ||
                            (job->status.state == JobState::Stopping && seconds_since(job->cancelled_at) < kPatience);
   for (const auto& job : jobs_) {
-    if (job->status.state != JobState::Queued ||
-        running_beside(job) >= (job->lane == Lane::Long ? kLongAtOnce : at_once_))
+    if (job->status.state != JobState::Queued || running_beside(job) >= at_once[static_cast<std::size_t>(job->lane)])
       continue;
     job->started = job->stage_started = Clock::now();
     try {

@@ -26,8 +26,9 @@ namespace limber {
 using Edit = std::function<Document(const Document& now)>;
 using Work = std::function<Edit(Progress& progress)>;
 
-// The queue of a job. Long jobs take minutes. They run one at a time, and common jobs run beside them without waiting.
-enum class Lane { Common, Long };
+// The queue of a job. Long jobs take minutes; they run one at a time. Quiet jobs are work that no user started, such as
+// refining what the views show; they run one at a time, too. Jobs of one queue never wait for those of another.
+enum class Lane { Common, Long, Quiet };
 
 enum class JobState { Queued, Running, Stopping, Done, Failed, Cancelled };
 

@@ -17,6 +17,7 @@
 #include "editor/files/import.h"
 #include "editor/files/project_session.h"
 #include "editor/files/tour.h"
+#include "editor/resample/refined_pose.h"
 #include "editor/resample/results.h"
 #include "editor/rig/joint_axis_fit.h"
 #include "editor/screen/steady.h"
@@ -48,6 +49,23 @@ Picture& drawn(Views& views, std::unique_ptr<Picture>& picture) {
   return *picture;
 }
 
+// Draws the picture of the body: the preview of a pose until the picture of the refined pose is complete, then that
+// one.
+void draw_body_picture(Views& views, const glm::ivec2& size, double now) {
+  BodyView& body = views.body;
+  if (!body.shows_refined) body.picture->draw(views.scene, body.camera, size, now);
+  if (!views.refined_scene || (!body.shows_refined && !body.picture->complete())) return;
+  drawn(views, body.refined).draw(*views.refined_scene, body.camera, size, now);
+  if (body.refined->complete()) body.shows_refined = true;
+}
+
+bool is_complete(const Views& views) {
+  const BodyView& body = views.body;
+  const bool preview = body.shows_refined || body.picture->complete();
+  const bool refined = !views.refined_scene || (body.refined && body.refined->complete());
+  return preview && refined && (!body.other || body.other->complete());
+}
+
 // Draws a view's picture. If two results A and B are compared side by side, each view shows one of them. In other
 // comparisons a view draws pictures of both results, one over the other.
 void draw_view_picture(Views& views, const Document& document, const Layout& layout, const ViewPlace& place,
@@ -56,7 +74,7 @@ void draw_view_picture(Views& views, const Document& document, const Layout& lay
   if (size.x < 1 || size.y < 1) return;
   const bool one = !place.side_a, other = views.other_scene && (place.side_a || !layout.by_sides);
   if (place.id == ViewId::Body) {
-    if (one) views.body.picture->draw(views.scene, views.body.camera, size, now);
+    if (one) draw_body_picture(views, size, now);
     if (other) drawn(views, views.body.other).draw(*views.other_scene, views.body.camera, size, now);
     else if (!views.other_scene) views.body.other.reset();
     return;
@@ -65,7 +83,7 @@ void draw_view_picture(Views& views, const Document& document, const Layout& lay
   if (!slice.fitted) fit(slice, tissue_box(views, document, std::nullopt), place.rect.size());
   const glm::dvec3 normal = render::frame_of(slice.camera.axis).normal;
   slice.camera.centre += normal * glm::dot(views.cross_hair - slice.camera.centre, normal);
-  if (one) slice.picture->draw(views.scene, slice.camera, views.slice_display, size);
+  if (one) slice.picture->draw(drawn_scene(views), slice.camera, views.slice_display, size);
   if (other) drawn(views, slice.other).draw(*views.other_scene, slice.camera, views.slice_display, size);
   else if (!views.other_scene) slice.other.reset();
 }
@@ -163,13 +181,13 @@ Editor::~Editor() {
 
 bool Editor::busy() const { return jobs->busy() || live->busy() || skin->shares.busy(); }
 
+bool Editor::at_rest() const { return rest() > 0 && !busy() && !awaits_refined(*this); }
+
 double Editor::rest() const {
   if (ui->time_to_next_frame() <= 0 || !host->events.empty() || views->body.move ||
       (interaction->modal && interaction->modal->moving()))
     return 0;
-  if (screen->layout.place_of(ViewId::Body) &&
-      (!views->body.picture->complete() || (views->body.other && !views->body.other->complete())))
-    return 0;
+  if (screen->layout.place_of(ViewId::Body) && !is_complete(views)) return 0;
   for (const ViewPlace& place : screen->layout.view_places)
     if (place.id != ViewId::Body && !is_complete(views->slices[static_cast<std::size_t>(axis_of(place.id))])) return 0;
   double seconds = std::min(kLongestRest, ui->time_to_next_frame());
@@ -240,6 +258,7 @@ void Editor::draw_views() {
   show_overlap(*this);
   show_bone_table(*this);
   show_proposed_joint(*this);
+  show_refined(*this);
   move_camera(views->body, ui->now, preferences->reduce_motion);
   ended(*this, "pose");
   const Document shown = shown_document(*this);

@@ -24,7 +24,7 @@ class Editor : public Context {
   void frame(double now);  // draws one frame; `now`: time of the frame on a steady clock, s
   double rest() const;     // time until the next frame if no input arrives, s; 0: draw at once
   bool busy() const;       // true while a thread or process works for the editor
-  bool at_rest() const { return rest() > 0 && !busy(); }
+  bool at_rest() const;    // true if nothing will change without input
 
   RecentFilesOnDisk recent_files_on_disk;
 

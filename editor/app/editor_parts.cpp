@@ -55,6 +55,7 @@ void Editor::refer_to_rooms() {
   transform_settings.refer_to(&parts.transform_settings);
   skin.refer_to(&parts.skin);
   comparison.refer_to(&parts.comparison);
+  refined.refer_to(&parts.refined);
   fem.refer_to(&parts.fem);
   fem_overlay.refer_to(&parts.fem_overlay);
   trial.refer_to(&parts.trial);

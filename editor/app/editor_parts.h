@@ -41,6 +41,7 @@
 #include "editor/resample/difference_overlay.h"
 #include "editor/resample/fem_overlay.h"
 #include "editor/resample/overlap_overlay.h"
+#include "editor/resample/refined_pose.h"
 #include "editor/resample/result_list.h"
 #include "editor/rig/bone_table.h"
 #include "editor/screen/console_state.h"
@@ -93,6 +94,7 @@ struct Editor::Parts {
   SkinDisplay skin;
   Comparison comparison;
   std::optional<LivePose> live;  // always has a value after the editor's construction
+  RefinedPose refined;
   FemView fem;
   FemOverlay fem_overlay;
   TestPose trial;

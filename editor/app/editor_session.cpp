@@ -9,6 +9,7 @@
 #include "editor/file_browser/thumbnails.h"
 #include "editor/files/file_filters.h"
 #include "editor/files/project_session.h"
+#include "editor/resample/refined_pose.h"
 #include "editor/ui/ui.h"
 
 namespace limber::editor {
@@ -39,6 +40,7 @@ void write_changed(Editor& editor) {
 void begin_editor_session(Editor& editor, const Folders& folders, std::vector<Path> files) {
   *editor.folders = folders;
   apply_light(editor);
+  editor.refined->on = true;
   if (!folders.config.empty()) {
     std::string warning;
     *editor.recent_files = editor.recent_files_on_disk.contents = read_recent_files(file_of(editor), warning);

@@ -12,7 +12,7 @@
 //   type "text"
 //   drop FILE                        drops the file on the window
 //   resize WIDTH HEIGHT
-//   wait SECONDS | wait-job | wait-idle
+//   wait SECONDS | wait-job | wait-idle   wait-idle also waits until the pictures are complete and a pose is refined
 //   expect FACT [VALUE]              fails unless the fact has this value (default: shown); facts: fact_names()
 //   shot FILE                        a PNG of the window once it is idle, or at once while a clip plays
 //   shot-now FILE                    a PNG of the last frame drawn, even if still coarse

@@ -157,6 +157,7 @@ const std::vector<std::pair<std::string, Fact>>& facts() {
        [](const Context& c) {
          return c.views->scene.pose ? std::to_string(c.views->scene.pose->step) : std::string("no");
        }},
+      {"refined", [](const Context& c) { return yes(c.views->body.shows_refined); }},
       {"jobs", [](const Context& c) { return yes(c.jobs->busy()); }},
       {"toast",
        [](const Context& c) {

@@ -8,12 +8,15 @@
 
 namespace limber::editor {
 
-int start_task(Context& context, std::string label, TaskWork work, Failure failed) {
+int start_task(Context& context, std::string label, TaskWork work, Failure failed, Lane lane) {
   auto finish = std::make_shared<Finish>();
-  const int id = context.jobs->start(std::move(label), [finish, work = std::move(work)](Progress& progress) -> Edit {
-    *finish = work(progress);
-    return {};
-  });
+  const int id = context.jobs->start(
+      std::move(label),
+      [finish, work = std::move(work)](Progress& progress) -> Edit {
+        *finish = work(progress);
+        return {};
+      },
+      lane);
   context.background->tasks[id] = {finish, std::move(failed)};
   context.ui->touch();
   return id;

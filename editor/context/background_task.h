@@ -46,7 +46,7 @@ struct BackgroundWork {
 
 // Starts a task and returns the id of its job. `work` runs in another thread and must not touch the editor. The label
 // is shown to the user while the task runs. A task with an empty label is not shown.
-int start_task(Context& context, std::string label, TaskWork work, Failure failed = {});
+int start_task(Context& context, std::string label, TaskWork work, Failure failed = {}, Lane lane = Lane::Common);
 // Handles the end of a task's job: calls the task's Finish or its Failure. Returns false if the job belongs to no task.
 bool end_task(Context& context, const JobStatus& job);
 

@@ -44,6 +44,7 @@ struct Preferences;
 struct PreferencesState;
 struct ProjectLife;
 struct RecentFiles;
+struct RefinedPose;
 struct ResamplingSettings;
 struct ResultList;
 struct Screen;
@@ -111,6 +112,7 @@ struct Context {
   ContextPart<PoseEditing> posing;                    // declared in context/pose_editing.h
   ContextPart<LastOperation> last_operation;   // what can be redone with other numbers (dialogs/redo_last_operator.h)
   ContextPart<LivePose> live;                  // the posed body while it is posed (pose/live_preview.h)
+  ContextPart<RefinedPose> refined;            // the posed body at rest (resample/refined_pose.h)
   ContextPart<FemView> fem;                    // the running FEM solves and the shown one (shown/fem_live_view.h)
   ContextPart<FemOverlay> fem_overlay;         // the shown FEM measure and mesh (resample/fem_overlay.h)
   ContextPart<ResamplingSettings> resampling;  // declared in context/resampling_settings.h

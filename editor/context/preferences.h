@@ -26,6 +26,7 @@ struct Preferences {
   bool grid = true, axes = true, scale_bar = true, letters = true, cross_hair = true;
   std::string display = "solid";  // display mode of the 3D view: "solid", "xray" or "tissue"
   bool fine_light = true;         // true: the 3D view gets ray-traced shadows while its picture does not change
+  bool refine_at_rest = true;     // true: a pose that does not change is resampled and shown (resample/refined_pose.h)
 
   // Preferences of the undo history and of automatic saving
   int undo_limit_mb = 1024;  // memory limit of the undo history, MB, [64, 65536]

@@ -32,6 +32,7 @@ void visit(P& p, const Visit& visit) {
   visit("view", "cross_hair", p.cross_hair, {}, {});
   visit("view", "display", p.display, {}, {});
   visit("view", "fine_light", p.fine_light, {}, {});
+  visit("view", "refine_at_rest", p.refine_at_rest, {}, {});
   visit("undo", "limit_mb", p.undo_limit_mb, 64, 65536);
   visit("undo", "autosave_minutes", p.autosave_minutes, 0, 240);
   visit("jobs", "at_once", p.jobs_at_once, 1, 8);

@@ -15,6 +15,8 @@ struct ResamplingSettings {
   // Options of the method "finite elements"
   bool contact = true;
   std::string quality = "normal";  // quality of the FEM mesh: "draft", "normal" or "fine"
+
+  bool operator==(const ResamplingSettings&) const = default;
 };
 
 }  // namespace limber::editor

@@ -35,7 +35,9 @@ struct BodyView {
   // Name of the standard view that the camera shows, such as "Front"; empty if the camera was turned away from them.
   std::string name;
   std::unique_ptr<render::View3D> picture;
-  std::unique_ptr<render::View3D> other;  // picture of result A (Views::other_scene) in a comparison
+  std::unique_ptr<render::View3D> other;    // picture of result A (Views::other_scene) in a comparison
+  std::unique_ptr<render::View3D> refined;  // picture of Views::refined_scene
+  bool shows_refined = false;  // true: the view shows `refined`, which has been complete once, instead of `picture`
 };
 
 struct SliceState {
@@ -106,6 +108,9 @@ struct Views {
   glm::vec2 handle_from{0};                  // the pointer's position when the drag of a handle began, pixels
   render::Scene scene;                       // the scene of the last frame
   std::optional<render::Scene> other_scene;  // scene of result A in a comparison; no value: no comparison
+  // The scene with the resampled volume of the shown pose, which pictures show instead of `scene`; no value: the pose
+  // is not refined (resample/refined_pose.h).
+  std::optional<render::Scene> refined_scene;
   std::shared_ptr<const TissueTable> looks_of_tissues;
   std::shared_ptr<const Visibility> looks_of_visibility;
 };
@@ -114,6 +119,11 @@ render::SliceAxis axis_of(ViewId id);
 ViewId view_of(render::SliceAxis axis);
 SliceState& slice_of(Views& views, ViewId id);
 std::string name_of(ViewId id);
+
+// Returns the scene that pictures show: that of the refined pose, or else Views::scene.
+inline const render::Scene& drawn_scene(const Views& views) {
+  return views.refined_scene ? *views.refined_scene : views.scene;
+}
 
 // Sets Views::scene to the scene that shows this document.
 void update_scene(Views& views, const Document& document, const Selection& selection, bool dark_theme);

@@ -266,7 +266,7 @@ void export_picture(Context& context, const Path& path) {
   if (views.active == ViewId::Body || !context.screen->layout.place_of(views.active))
     return start_picture_task(
         context, {.label = label,
-                  .scene = views.scene,
+                  .scene = drawn_scene(views),
                   .size = size_of_view(context.screen, views.active),
                   .camera = [camera = views.body.camera](int) { return camera; },
                   .prepare = {},
@@ -286,7 +286,7 @@ void begin_turntable(Context& context, const Path& path, int pictures) {
   start_picture_files(
       context, path,
       {.label = "Export turntable",
-       .scene = context.views->scene,
+       .scene = drawn_scene(context.views),
        .size = size_of_view(context.screen, ViewId::Body),
        .pictures = pictures,
        .camera = [from, pictures](int i) { return turned_about(from, 2 * std::numbers::pi * i / pictures); },

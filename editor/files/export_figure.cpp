@@ -124,7 +124,7 @@ void export_figure(Context& context, const FigureOptions& options, const Path& p
   check_figure_path(path);
   Views& views = *context.views;
   const auto lettering = std::make_shared<const Lettering>();
-  render::Scene scene = figure_scene(views.scene);
+  render::Scene scene = figure_scene(drawn_scene(views));
   const auto& tissues = context.document().tissues;
   const std::string label = "Export " + path.filename().string();
   const auto done = [path](Progress&) -> Finish { return [path](Context& c) { finish_export(c.messages, path); }; };

@@ -45,7 +45,7 @@ std::optional<PointOnBody> point_under_pointer(Context& context) {
   std::optional<render::Hit> hit;
   std::optional<glm::dvec3> shown;
   if (place->id == ViewId::Body) {
-    if (hit = body_at_pointer(context, *place).pick(glm::ivec2(pixel)); hit) shown = hit->point;
+    if (hit = pick_body(context, *place, glm::ivec2(pixel)); hit) shown = hit->point;
   } else {
     shown = world_of(slice_of(*context.views, place->id).camera, pixel, place->rect.size());
   }

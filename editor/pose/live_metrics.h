@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Measures how the shown pose changes the volume of each tissue. While the pose does not change, a background task
 // resamples the label volume in this pose, by the same method as a final result, and counts the voxels of each tissue.
+// If the views refine the pose (resample/refined_pose.h), it counts the voxels of the refined volume instead.
 // A change of the pose cancels the task. Nothing is measured while no panel shows the numbers.
 #pragma once
 
@@ -49,6 +50,15 @@ struct PoseMetrics {
 };
 PoseMetrics measure(const DenseWish& wish, Progress& progress = no_progress());
 
+// The refined volume of the shown pose, which the views compute for themselves.
+struct RefinedVolume {
+  bool awaited = false;                       // true: it is being computed, or soon will be
+  std::shared_ptr<const LabelVolume> volume;  // null until it is computed
+  std::int64_t overlap_voxels = 0;
+
+  bool operator==(const RefinedVolume&) const = default;
+};
+
 class LiveMetrics {
  public:
   // Called once per drawn frame. Starts measuring when the pose has stopped changing. Stops measuring when the pose
@@ -56,6 +66,7 @@ class LiveMetrics {
   //   wish     the body and the pose to measure; nothing: nothing is measured
   //   settled  whether the pose has stopped changing
   void follow(Context& context, const std::optional<DenseWish>& wish, bool settled);
+  void use(const RefinedVolume& refined) { refined_ = refined; }  // called once per frame after follow()
   void want() { wanted_ = true; }  // called by a panel in each drawn frame that shows the numbers
   // Returns the metrics of the shown pose; null until measuring has ended.
   const PoseMetrics* known() const { return is_known_ ? &metrics_ : nullptr; }
@@ -70,6 +81,7 @@ class LiveMetrics {
   DenseWish of_;  // the body and pose of the current or last measurement, also of a failed one
   PoseMetrics metrics_;
   std::shared_ptr<const LabelVolume> metrics_of_;
+  RefinedVolume refined_;
   bool is_known_ = false, wanted_ = false;
   std::string trouble_;
   int job_ = 0;  // id of the background task that measures; 0: no task runs

@@ -1,17 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "editor/resample/resample_job.h"
 
-#include <nlohmann/json.hpp>
-
-#include "core/base/error.h"
-#include "core/bones/bone_map.h"
-#include "core/pose/pose_io.h"
 #include "core/project/worker.h"
 #include "core/resample/fem_steps.h"
 #include "core/resample/pose_path.h"
-#include "core/rig_io/rig_io.h"
-#include "core/seams/seams_io.h"
-#include "core/skin/weights_io.h"
 #include "core/study/text.h"
 #include "core/volume_io/volume_io.h"
 #include "editor/context/background_task.h"
@@ -19,11 +11,11 @@
 #include "editor/context/preferences.h"
 #include "editor/context/resampling_settings.h"
 #include "editor/file_browser/temp_folder.h"
+#include "editor/resample/resample_inputs.h"
 #include "editor/resample/results.h"
 #include "editor/shown/fem_live_view.h"
 #include "editor/ui/messages.h"
 #include "editor/ui/ui.h"
-#include "editor/volume/body_seams.h"
 #include "editor/volume/shown_image.h"
 #include "editor/volume/tissue_edits.h"
 
@@ -33,11 +25,8 @@ namespace {
 
 struct Request {
   Document from;  // the document to resample; has a pose
-  std::string method;
-  double spacing = 0;  // voxel spacing of the posed volume, mm; 0: same as the volume at rest
-  bool bones_apart = false, mass_exact = false, contact = false;
-  std::string quality;  // quality of the FEM mesh: "draft", "normal" or "fine"; unused by other methods
-  Path image;           // the shown grey image, to pose with the volume; empty: no image is shown
+  ResamplingSettings settings;
+  Path image;  // the shown grey image, to pose with the volume; empty: no image is shown
   std::string scratch;
   WorkerSettings worker;
   std::shared_ptr<SolveFeed> feed;  // passes the steps of a FEM solve to the views; null: no FEM
@@ -47,59 +36,10 @@ constexpr char kImage[] = "image.nrrd";
 constexpr char kSteps[] = "solve";  // base name of the files that the solver writes after each of its steps
 
 void write_inputs(const Request& request, const ScratchFolder& folder, Progress& progress) {
-  const Document& from = request.from;
-  progress.update("write inputs", 0);
-  FileType type = from.volume_type ? *from.volume_type : FileType{};
-  type.format = "NRRD";
-  type.compressed = false;
-  write_volume(*from.volume, folder / "volume.nrrd", *from.tissues, type);
-  progress.update("write inputs", 0.5);
-  write_tissue_table(*from.tissues, folder / "tissues.json");
-  write_armature(*from.armature, folder / "rig.json");
-  write_pose(*from.pose, *from.armature, folder / "pose.json");
-  write_weights(*from.weights, *from.volume, TissueVoxels(*from.volume), folder / "weights.nrrd");
-  if (from.seams) write_seams(*from.seams, from.volume->grid, folder / "seams.nrrd");
-  const BoneMap bone_map = usable_bone_map(seam_source(from));
-  if (!bone_map.empty()) write_bone_map(bone_map, folder / "bones.json");
-  nlohmann::ordered_json job{{"command", "resample"},     {"volume", "volume.nrrd"},   {"rig", "rig.json"},
-                             {"tissues", "tissues.json"}, {"weights", "weights.nrrd"}, {"pose", "pose.json"},
-                             {"method", request.method},  {"output", "posed.nrrd"},    {"report", "report.json"},
-                             {"overlap", "overlap.nrrd"}};
-  if (from.seams) job["seams"] = "seams.nrrd";
-  if (!bone_map.empty()) job["bone-map"] = "bones.json";
-  if (request.spacing > 0) job["spacing"] = request.spacing;
-  if (request.bones_apart) job["glide"] = "joint";
-  if (request.mass_exact) job["mass-exact"] = true;
-  if (!request.image.empty()) job["with"] = request.image.string() + "=" + (folder / kImage).string();
-  if (request.method == "fem") {
-    job["quality"] = request.quality;
-    job["steps"] = kSteps;
-    if (request.contact) job["contact"] = true;
-  }
-  std::string text;
-  try {
-    text = job.dump(1);
-  } catch (const nlohmann::json::type_error&) {
-    throw Error("the image's file name is not valid UTF-8", request.image.string(),
-                "rename the file or its folder, or close the image");
-  }
-  write_file_atomically(folder / "job.json", text + "\n");
-}
-
-// Reads the posed volume and converts the values in the file to the document's labels.
-std::shared_ptr<const LabelVolume> read_posed(const Path& path, const TissueTable& tissues, Progress& progress) {
-  VolumeFile file = read_volume(path, progress);
-  const FileValueIndex ours(tissues);
-  std::vector<Label> label_of(65536, 0);
-  for (const Tissue& tissue : file.tissues.tissues) {
-    const Tissue* known = ours.find(tissue.file_value);
-    if (!known)
-      throw Error("the posed volume has a label that the volume at rest lacks", std::to_string(tissue.file_value),
-                  "please report it");
-    label_of[tissue.label] = known->label;
-  }
-  for (Label& label : file.volume.voxels) label = label_of[label];
-  return std::make_shared<const LabelVolume>(std::move(file.volume));
+  write_body(request.from, folder, progress);
+  PoseFiles files{.report = "report.json", .steps = kSteps, .image = request.image};
+  if (!request.image.empty()) files.posed_image = folder / kImage;
+  write_job(request.from, *request.from.pose, request.settings, files, folder);
 }
 
 std::shared_ptr<const Overlap> read_overlap(const Path& path, Progress& progress) {
@@ -166,7 +106,8 @@ Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Pro
   if (request.feed) request.worker.on_progress = StepReader(folder / kSteps, request.feed);
   run_worker(folder / "job.json", progress, request.worker);
   auto result = std::make_shared<Result>();
-  result->method = request.method + (request.method == "fem" && request.contact ? "-contact" : "");
+  const ResamplingSettings& settings = request.settings;
+  result->method = settings.method + (settings.method == kFiniteElements && settings.contact ? "-contact" : "");
   result->volume = read_posed(folder / "posed.nrrd", *request.from.tissues, progress);
   result->overlap = read_overlap(folder / "overlap.nrrd", progress);
   result->report = read_file(folder / "report.json");
@@ -187,7 +128,7 @@ Edit resample_in_worker(Request& request, const std::shared_ptr<Made>& made, Pro
   result->from_bone_map = request.from.bone_map;
   if (request.feed) result->solved = read_solved(folder / kSteps);
   const std::string wanted = name_of_pose(*request.from.armature, *request.from.pose) + ", " +
-                             method_name(result->method) + (request.mass_exact ? ", mass-exact" : "");
+                             method_name(result->method) + (settings.mass_exact ? ", mass-exact" : "");
   return [result, wanted, made](const Document& now) {
     Document next = now;
     result->name = made->name = unique_name(now.results, wanted);
@@ -225,18 +166,13 @@ std::string why_no_resampling(const Context& context) {
 
 void start_resampling(Context& context) {
   Request request{context.document(),
-                  context.resampling->method,
-                  context.resampling->spacing,
-                  context.resampling->bones_apart,
-                  context.resampling->mass_exact,
-                  context.resampling->contact,
-                  context.resampling->quality,
+                  context.resampling,
                   context.views->image ? context.views->image_path : Path(),
                   context.preferences->scratch_folder,
                   {},
                   {}};
   if (!request.from.pose) request.from.pose = std::make_shared<const Pose>(rest_pose(*request.from.armature));
-  if (request.method == "fem") request.feed = std::make_shared<SolveFeed>();
+  if (request.settings.method == kFiniteElements) request.feed = std::make_shared<SolveFeed>();
   request.worker.program = context.background->worker_program;
   request.worker.yields = context.background->workers_yield;
   request.worker.memory_limit_mb = context.preferences->worker_memory_mb;

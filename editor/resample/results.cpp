@@ -285,6 +285,12 @@ void rename_result(Context& context, const std::shared_ptr<const Result>& result
   context.ui->touch();
 }
 
+void move_clip_box(render::Clip& clip, const Grid& from, const Grid& to) {
+  if (!clip.box) return;
+  if (from.direction == to.direction) clip.box = in_grid(*clip.box, from, to);
+  else clip.box.reset();
+}
+
 namespace {
 
 // Puts a result into the scene. If `result` is null, the scene shows the document's volume, deformed by the current
@@ -298,11 +304,7 @@ void put_into(render::Scene& scene, const Context& context, const std::shared_pt
     const PosedImage* image = posed_image_of(*context.views, result->volume);
     if (scene.grey && image) scene.grey->image = image->levels;
     else scene.grey.reset();
-    if (scene.clip.box) {
-      if (result->volume->grid.direction == document.volume->grid.direction)
-        scene.clip.box = in_grid(*scene.clip.box, document.volume->grid, result->volume->grid);
-      else scene.clip.box.reset();
-    }
+    move_clip_box(scene.clip, document.volume->grid, result->volume->grid);
     if (document.armature && result->from_pose && result->from_pose->rotation.size() == document.armature->bones.size())
       scene.posed_from_rest = posed_from_rest(*document.armature, *result->from_pose);
   } else if (watched_solve(context) || shows_pose(context)) {

@@ -11,6 +11,7 @@
 #include "core/project/document.h"
 #include "core/report/quality_gates.h"
 #include "editor/shown/shown_result.h"
+#include "render/scene/scene.h"
 
 namespace limber::editor {
 
@@ -64,6 +65,9 @@ void show_result(Context& context, const std::string& name);  // shows a result 
 void show_rest(Comparison& comparison);
 // Renames a result as one edit; makes the name unique among the results.
 void rename_result(Context& context, const std::shared_ptr<const Result>& result, const std::string& name);
+// Converts the box of a clip from voxel coordinates of one grid to those of another. Removes the box if the grids' axes
+// differ.
+void move_clip_box(render::Clip& clip, const Grid& from, const Grid& to);
 // Puts the shown result or the current pose into this frame's scene, and side A of a comparison into the second scene.
 void show_posed(Context& context);
 

@@ -179,6 +179,9 @@ void PreferencesDialog::draw_view(Context& context, Column& column) {
         "have them.",
         preferences.fine_light);
   apply_light(context);
+  check(context, column, "Refine the volume at rest",
+        "Resample a pose that does not change in the background, and show the result instead of the preview.",
+        preferences.refine_at_rest);
 }
 
 void PreferencesDialog::draw_undo(Context& context, Column& column) {

@@ -19,6 +19,7 @@
 #include "editor/motion/motion_path_overlay.h"
 #include "editor/motion/onion_skin_overlay.h"
 #include "editor/pose/live_preview.h"
+#include "editor/resample/refined_pose.h"
 #include "editor/resample/results.h"
 #include "editor/rig/bone_table.h"
 #include "editor/rig/joint_axis_fit.h"
@@ -97,6 +98,15 @@ void draw_axis_ball(Context& context, const Rect& rect) {
   }
 }
 
+// Returns how the pose is shown: " (dot) Mixed preview, 2-voxel grid, refining" or " (dot) Mixed, refined".
+std::string preview_text(const Context& context, const PreviewMap& map) {
+  const std::string blend = std::string(" \u00b7 ") + rule_of(preview_blend(context.resampling)).label;
+  const std::string refinement = refinement_text(context);
+  if (context.views->body.shows_refined) return blend + ", " + refinement;
+  return blend + " preview, " + std::to_string(map.step) + "-voxel grid" +
+         (refinement.empty() ? "" : ", " + refinement);
+}
+
 std::string state_of(const Context& context) {
   if (context.interaction->modal && !context.interaction->modal->title().empty())
     return context.interaction->modal->title();
@@ -115,9 +125,7 @@ std::string state_of(const Context& context) {
                                                                          : "Tissue";
   if (const auto posed = shown_result(context); posed && !comparing(context)) state += " \u00b7 " + posed->name;
   if (const Solve* solve = watched_solve(context)) state += " \u00b7 solving, " + progress_text(*solve);
-  else if (const PreviewMap* map = context.views->scene.pose.get())
-    state += std::string(" \u00b7 ") + rule_of(preview_blend(context.resampling)).label + " preview, " +
-             std::to_string(map->step) + "-voxel grid";
+  else if (const PreviewMap* map = context.views->scene.pose.get()) state += preview_text(context, *map);
   if (context.document().armature)
     state += " \u00b7 " + std::to_string(context.document().armature->bones.size()) + " bones";
   if (!context.views->renderer.note().empty()) state += " \u00b7 " + context.views->renderer.note();

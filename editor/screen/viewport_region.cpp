@@ -40,7 +40,8 @@ void draw_picture(Context& context, const ViewPlace& place) {
                          : slice_of(views, place.id).other ? slice_of(views, place.id).other->texture()
                                                            : 0;
   if (place.side_a) return blit_picture(other, place.rect);
-  blit_picture(body ? views.body.picture->texture() : slice_of(views, place.id).picture->texture(), place.rect);
+  const render::View3D& seen = views.body.shows_refined ? *views.body.refined : *views.body.picture;
+  blit_picture(body ? seen.texture() : slice_of(views, place.id).picture->texture(), place.rect);
   if (!other || context.screen->layout.by_sides) return;
   ImGui::PushClipRect(im(place.rect.low), {wipe_line(context.comparison, place.rect), place.rect.high.y}, true);
   blit_picture(other, place.rect);
@@ -112,7 +113,7 @@ void draw_wipe(Context& context, const Rect& rect) {
 
 void hover_body(Context& context, const ViewPlace& place) {
   Hover& hover = context.views->hover;
-  const auto hit = body_at_pointer(context, place).pick(glm::ivec2(context.ui->input.pointer - place.rect.low));
+  const auto hit = pick_body(context, place, glm::ivec2(context.ui->input.pointer - place.rect.low));
   if (!hit) return;
   hover.inside = true;
   hover.label = hit->label;
@@ -128,7 +129,9 @@ void hover_slice(Context& context, const ViewPlace& place) {
   const auto voxel = voxel_shown_at(scene, hover.point);
   if (!voxel) return;
   hover.voxel = *voxel;
-  hover.label = scene.volume->at_or_air(hover.voxel);
+  const auto& refined = context.views->refined_scene;
+  const auto posed = refined ? voxel_shown_at(*refined, hover.point) : std::nullopt;
+  hover.label = posed ? refined->volume->at_or_air(*posed) : scene.volume->at_or_air(hover.voxel);
   hover.inside = hover.label != 0;
 }
 

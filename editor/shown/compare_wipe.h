@@ -3,6 +3,8 @@
 // dividing line. They find which result a view shows, and which result lies under the pointer.
 #pragma once
 
+#include <optional>
+
 #include "render/view.h"
 
 namespace limber::editor {
@@ -19,5 +21,8 @@ bool over_side_a(const Context& context, const ViewPlace& place);
 const render::Scene& scene_of(const Context& context, const ViewPlace& place);
 const render::Scene& scene_at_pointer(const Context& context, const ViewPlace& place);
 const render::View3D& body_at_pointer(const Context& context, const ViewPlace& place);
+// Returns the point of the body at a pixel of the 3D view, with its voxel at rest also if the view shows a refined
+// pose.
+std::optional<render::Hit> pick_body(const Context& context, const ViewPlace& place, const glm::ivec2& pixel);
 
 }  // namespace limber::editor

@@ -8,6 +8,7 @@
 #include "editor/app/editor_session.h"
 #include "editor/context/user_folders.h"
 #include "editor/files/project_session.h"
+#include "editor/resample/refined_pose.h"
 #include "tests/editor/small_editor.h"
 
 namespace limber::test {
@@ -18,6 +19,7 @@ struct Sitting {
       : test(size, {}, false) {
     ::setenv("HOME", home.c_str(), 1);
     begin_editor_session(*test.editor, {home / "config", home / "cache", home / "edits"}, std::move(files));
+    test.editor->refined->on = false;  // the tests wait for no refined poses
     test.play("wait-job");
   }
   ~Sitting() { end_editor_session(*test.editor); }

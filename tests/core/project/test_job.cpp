@@ -210,3 +210,24 @@ TEST_CASE("job: long ones run one at a time, in order, and no other waits for th
   REQUIRE(finish(jobs, history));
   CHECK(jobs.status(second).state == JobState::Done);
 }
+
+TEST_CASE("job: quiet ones run one at a time, and no other waits for them") {
+  History history(small_document());
+  Jobs jobs(1);
+  std::atomic<bool> go = false;
+  const auto until_go = [&go](Progress& progress) -> Edit {
+    for (; !go; nap()) progress.update("refining", 0.5);
+    return {};
+  };
+  const int first = jobs.start("", until_go, Lane::Quiet), second = jobs.start("", until_go, Lane::Quiet);
+  const int common = jobs.start("Common", [](Progress&) { return name_result("common"); });
+  const int again = jobs.start(
+      "Again", [](Progress&) { return name_result("again"); }, Lane::Long);
+  REQUIRE(wait_for(jobs, history, [&] {
+    return jobs.status(common).state == JobState::Done && jobs.status(again).state == JobState::Done;
+  }));
+  CHECK(jobs.status(first).state == JobState::Running);
+  CHECK(jobs.status(second).state == JobState::Queued);
+  go = true;
+  REQUIRE(finish(jobs, history));
+}

@@ -122,6 +122,7 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
       click dialog/View
       click "Scale bar"
       click "Soft shadows when idle"
+      click "Refine the volume at rest"
       click "dialog/Undo and saving"
       double-click "Memory limit for undo"
       type "64"
@@ -147,6 +148,7 @@ TEST_CASE("preferences: they act at once, are kept, and the next start finds the
   CHECK(kept.reduce_motion);
   CHECK_FALSE(kept.scale_bar);
   CHECK_FALSE(kept.fine_light);
+  CHECK_FALSE(kept.refine_at_rest);
   CHECK(kept.undo_limit_mb == 64);
   CHECK(kept.keys.at({"select", "select.none"}) == std::vector<std::string>{"A"});
 
