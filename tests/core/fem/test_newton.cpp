@@ -24,10 +24,10 @@ TEST_CASE("newton: flesh that hardly anything holds is not sent further than hal
   energy.set_constraints({}, lower, rest.topRows(nodes));
   energy.set_contact({boundary_of(T), rest, std::vector<int>(rest.rows(), -1), {.thickness_mm = 2}});
   NodePositions load = NodePositions::Zero(rest.rows(), 3);
-  load.bottomRows(nodes).col(2).setConstant(0.5);
+  load.bottomRows(nodes).col(2).setConstant(5);
   energy.set_load(load);
   NodePositions x = rest;
-  x.bottomRows(nodes).col(2).array() -= 6 - 1.99;  // a gap of 1.99 mm, of 2 mm at which the skins begin to touch
+  x.bottomRows(nodes).col(2).array() -= 6 - 1.9999;  // the skins begin to touch at 2 mm
   energy.build_broad_phase(x);
 
   NodePositions step;
@@ -35,7 +35,7 @@ TEST_CASE("newton: flesh that hardly anything holds is not sent further than hal
   REQUIRE(energy.newton_step(x, HessianKind::Projected, step, slope));
   REQUIRE(energy.tightest() < 1);
   const double extent = (x.colwise().maxCoeff() - x.colwise().minCoeff()).norm();
-  REQUIRE(step.rowwise().norm().maxCoeff() > 10 * extent);  // the undamped step would fly away
+  REQUIRE(step.rowwise().norm().maxCoeff() > 2 * extent);  // the undamped step would fly away
   std::vector<double> moved;
   minimise(energy, x, {.tolerance_mm = 1e-3, .iterations = 3}, no_progress(),
            [&](int, double residual) { moved.push_back(residual); });
