@@ -174,7 +174,7 @@ TEST_CASE("areas: messages cover neither the gizmo nor the legend nor the scale 
   test.editor->selection->bones = {1};
   test.editor->interaction->tool = Tool::Rotate;
   test.play("wait-idle");
-  const ViewPlace& body = test.editor->screen->layout.view_places.front();
+  const ViewPlace body = test.editor->screen->layout.view_places.front();
   REQUIRE(gizmo_rect(*test.editor, ViewProjection(*test.editor, body)));
   CHECK(covered(test) == "");
   // Moves the gizmo towards the view's lower right corner, where messages usually are.
