@@ -3,34 +3,14 @@
 
 #include <algorithm>
 
+#include "core/base/disjoint_sets.h"
+
 namespace limber {
-
-namespace {
-
-// Disjoint sets of corners of pieces (union-find). The corners in one set become one node.
-class Joined {
- public:
-  explicit Joined(std::size_t count) : first_(count) {
-    for (std::size_t i = 0; i < count; ++i) first_[i] = static_cast<std::int32_t>(i);
-  }
-  std::int32_t find(std::int32_t at) {
-    while (first_[at] != at) at = first_[at] = first_[first_[at]];
-    return at;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a), b = find(b);
-    first_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> first_;
-};
-
-}  // namespace
 
 CellNodes number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3& grid_size, int step) {
   const PiecesByCell by_cell(pieces, glm::ivec3(0), (grid_size + step - 1) / step);
-  Joined joined(8 * pieces.size());
+  // The corners of pieces in one set become one node.
+  DisjointSets joined(8 * pieces.size());
   for (std::size_t a = 0; a < pieces.size(); ++a)
     for (int axis = 0; axis < 3; ++axis) {
       glm::ivec3 next = pieces[a].cell;
@@ -40,8 +20,8 @@ CellNodes number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3& g
         const auto b = &other - pieces.data();
         for (int corner = 0; corner < 8; ++corner)
           if (corner >> axis & 1)
-            joined.join(static_cast<std::int32_t>(8 * a) + corner,
-                        static_cast<std::int32_t>(8 * b) + (corner ^ 1 << axis));
+            joined.unite(static_cast<std::int32_t>(8 * a) + corner,
+                         static_cast<std::int32_t>(8 * b) + (corner ^ 1 << axis));
       }
     }
   std::vector<std::int32_t> number(8 * pieces.size(), -1);
@@ -49,7 +29,7 @@ CellNodes number_nodes(const std::vector<CellPiece>& pieces, const glm::ivec3& g
   nodes.of_piece.resize(pieces.size());
   for (std::size_t p = 0; p < pieces.size(); ++p)
     for (int corner = 0; corner < 8; ++corner) {
-      std::int32_t& mine = number[joined.find(static_cast<std::int32_t>(8 * p) + corner)];
+      std::int32_t& mine = number[joined.least(static_cast<std::int32_t>(8 * p) + corner)];
       if (mine < 0) mine = nodes.count++;
       nodes.of_piece[p][corner] = mine;
     }

@@ -40,7 +40,7 @@ class VolumeKeeper {
   struct State {
     double pressure = 0, stiffness = 0;  // kPa
     double last_pressure = 0, last_change = 0;
-    bool is_moved = false;  // true once a pressure was set
+    bool is_moved = false;  // true: the last call changed the pressure
   };
   const TetMesh& mesh_;
   const std::vector<KeptVolume>& kept_;

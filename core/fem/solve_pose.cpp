@@ -364,8 +364,12 @@ void PoseSolve::settle() {
     if (pressures.empty()) return;
     energy_->set_pressures(pressures, parts_.elastic_tet);
     const NodePositions before = x_;
+    const double residual = result_.residual, drift = result_.bone_drift_mm;
     if (settle_from(x_) && result_.blocked_by.empty()) continue;
+    // Without a solution, the shape before stays; its volumes are in the report.
     x_ = before;
+    result_.residual = residual;
+    result_.bone_drift_mm = drift;
     result_.blocked_by.clear();
     return;
   }

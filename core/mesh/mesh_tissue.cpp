@@ -53,12 +53,14 @@ void cut_open(TissueMesh& result, const LatticeNet& net, const VoxelRegions& vox
   const Eigen::MatrixX4i before = mesh.T;
   split_at_faces(mesh, net.cut, nodes_of_several_sides(mesh, voxels));
   open_faces(mesh, net.cut, before, kOpen * net.spacing_mm);
-  if (const std::int64_t removed = remove_crossing(mesh) + remove_flakes(mesh, voxels); removed > 0) {
+  const auto warn = [&](std::int64_t removed, const char* why) {
+    if (removed == 0) return;
     if (!result.warning.empty()) result.warning += "; ";
-    result.warning +=
-        std::to_string(removed) + (removed == 1 ? " tet" : " tets") +
-        " at seams left out, because surfaces would cross there: the tissue in these tets moves with the nearest tets";
-  }
+    result.warning += std::to_string(removed) + (removed == 1 ? " tet" : " tets") + " at seams left out, because " +
+                      why + ": tissue in these tets moves with the nearest tets";
+  };
+  warn(remove_crossing(mesh), "surfaces would cross there");
+  warn(remove_flakes(mesh, voxels), "they lie loose in the air");
   for (std::uint16_t& region : mesh.region) {
     mesh.side.push_back(voxels.side_of(region));
     if (is_soft_region(region)) region = TetMesh::kSoft;
